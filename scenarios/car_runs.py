@@ -1,4 +1,4 @@
-"""Runs of the complete car that scenarios share: each computed once, independent ones in several processes."""
+"""Runs of the complete car shared by studies: each case runs once, independent cases in parallel processes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car, Run
 from vehicle.studies.sweeps.case import Case, Input, digest, signal_of
-from vehicle.studies.sweeps.evaluation import run_of
+from vehicle.studies.sweeps.case_evaluation import run_of
 from vehicle.studies.sweeps.executors import process_pool
 
 
@@ -30,12 +30,12 @@ class CarRuns:
         self._done: dict[str, Run] = {}
 
     def case(self, source: Input, overrides: Sequence[str] = (), *, engine: str | None = None) -> Case:
-        """A signal on the car with some parameters changed.
+        """Return the case of a signal on the car with modified parameters.
 
         Args:
             source: the signal, or another input.
-            overrides: texts like "damper.coulomb_friction=75"; they win over those of all cars.
-            engine: another one than that of the other runs; a film needs "mujoco".
+            overrides: texts like "damper.coulomb_friction=75"; applied after the overrides of all cars.
+            engine: engine of this case, by default that of the other runs; a film needs "mujoco".
         """
         changes = (*self.overrides, *overrides)
         return Case(
@@ -48,21 +48,21 @@ class CarRuns:
 
     @property
     def wheel(self) -> str:
-        """Wheel on the shaker."""
+        """Return the wheel on the shaker."""
         return self.car().vehicle.shaker_wheel
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
-        """The car with some parameters changed; built once."""
+        """Return the car with modified parameters, cached."""
         return self.car_of((*self.overrides, *overrides))
 
     def car_of(self, changes: tuple[str, ...]) -> Car:
-        """The car with all the overrides of a case; built once."""
+        """Return the car with all overrides of a case, cached."""
         if changes not in self._cars:
             self._cars[changes] = Car.load(self.vehicle, changes)
         return self._cars[changes]
 
     def __call__(self, cases: Sequence[Case]) -> list[Run]:
-        """Runs of cases of this car, in their order; what was computed before is not computed again."""
+        """Return the runs of cases in their order; finished cases are not run again."""
         keys = [digest([case.overrides, case.engine, case.source.identity()]) for case in cases]
         missing = {key: case for key, case in zip(keys, cases, strict=True) if key not in self._done}
         recordings: list[Recording | None] = [None] * len(missing)
@@ -79,5 +79,5 @@ class CarRuns:
 
 
 def recording_of(case: Case) -> Recording:
-    """What a worker process sends back of a run."""
+    """Run a case in a worker process and return its recording."""
     return run_of(case).recording

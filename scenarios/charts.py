@@ -24,15 +24,15 @@ LEVEL_COLOURS = (COLOURS[0], COLOURS[3], COLOURS[1])
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrfCurve:
-    """One FRF to draw.
+    """FRF curve of a chart.
 
     Attributes:
         label: legend text.
-        frequency: [Hz], (m,).
-        response: [m/s2 per m], (m,); NaN where it is not drawn.
-        colour: of the line.
-        coherence: [-], (m,); None for a linear model, which has none.
-        style: of the line.
+        frequency: frequencies [Hz], (m,).
+        response: FRF [m/s2 per m], (m,); NaN at gaps.
+        colour: colour of the line.
+        coherence: coherence [-], (m,); None for a linear model.
+        style: style of the line.
     """
 
     label: str
@@ -44,7 +44,7 @@ class FrfCurve:
 
 
 def measured_curve(response: FrequencyResponse, row: int, label: str, colour: str, style: str = "-") -> FrfCurve:
-    """Curve of one row of an estimated FRF."""
+    """Return the curve of one row of an estimated FRF."""
     return FrfCurve(
         label=label,
         frequency=response.frequency,
@@ -78,8 +78,8 @@ def draw_frf(
         for (heading, curves), (magnitude, phase, coherence) in zip(columns, axes.T, strict=True):
             for curve in curves:
                 look = {"color": curve.colour, "linestyle": curve.style}
-                known = np.ones(curve.frequency.size) if curve.coherence is None else curve.coherence
-                fading(magnitude, curve.frequency, np.abs(curve.response), known, curve.label, **look)
+                weight = np.ones(curve.frequency.size) if curve.coherence is None else curve.coherence
+                fading(magnitude, curve.frequency, np.abs(curve.response), weight, curve.label, **look)
                 phase.plot(curve.frequency, wrapped_phase(curve.response), **look)
                 if curve.coherence is not None:
                     coherence.plot(curve.frequency, curve.coherence, **look)
@@ -95,14 +95,14 @@ def draw_frf(
 def figure_file(
     path: Path, size: tuple[float, float], title: str, caption: str, *, placed: bool = False
 ) -> Iterator[Any]:
-    """Give an empty figure; write it with title and caption under a temporary name and rename it when complete.
+    """Yield an empty figure; on exit write it with title and caption to a temporary file and rename the file.
 
     Args:
         path: PNG file.
         size: width and height [inch].
-        title: above the figure; none if empty.
-        caption: what is seen, under which conditions.
-        placed: as of `saved_figure`.
+        title: title of the figure; may be empty.
+        caption: content and conditions of the figure.
+        placed: see `saved_figure`.
     """
     draft = path.with_name(f".{path.name}.draft.png")
     try:
@@ -117,7 +117,7 @@ def figure_file(
 def chart(
     path: Path, caption: str, *, rows: int = 1, columns: int = 1, size: tuple[float, float] = (9.0, 5.0)
 ) -> Iterator[Sequence[Any]]:
-    """The axes of a figure without title, row by row; arguments as of `figure_file`."""
+    """Yield the axes of a figure without title, row by row; arguments as in `figure_file`."""
     with figure_file(path, size, "", caption) as figure:
         yield figure.subplots(rows, columns, squeeze=False).ravel()
 
@@ -140,7 +140,7 @@ def lines(
 
 
 def rows_of(figure: Any, count: int, columns: int, **options: Any) -> Any:
-    """Axes of a grid of time histories: one time axis a column, labels only at the bottom."""
+    """Return axes of a grid of time histories: a common time axis in each column, labels only at the bottom."""
     axes = figure.subplots(count, columns, sharex="col", squeeze=False, **options)
     for axis in axes[-1]:
         axis.set_xlabel("time [s]")

@@ -1,6 +1,7 @@
-"""Published statements beside our numbers, as `results.md` and `results.json`.
+"""Rows that compare published statements with our values, for `results.md` and `results.json`.
 
-A row says where its published side stands in the source and what ours is: only `predicted` rows are evidence for the
+A row contains the place in the source, the published statement, our value and its status: only `predicted` rows are
+evidence for the
 model, and only they are in the headline.
 """
 
@@ -20,13 +21,13 @@ from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 from vehicle.runs.output.folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate", "not testable"]
-"""`predicted`: nothing was adjusted to it. `fitted`: what the source leaves open was fitted to it. `chosen`: one of
+"""`predicted`: no parameter was adjusted to it. `fitted`: unprinted parameters were fitted to it. `chosen`: one of
 several readings of the source, or of several bodies, was taken with the row in view. `own check`: not a published
 result. `duplicate`: the same statement again, at another place or by another definition. `not testable`: the source
 leaves out what a test needs; listed with the reason, never counted."""
 
 Source = Literal["text", "table", "axis interval", "inferred"]
-"""Where the source has it. `axis interval`: between two labels of an axis, which are all that is left of a figure.
+"""Form in the source. `axis interval`: between two labels of an axis, the only readable part of a figure.
 `inferred`: concluded by us."""
 
 Interval = tuple[float, float]
@@ -45,7 +46,7 @@ LEGEND = (
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """One row: what is printed, what we find, whether the two agree, why, and what kind of row it is."""
+    """Row of a published statement: printed value, our value, agreement, reason, and status."""
 
     name: str
     published: float | str
@@ -53,14 +54,14 @@ class Claim:
     deviation: float | None
     """(ours - published) / published where both are numbers, that from the nearer end of an interval, else None."""
     within: bool | None
-    """True if ours agrees with the print, by the rule given in `why`; None where no one can test it."""
+    """True if our value agrees with the print by the rule in `why`; None for an untestable row."""
     why: str
     status: Status
     source: Source
     interval: Interval | None = None
-    """Lowest and highest published value, infinite where it is open; None where the print is no interval."""
+    """Lowest and highest published value, infinite for an open end; None if no interval is printed."""
     place: str = ""
-    """Where in the source: "figure 3.13", "table 3.2", "section 3.3"."""
+    """Place in the source: "figure 3.13", "table 3.2", "section 3.3"."""
     picture: str = ""
     """File name of the figure of the study that shows the row, or nothing."""
     probability: float | None = None
@@ -196,7 +197,7 @@ def _verdict(status: Status, holds: object) -> bool | None:
 
 
 def _interval_deviation(interval: Interval, ours: float) -> float | None:
-    """(ours - nearer end) / |nearer end|, 0 inside; None where that end is 0."""
+    """Return (ours - nearer end) / |nearer end|, 0 inside; None if that end is 0."""
     low, high = interval
     nearest = min(max(ours, low), high)
     if low <= ours <= high:
@@ -221,17 +222,17 @@ def headline(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table of a heading and rows of cells."""
+    """Return a Markdown table with a heading and rows of cells."""
     lines = [f"| {' | '.join(cells)} |" for cells in (columns, *rows)]
     return "\n".join([lines[0], "|" + "---|" * len(columns), *lines[1:]])
 
 
 OWN_COLUMNS = ("name", "found", "within", "why")
-"""Of a table on data of the user."""
+"""Columns of a table on user data."""
 
 
 def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
-    """The rows as a Markdown table."""
+    """Return the rows as a Markdown table."""
     columns = ("name", "place", "published", "ours", "deviation", "within", "status", "source", "why")
     return markdown(columns, [[cell(name, row[name]).replace("|", "\\|") for name in columns] for row in rows])
 
@@ -241,14 +242,14 @@ class Findings:
     """Result of a study.
 
     Attributes:
-        title: first line of the text.
-        claims: published statements beside ours.
-        unjudged: statements that short signals cannot judge: name, and why; None where they judge all.
+        title: heading of the text.
+        claims: rows of published statements with our values.
+        unjudged: name of a row to the reason why short signals cannot judge it; None if all rows are judged.
         notes: paragraphs below the table.
         data: further numbers for `results.json`, under their own keys.
         values: lines for the console, as fitted values.
-        own_data: whether they are about data of the user, of which nothing is published: the rows say what was found.
-        tyres: what the tyres of its cars do, see `tyre_words`.
+        own_data: True for user data, without published values: the rows contain only our values.
+        tyres: state of the tyres of the cars, see `tyre_words`.
     """
 
     title: str
@@ -261,7 +262,7 @@ class Findings:
     tyres: str = ""
 
     def write(self, folder: Path) -> str:
-        """Write `results.md` and `results.json`, without the rows that are not judged; returns the line to print."""
+        """Write `results.md` and `results.json` without the unjudged rows; return the line to print."""
         left = self.unjudged or {}
         rows = [asdict(claim) for claim in self.claims if claim.name not in left]
         counts, legend, table = headline(rows), [LEGEND], claim_table(rows)
@@ -294,7 +295,7 @@ def cell(name: str, value: Any) -> str:
     """Return the text of a member of a row.
 
     Args:
-        name: of the member; see `Claim`.
+        name: name of the member, see `Claim`.
         value: its value.
     """
     if name == "within":
@@ -307,7 +308,7 @@ def cell(name: str, value: Any) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """JSON has neither infinity nor NaN: None stands for them."""
+    """Convert values to JSON types; infinity and NaN become None, as JSON has neither."""
     if isinstance(value, Mapping):
         return {str(key): _plain(member) for key, member in value.items()}
     if isinstance(value, list | tuple):

@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.evaluation import recordings_of, run_of
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
 Vector = npt.NDArray[np.float64]
@@ -31,13 +31,14 @@ Changes = tuple[str, ...]
 """Overrides of one car, as "damper.coulomb_friction=62.5"."""
 
 Numbers = Mapping[str, float]
-"""What `RoadMeasure` reads off one run."""
+"""Values of `RoadMeasure` for one run."""
 
 
 def chosen_engine(asked: str) -> str:
-    """Engine of the studies: "auto" is the reduced one, on the rough road too, where `Car.run` would take MuJoCo.
+    """Return the engine of the studies: "auto" is the reduced engine, also on the rough road.
 
-    There parts turn by 0.13 rad, beyond what the reduced engine vouches for; its comfort value is still the same within
+    `Car.run` would use MuJoCo on the rough road: parts rotate by 0.13 rad, outside the valid range of the reduced
+    engine. The comfort value of the reduced engine still agrees within
     a few tenths of a percent, which the full study checks on its corner points.
     """
     reduced = "reduced" if has_compiler() else "mujoco"
@@ -46,14 +47,14 @@ def chosen_engine(asked: str) -> str:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Variation:
-    """A parameter and the values it takes.
+    """Parameter with the values of its variation.
 
     Attributes:
-        name: of its files.
-        label: of its axis, with the unit.
-        path: of the parameter; a component of a vector has its axis behind it.
-        values: what it takes; in the unit of the parameter.
-        figures: of Bommer 2006; empty beyond the source.
+        name: name of the files.
+        label: label of the axis, with the unit.
+        path: path of the parameter; a component of a vector has the axis as suffix.
+        values: values in the unit of the parameter.
+        figures: figures of Bommer 2006; empty for variations that are not in the thesis.
     """
 
     name: str
@@ -64,7 +65,7 @@ class Variation:
 
 
 def changes(vehicle: Vehicle, path: str, value: float) -> Changes:
-    """Overrides that give a parameter a value; none for the value it has."""
+    """Return the overrides that set the parameter to a value; empty for the present value."""
     return () if value == value_of(vehicle, path) else (f"{path}={value!r}",)
 
 
@@ -83,25 +84,25 @@ class Records:
     lead: float = LEAD_S
 
     def text(self) -> str:
-        """For captions."""
-        many = f"{self.count} records" if self.count > 1 else "1 record"
-        return f"{many} of {self.duration:g} s (seeds 0 to {self.count - 1}) after {self.lead:g} s left out"
+        """Return a text on the records for captions."""
+        records = f"{self.count} records" if self.count > 1 else "1 record"
+        return f"{records} of {self.duration:g} s (seeds 0 to {self.count - 1}) after {self.lead:g} s left out"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Point:
-    """One car on one road: means over the records and their standard errors.
+    """Means over the records of a car on a road, with standard errors.
 
     Attributes:
-        value: of the parameter.
-        relative: comfort value over that of the reference [-].
-        relative_error: standard error of that ratio, from the ratios of the single records [-].
+        value: value of the parameter.
+        relative: comfort value over the comfort value of the reference [-].
+        relative_error: standard error of the ratio, from the ratios of the single records [-].
         comfort: comfort value [m/s2].
         comfort_error: standard error, from the single records [m/s2].
-        gaussian_error: what a Gaussian road of this length would give, from the spectrum [m/s2].
+        gaussian_error: standard error for a Gaussian road of this length, from the spectrum [m/s2].
         slip, slip_error: share of the time above the slip velocity, right damper [-].
         saturated, slip_left: share above 1 mm/s; share above the slip velocity, left damper [-].
-        lowest_load: of the tyre on the shaker [N].
+        lowest_load: minimum load of the tyre on the shaker [N].
         pulling: share of the time with a negative load [-].
     """
 
@@ -123,17 +124,17 @@ Curves = Mapping[str, Sequence[Point]]
 """Points of one variation by road."""
 
 
-def point(value: float, found: Sequence[Numbers], reference: Sequence[Numbers]) -> Point:
-    """Means over records, and the ratio to the reference on the same records."""
-    rows = {name: np.array([one[name] for one in found]) for name in found[0]}
+def point(value: float, numbers: Sequence[Numbers], reference: Sequence[Numbers]) -> Point:
+    """Return means over records, and the ratio to the reference on the same records."""
+    rows = {name: np.array([record[name] for record in numbers]) for name in numbers[0]}
     comfort, mean = rows["comfort"], {name: float(np.mean(row)) for name, row in rows.items()}
-    ratio = comfort / np.array([one["comfort"] for one in reference])
+    ratio = comfort / np.array([record["comfort"] for record in reference])
     return Point(
         value=value,
         relative=float(np.mean(ratio)),
         relative_error=standard_error(ratio),
         comfort_error=standard_error(comfort),
-        gaussian_error=float(np.sqrt(np.sum(rows["gaussian_error"] ** 2)) / len(found)),
+        gaussian_error=float(np.sqrt(np.sum(rows["gaussian_error"] ** 2)) / len(numbers)),
         slip_error=standard_error(rows["slip"]),
         lowest_load=float(np.min(rows["lowest_load"])),
         **{name: mean[name] for name in ("comfort", "slip", "saturated", "slip_left", "pulling")},
@@ -141,7 +142,7 @@ def point(value: float, found: Sequence[Numbers], reference: Sequence[Numbers]) 
 
 
 def standard_error(values: npt.ArrayLike) -> float:
-    """Standard error of the mean of independent values, s / sqrt(n); NaN of a single one."""
+    """Return the standard error of the mean of independent values, s / sqrt(n); NaN for a single value."""
     array = np.asarray(values, dtype=np.float64)
     return float(np.std(array, ddof=1) / np.sqrt(array.size)) if array.size > 1 else float("nan")
 
@@ -163,20 +164,20 @@ class ComfortRuns:
 
     @property
     def computed(self) -> int:
-        """Number of runs so far."""
+        """Return the number of finished runs."""
         return len(self._done)
 
     @property
     def tyres(self) -> str:
-        """What the tyres of the car do."""
+        """Return a description of the state of the tyres."""
         return self.runs.car().vehicle.driving.words
 
     def text(self) -> str:
-        """Records, tyres and engine, for captions."""
+        """Return a text on records, tyres and engine for captions."""
         return f"{self.records.text()}, tyres {self.tyres}, engine {self.engine}"
 
     def cars(self, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
-        """Cars of a variation by its values; `base` are changes that all have."""
+        """Return value to overrides of the cars of a variation; `base` are overrides of all cars."""
         vehicle = self.runs.car().vehicle
         return {value: (*base, *changes(vehicle, variation.path, value)) for value in variation.values}
 
@@ -189,14 +190,14 @@ class ComfortRuns:
         engine: str | None = None,
         count: int | None = None,
     ) -> list[Case]:
-        """The runs of a car on a road, one for each record.
+        """Return the cases of a car on a road, a case for each record.
 
         Args:
-            car: its changes.
+            car: overrides of the car.
             road: "smooth" or "rough".
             edge: lower band edge of the road [Hz].
-            engine: another one than that of the study.
-            count: fewer records.
+            engine: engine, by default that of the study.
+            count: number of records, by default all.
         """
         return [
             self.runs.case(
@@ -216,7 +217,7 @@ class ComfortRuns:
         ]
 
     def __call__(self, cases: Sequence[Case]) -> list[Numbers]:
-        """Numbers of the cases, in their order; what is missing is computed together, one car after the other.
+        """Return the values of cases in their order; run missing cases in a batch, sorted by car.
 
         Raises:
             SimulationError: a run failed.
@@ -224,7 +225,7 @@ class ComfortRuns:
         missing = [case for case in dict.fromkeys(cases) if case not in self._done]
         if missing:
             self.folder.mkdir(exist_ok=True)
-            # One job needs no process of its own, which takes seconds to start.
+            # A single job runs in this process: a worker process takes seconds to start.
             inside = partial(ThreadPoolExecutor, 1) if self.runs.jobs == 1 else None
             measure = RoadMeasure(lead=self.records.lead, wheel=self.runs.wheel)
             table = sweep(missing, measure, executor=inside, jobs=self.runs.jobs, folder=self.folder)
@@ -238,9 +239,9 @@ class ComfortRuns:
     def histories(
         self, cars: Sequence[Changes], road: str, *, record: int = 0, engine: str | None = None
     ) -> list[Vector]:
-        """Seat rail in z of cars over one record of a road [m/s2], (n,) each.
+        """Return the vertical acceleration of the seat rail of cars over one record of a road [m/s2], (n,) each.
 
-        The reduced engine takes them side by side, as in the sweep; kept, since the nominal car is in many figures.
+        The reduced engine runs the cars in a batch, as in a sweep; histories are cached for use in several figures.
         """
         cases = [self.cases(car, road, engine=engine)[record] for car in cars]
         missing = [case for case in dict.fromkeys(cases) if case not in self._histories]
@@ -248,25 +249,27 @@ class ComfortRuns:
             recordings = [run_of(case, SEAT_RAIL_Z).recording for case in missing]
         else:
             recordings = recordings_of(missing, SEAT_RAIL_Z) if missing else []
-        self._histories |= {case: one[SEAT_RAIL_Z[0]] for case, one in zip(missing, recordings, strict=True)}
+        self._histories |= {
+            case: recording[SEAT_RAIL_Z[0]] for case, recording in zip(missing, recordings, strict=True)
+        }
         return [self._histories[case] for case in cases]
 
     def all_cases(self, variation: Variation, base: Changes = ()) -> list[Case]:
-        """All runs that the curves of a variation need, those about one car side by side."""
+        """Return all cases of the curves of a variation, sorted by car."""
         cars = dict.fromkeys([base, *self.cars(variation, base).values()])
         return [case for car in cars for road in ROAD_RMS for case in self.cases(car, road)]
 
     def point(self, value: float, car: Changes, road: str, reference: Changes, edge: float = ROAD_EDGE_HZ) -> Point:
-        """A car on a road, relative to another one."""
-        found, base = (self(self.cases(one, road, edge=edge)) for one in (car, reference))
-        return point(value, found, base)
+        """Return the point of a car on a road, relative to a reference car."""
+        numbers, base = (self(self.cases(record, road, edge=edge)) for record in (car, reference))
+        return point(value, numbers, base)
 
     def nominal(self) -> dict[str, Point]:
-        """The unchanged car on both roads."""
+        """Return the point of the unmodified car on both roads."""
         return {road: self.point(0.0, (), road, ()) for road in ROAD_RMS}
 
     def curves(self, variation: Variation, base: Changes = ()) -> Curves:
-        """Points of a variation on both roads, relative to the car with `base` alone."""
+        """Return the points of a variation on both roads, relative to the car with only the overrides `base`."""
         cars = self.cars(variation, base)
         return {road: [self.point(value, car, road, base) for value, car in cars.items()] for road in ROAD_RMS}
 
@@ -287,12 +290,12 @@ def comfort_options(parser: argparse.ArgumentParser) -> None:
 
 
 def records_of(options: argparse.Namespace) -> Records:
-    """The records that the options ask for.
+    """Return the number of records from the options.
 
     Raises:
-        ConfigurationError: fewer than one.
+        ConfigurationError: the number of records is below 1.
     """
     if options.records is not None and options.records < 1:
-        raise ConfigurationError(f"--records {options.records}: must be at least 1; a single one tells no error")
+        raise ConfigurationError(f"--records {options.records}: must be at least 1; an error needs at least 2")
     base = QUICK if options.quick else Records(count=RECORDS)
     return base if options.records is None else Records(count=options.records, duration=base.duration, lead=base.lead)

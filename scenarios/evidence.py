@@ -1,6 +1,6 @@
-"""What Bommer 2006 says that the choice of its unprinted numbers may use: a row for each statement, one half held out.
+"""Statements of Bommer 2006 for the choice of its unprinted parameters: a row for each, one half held out.
 
-Source 1 does not print which side is which, the velocity that counts as slip, band edges, modal damping and the body's
+The thesis does not print the sides of the car, the minimum velocity of slip, band edges, modal damping and the body's
 mode shapes. They are chosen together (`scenarios.source_choice`) on half of these rows; the other half is a prediction.
 """
 
@@ -16,27 +16,27 @@ import numpy as np
 from scenarios.claims import Interval, Status
 
 Topic = Literal["shaker slip", "no slip", "road slip", "bump 7.5 mm", "bump 1.5 mm", "comfort", "level", "mode"]
-"""Strata of the draw: rows of one kind, so that no number that the source leaves open loses all the rows that tell it
-(only `shaker slip` tells the lower edge of the shaker inputs, for example)."""
+"""Strata of the draw: rows of one topic, so that every unprinted parameter keeps rows that depend on it
+(for example, only `shaker slip` depends on the lower edge of the shaker inputs)."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Evidence:
-    """A statement of the source as an interval of a number.
+    """Statement of the thesis as an interval of a quantity.
 
     Attributes:
         key: short name, for tables and `status_of`.
-        name: what is compared.
-        unit: of the number.
-        place: in the source.
-        interval: lowest and highest value that is printed, or that the labels of an axis leave; infinite ends are open.
-        topic: its stratum.
-        how: what computes ours.
-        error: standard deviation of a normal error of the model, in the unit of the number; 0 where the scatter of the
-            input over its seeds, which are not published, is the larger one.
-        weight: in the sum of log-likelihoods; k rows that one curve or one run decides together have 1 / k each.
-        before: status that an earlier choice gave the row whichever half it is in: the body's frame was fitted to it,
-            or chosen with it in view; None where nothing earlier saw it.
+        name: name of the compared quantity.
+        unit: unit of the quantity.
+        place: figure, table or section of the thesis.
+        interval: lowest and highest value, as printed or from the labels of an axis; infinite for an open end.
+        topic: stratum of the row.
+        how: computation of our value.
+        error: standard deviation of a normal error of the model, in the unit of the quantity; 0 if the scatter of the
+            input over its unpublished seeds is larger.
+        weight: weight in the sum of log-likelihoods; 1 / k for each of k rows from one curve or run.
+        before: status of the row from an earlier choice, in both halves: the body's frame was fitted to it,
+            or chosen with it in view; None if no earlier choice used the row.
     """
 
     key: str
@@ -55,7 +55,7 @@ SLIP_ERROR = 1.3
 """Error of a slip share [points]: what 10 % of the damper's velocity, or of the velocity that counts, change of it."""
 
 SHARE_READING = 1.0
-"""Half an interval around a printed share [points]: whether a crossing between samples counts is not told."""
+"""Half width of the interval around a printed share [points]: the treatment of crossings between samples is unknown."""
 
 MODE_ERROR = 0.02
 """Error of a frequency, as a share: 4 % of a stiffness, which is how near the tuned values of appendix F are rounded
@@ -65,7 +65,7 @@ ROUND_ERROR = 0.05
 """The same where the source prints a range in round numbers."""
 
 SLIP_INSTANT, INSTANT_READING = 5.035, 0.010
-"""End of sticking of the right damper in figure 3.12, and how well an axis with ticks of 50 ms tells it [s]."""
+"""End of sticking of the right damper in figure 3.12, and reading error of an axis with ticks of 50 ms [s]."""
 
 
 def _slip() -> list[Evidence]:
@@ -76,7 +76,7 @@ def _slip() -> list[Evidence]:
         _share("slip_right_high", "right damper, high", "table 3.2", 21.8, right),
     ]
     left = "the same of the other damper"
-    # What sticks in the high level sticks in the same signal in smaller: three rows, one statement.
+    # A damper that sticks at the high level also sticks at lower levels of the same signal: three rows, one statement.
     rows += [
         _share(f"slip_left_{level}", f"left damper, {level}", "section 3.3.1", 0.0, left, weight=1 / 3)
         for level in ("low", "mid", "high")
@@ -88,7 +88,7 @@ def _slip() -> list[Evidence]:
 
 
 def _share(key: str, name: str, place: str, percent: float, how: str, weight: float = 1.0) -> Evidence:
-    # A printed 0 beside 3.9 is below half a percent.
+    # A printed 0, with 3.9 for the other side, is below half a percent.
     low, high = (percent - SHARE_READING, percent + SHARE_READING) if percent else (-math.inf, 0.5)
     topic: Topic = ("road slip" if "road" in name else "shaker slip") if percent else "no slip"
     return Evidence(
@@ -287,7 +287,7 @@ HALF_SEED = 2006
 
 
 def _half() -> frozenset[str]:
-    """Keys of the rows that the choice uses: shuffled, put together by topic, and every second one taken."""
+    """Return the keys of the rows used for the choice: shuffled, sorted by topic, every second row."""
     drawn = [EVIDENCE[number] for number in np.random.default_rng(HALF_SEED).permutation(len(EVIDENCE))]
     topics = list(dict.fromkeys(row.topic for row in EVIDENCE))
     drawn.sort(key=lambda row: topics.index(row.topic))
@@ -300,14 +300,14 @@ _BY_KEY = {row.key: row for row in EVIDENCE}
 
 
 def evidence_of(key: str) -> Evidence:
-    """Row of a key."""
+    """Return the row of a key."""
     return _BY_KEY[key]
 
 
 def status_of(key: str) -> Status:
-    """Status of a claim about a row: "fitted" in the half that the choice used, "predicted" in the half held out.
+    """Return the status of a row: "fitted" in the half used for the choice, "predicted" in the held-out half.
 
-    What an earlier choice had fitted, or had in view, is no prediction in either half.
+    A row that was fitted or considered by an earlier choice is not a prediction in either half.
     """
     row = evidence_of(key)
     return "fitted" if key in USED else row.before or "predicted"

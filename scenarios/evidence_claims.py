@@ -1,4 +1,4 @@
-"""Rows whose published interval, place and status stand in `scenarios.evidence`."""
+"""Rows with published interval, place and status from `scenarios.evidence`."""
 
 from __future__ import annotations
 
@@ -43,35 +43,37 @@ def evidence_claim(
     elif not evidence.error:
         return row
     probability = interval_probability(values, evidence.interval, error=evidence.error)
-    rule = f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, needed {100.0 * AGREES_ABOVE:g} %"
+    rule = (
+        f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, must exceed {100.0 * AGREES_ABOVE:g} %"
+    )
     return replace(row, within=probability > AGREES_ABOVE, probability=probability, why=f"{rule}; {why}")
 
 
 def reason(interval: Interval, trials: Mapping[str, float]) -> str:
-    """What experiments say about a row that disagrees: ours with each change, those that reach the interval first.
+    """Return a text on experiments for a disagreement: our value with each modification, first those in the interval.
 
     Args:
-        interval: the published one.
-        trials: label of a change of the model to ours with it.
+        interval: published interval.
+        trials: label of a modification of the model to our value with it.
     """
     low, high = interval
     texts = {label: f"{label} {value:.3g}" for label, value in trials.items()}
     inside = [texts[label] for label, value in trials.items() if low <= value <= high]
     outside = [text for text in texts.values() if text not in inside]
     if not inside:
-        return f"experiments: reached with none of the changes tried ({', '.join(outside)})"
-    rest = f"; not with {', '.join(outside)}" if outside else ""
-    return f"experiments: reached with {', '.join(inside)}{rest}"
+        return f"experiments: no modification reaches the interval ({', '.join(outside)})"
+    others = f"; not with {', '.join(outside)}" if outside else ""
+    return f"experiments: reached with {', '.join(inside)}{others}"
 
 
 def _words(evidence: Evidence) -> str:
     error = f" with a model error of {evidence.error:.3g} {evidence.unit}" if evidence.error else ""
     unit = "" if evidence.unit == "-" else f" {evidence.unit}"
     low, high = evidence.interval
-    words = (
+    text = (
         f"at most {high:g}" if math.isinf(low) else f"at least {low:g}" if math.isinf(high) else f"{low:g} to {high:g}"
     )
-    return f"{words}{unit}{error}"
+    return f"{text}{unit}{error}"
 
 
 def _source(evidence: Evidence, printed: float | None) -> Source:

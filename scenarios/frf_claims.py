@@ -27,26 +27,26 @@ SATISFACTORY, COHERENCE_BAND = 0.5, 5.0
 def axis_claims(
     responses: Mapping[str, FrequencyResponse], names: Sequence[str], rigid: Vector | None = None
 ) -> list[Claim]:
-    """Largest and smallest line of all FRFs against the axes of figures 3.3 to 3.36.
+    """Return the rows on the extreme lines of all FRFs against the axes of figures 3.3 to 3.36.
 
     Args:
         responses: level to FRFs.
-        names: of their rows.
-        rigid: |H| of the rows at 1 Hz, of a car with a rigid body and stuck dampers, as evidence for the reason of a
+        names: names of the rows of the FRFs.
+        rigid: |H| of the rows at 1 Hz for a car with a rigid body and stuck dampers, as evidence for the reason of a
             line below the axis.
     """
     lines = [
         (float(magnitude), f"{channel}, {level}, {frequency:.3g} Hz")
-        for level, found in responses.items()
-        for channel, row in zip(names, np.abs(found.response), strict=True)
-        for frequency, magnitude in zip(found.frequency, row, strict=True)
+        for level, response in responses.items()
+        for channel, row in zip(names, np.abs(response.response), strict=True)
+        for frequency, magnitude in zip(response.frequency, row, strict=True)
         if np.isfinite(magnitude)
     ]
     sizes = np.array([value for value, _ in lines])
     below, above = (100.0 * float(np.mean(outside)) for outside in (sizes < FRF_AXIS[0], sizes > FRF_AXIS[1]))
     reasons = {"largest": f"{above:.1f} % of all lines above the axis", "smallest": f"{below:.1f} % below it"}
     if rigid is not None:
-        low = [f"{one} {value:.1f}" for one, value in zip(names, rigid, strict=True) if value < FRF_AXIS[0]]
+        low = [f"{name} {value:.1f}" for name, value in zip(names, rigid, strict=True) if value < FRF_AXIS[0]]
         reasons["smallest"] += (
             f"; experiment: with a rigid body too {len(low)} outputs are below {FRF_AXIS[0]:g} at 1 Hz "
             f"({', '.join(low)}), where the plate has {(2.0 * np.pi) ** 2:.0f} (m/s2)/m and an output its share of the "
@@ -67,9 +67,9 @@ def axis_claims(
 
 
 def least_coherence(response: FrequencyResponse) -> float:
-    """Least median of the coherence [-] of any output in any band up to `FRF_END`.
+    """Return the lowest median coherence [-] of any output in any band up to `FRF_END`.
 
-    Lines below the axis of the source are left out: in an antiresonance nothing is to be seen but noise.
+    Lines below the axis of the thesis are excluded: an antiresonance contains only noise.
     """
     seen = np.isfinite(response.coherence) & (np.abs(response.response) >= FRF_AXIS[0])
     bands = [
@@ -88,27 +88,27 @@ def least_coherence(response: FrequencyResponse) -> float:
 def coherence_claim(
     responses: Mapping[str, FrequencyResponse], knuckle: int, less_friction: FrequencyResponse | None = None
 ) -> Claim:
-    """Row of the coherences of the model.
+    """Return the row on the coherences of the model.
 
     Args:
         responses: level to FRFs.
-        knuckle: row of the knuckle over the plate.
-        less_friction: high level with a tenth of the friction, as evidence for the reason of a disagreement.
+        knuckle: index of the row of the knuckle over the shaker plate.
+        less_friction: FRFs at the high level with a tenth of the friction, as evidence for a reason.
     """
-    least = {level: least_coherence(one) for level, one in responses.items()}
-    alone = min(float(np.nanmin(one.coherence[knuckle])) for one in responses.values())
+    lowest = {level: least_coherence(response) for level, response in responses.items()}
+    knuckle_lowest = min(float(np.nanmin(response.coherence[knuckle])) for response in responses.values())
     why = (
         f"satisfactory is no number: median of at least {SATISFACTORY:g}, half of the power, in every "
         f"{COHERENCE_BAND:g} Hz at every output; lines below the axis are left out; the knuckle has at least "
-        f"{alone:.2f} at every line"
+        f"{knuckle_lowest:.2f} at every line"
     )
     if less_friction is not None:
         why += f"; experiment: with a tenth of the friction the high level has {least_coherence(less_friction):.2f}"
     return PREDICTED.statement(
         "coherence of the model, low, mid and high",
         f"satisfactory up to {FRF_END:g} Hz",
-        "least median " + ", ".join(f"{value:.2f} ({level})" for level, value in least.items()),
-        min(least.values()) >= SATISFACTORY,
+        "least median " + ", ".join(f"{value:.2f} ({level})" for level, value in lowest.items()),
+        min(lowest.values()) >= SATISFACTORY,
         why,
         place="section 3.3",
         picture="knuckle_z.png",

@@ -1,4 +1,4 @@
-"""Which parameters decide comfort when all of them vary at once: Sobol indices or Morris effects on the smooth road.
+"""Global sensitivity of comfort to ten parameters: Sobol indices, Morris effects or a Latin hypercube.
 
 python -m scenarios.global_sensitivity [--method sobol|morris|lhs] [--runs N] [--road smooth|rough] [--jobs N] [--quick]
 """
@@ -33,10 +33,10 @@ from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import all_tyre_words, table_cases
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep import sweep
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Matrix = npt.NDArray[np.float64]
 
@@ -82,19 +82,19 @@ METHODS = ("sobol", "morris", "lhs")
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = study_parser("global_sensitivity", quick="a few short runs, to see that everything works")
-    found.add_argument("--method", choices=METHODS, default="sobol", help="sobol by default")
-    found.add_argument(
+    """Return the parser of the command."""
+    study_options = study_parser("global_sensitivity", quick="a few short runs, to see that everything works")
+    study_options.add_argument("--method", choices=METHODS, default="sobol", help="sobol by default")
+    study_options.add_argument(
         "--runs", type=int, metavar="N", help=f"about this many runs; {SOBOL_RUNS} (sobol), {MORRIS_RUNS} (others)"
     )
-    found.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
-    found.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
-    found.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
-    engine_option(found, "auto")
-    found.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")
-    resume_options(found)
-    return found
+    study_options.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
+    study_options.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
+    study_options.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
+    engine_option(study_options, "auto")
+    study_options.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")
+    resume_options(study_options)
+    return study_options
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -103,7 +103,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def points_of(method: str, runs: int, seed: int) -> Matrix:
-    """Points of a method with at most about `runs` runs; (points, parameters)."""
+    """Return the points of a method with at most about `runs` runs; (points, parameters)."""
     size = len(RANGES)
     if method == "sobol":
         base = 2 ** int(np.log2(max(runs // (size + 2), 2)))
@@ -133,7 +133,9 @@ def _job(options: argparse.Namespace) -> None:
         wheel=wheel,
     )
     engine = chosen_engine(options.engine)
-    cases = table_cases([one.path for one in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle)
+    cases = table_cases(
+        [parameter.path for parameter in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle
+    )
     folder = prepared_folder_of(options, options.output, rows=ROWS)
     started = clock.perf_counter()
     table = sweep(
@@ -153,7 +155,16 @@ def _job(options: argparse.Namespace) -> None:
     text = _evaluate(options.method, folder, table, points, caption, options.seed)
     ranges = markdown(
         ("parameter", "from", "to", "unit", "why"),
-        [(one.path, f"{one.low:g}", f"{one.high:g}", unit_of(load_vehicle(), one.path), one.reason) for one in RANGES],
+        [
+            (
+                parameter.path,
+                f"{parameter.low:g}",
+                f"{parameter.high:g}",
+                unit_of(load_vehicle(), parameter.path),
+                parameter.reason,
+            )
+            for parameter in RANGES
+        ],
     )
     write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{ranges}\n")
     print(
@@ -176,82 +187,84 @@ def _evaluate(method: str, folder: Path, table: SweepTable, points: Matrix, capt
 
 
 Evaluation = tuple[dict[str, object], str]
-"""What goes into `results.json`, and the text of the table."""
+"""Entries of `results.json`, and the text of the table."""
 
 WHISKERS = "; whiskers: 95 % intervals (bootstrap)"
 
 
 def _sobol(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Bars of first-order and total indices with their 95 % intervals, the largest on top."""
-    found = sobol_indices(RANGES, comfort)
-    order = np.argsort(found.total)
-    place = np.arange(len(order))
+    """Draw first-order and total indices as bars with 95 % intervals, the largest on top; return entries and table."""
+    sobol = sobol_indices(RANGES, comfort)
+    order = np.argsort(sobol.total)
+    position = np.arange(len(order))
     with figure_file(
-        folder / "indices.png", (9.0, 5.6), "", f"{caption}; whiskers: 95 % intervals ({found.scramblings} scramblings)"
+        folder / "indices.png", (9.0, 5.6), "", f"{caption}; whiskers: 95 % intervals ({sobol.scramblings} scramblings)"
     ) as figure:
         axes = figure.add_subplot()
         for values, errors, shift, label, colour in (
-            (found.first, found.first_error, -0.2, "S1, alone", COLOURS[0]),
-            (found.total, found.total_error, 0.2, "ST, with all interactions", COLOURS[3]),
+            (sobol.first, sobol.first_error, -0.2, "S1, alone", COLOURS[0]),
+            (sobol.total, sobol.total_error, 0.2, "ST, with all interactions", COLOURS[3]),
         ):
-            axes.barh(place - shift, values[order], 0.38, xerr=errors[order], label=label, color=colour, capsize=2)
-        axes.set_yticks(place, [_short(found.paths[i]) for i in order])
+            axes.barh(position - shift, values[order], 0.38, xerr=errors[order], label=label, color=colour, capsize=2)
+        axes.set_yticks(position, [_short(sobol.paths[i]) for i in order])
         axes.set_xlabel("share of the variance of the comfort value [-]")
         axes.axvline(0.0, color="#444444", linewidth=0.8)
         axes.legend(loc="lower right")
     left = (
-        f" {found.left_out} of {found.base} base points have a failed run and do not count: the indices are those of "
+        f" {sobol.left_out} of {sobol.base} base points have a failed run and do not count: the indices are those of "
         "the cars that could be run."
-        if found.left_out
+        if sobol.left_out
         else ""
     )
-    columns = (found.first, found.first_error, found.total, found.total_error)
-    rows = [[found.paths[i], *(f"{column[i]:.3f}" for column in columns)] for i in np.argsort(-found.total)]
-    return asdict(found), (
+    columns = (sobol.first, sobol.first_error, sobol.total, sobol.total_error)
+    rows = [[sobol.paths[i], *(f"{column[i]:.3f}" for column in columns)] for i in np.argsort(-sobol.total)]
+    return asdict(sobol), (
         f"{markdown(('parameter', 'S1', '+-', 'ST', '+-'), rows)}\n\n"
         "S1: share of the variance that the parameter explains alone; ST: with all its interactions; +-: half "
-        f"width of the 95 % interval, from {found.scramblings} independent scramblings of the Sobol sequence "
+        f"width of the 95 % interval, from {sobol.scramblings} independent scramblings of the Sobol sequence "
         "(jackknife, Student's t). From half the sample to the whole, no ST moved by more than "
-        f"{found.drift:.3f}. Sum of S1 {np.sum(found.first):.2f}." + left
+        f"{sobol.drift:.3f}. Sum of S1 {np.sum(sobol.first):.2f}." + left
     )
 
 
 def _morris(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Scatter of the elementary effects over their mean size."""
-    found = morris_effects(RANGES, points, comfort, seed=seed)
+    """Draw the scatter of the elementary effects over their mean size; return entries and table."""
+    morris = morris_effects(RANGES, points, comfort, seed=seed)
     with figure_file(folder / "effects.png", (9.0, 5.6), "", caption + WHISKERS) as figure:
         axes = figure.add_subplot()
-        axes.errorbar(found.mean_size, found.scatter, xerr=found.mean_size_error, fmt="o", color=COLOURS[0], capsize=2)
-        for name, x, y in zip(found.paths, found.mean_size, found.scatter, strict=True):
+        axes.errorbar(
+            morris.mean_size, morris.scatter, xerr=morris.mean_size_error, fmt="o", color=COLOURS[0], capsize=2
+        )
+        for name, x, y in zip(morris.paths, morris.mean_size, morris.scatter, strict=True):
             axes.annotate(_short(name), (x, y), xytext=(6, 4), textcoords="offset points", fontsize=8)
         axes.set_xlabel("mu*, mean size of the effect over the whole range [m/s2]")
         axes.set_ylabel("sigma, scatter of the effect: interaction and curvature [m/s2]")
         axes.margins(0.15)
     rows = [
         [
-            *(found.paths[i], f"{found.mean_size[i]:.4f}", f"{found.mean_size_error[i]:.4f}"),
-            *(f"{found.mean[i]:+.4f}", f"{found.scatter[i]:.4f}"),
+            *(morris.paths[i], f"{morris.mean_size[i]:.4f}", f"{morris.mean_size_error[i]:.4f}"),
+            *(f"{morris.mean[i]:+.4f}", f"{morris.scatter[i]:.4f}"),
         ]
-        for i in np.argsort(-found.mean_size)
+        for i in np.argsort(-morris.mean_size)
     ]
-    return asdict(found), (
+    return asdict(morris), (
         f"{markdown(('parameter', 'mu* [m/s2]', '+-', 'mu [m/s2]', 'sigma [m/s2]'), rows)}\n\n"
         "Change of the comfort value over the whole range of a parameter: mean size, mean, scatter."
     )
 
 
 def _hypercube(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
-    """Comfort value of every run over each parameter; failed runs leave holes."""
+    """Draw the comfort value of every run over each parameter; return entries and table."""
     with figure_file(folder / "scatter.png", (13.0, 2.8 * -(-len(RANGES) // 5) + 0.6), "", caption) as figure:
         panels = figure.subplots(-(-len(RANGES) // 5), 5, sharey=True, squeeze=False)
-        for axes, one, values in zip(panels.flat, RANGES, points.T, strict=True):
+        for axes, parameter, values in zip(panels.flat, RANGES, points.T, strict=True):
             axes.plot(values, comfort, ".", markersize=3, color=COLOURS[0])
-            axes.set_xlabel(f"{_short(one.path)} [{unit_of(load_vehicle(), one.path)}]", fontsize=7)
+            axes.set_xlabel(f"{_short(parameter.path)} [{unit_of(load_vehicle(), parameter.path)}]", fontsize=7)
             axes.tick_params(labelsize=7)
         for axes in panels[:, 0]:
             axes.set_ylabel("comfort value [m/s²],\nlower is better", fontsize=8)
-    known = [None if np.isnan(value) else value for value in comfort.tolist()]
-    return {"points": points, "comfort": known}, "Every run is a row of `table.csv`."
+    finite_values = [None if np.isnan(value) else value for value in comfort.tolist()]
+    return {"points": points, "comfort": finite_values}, "Every run is a row of `table.csv`."
 
 
 def _short(path: str) -> str:

@@ -21,8 +21,8 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.inputs.make_inputs import level_signal
 from scenarios.levels import TOO_SHORT
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.engines.linear.modes import Mode
-from vehicle.model.parameters.elements import Hydromount
+from vehicle.engines.linear.car_modes import Mode
+from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.peaks import resonance_peaks
@@ -43,11 +43,11 @@ BETWEEN = (1040.0, 1080.0, 1120.0, 1160.0)
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the low level with both inertias, draw the FRFs into the folder, and compare."""
     signal = level_signal("low", runs.wheel, quick=options.quick)
-    found = runs([runs.case(signal, change) for change in CHANGES])
+    results = runs([runs.case(signal, change) for change in CHANGES])
     cars = [runs.car(change) for change in CHANGES]
-    responses = [run.frf(CHANNELS) for run in found]
+    responses = [run.frf(CHANNELS) for run in results]
     rolls = [roll_mode(car) for car in cars]
-    by_label = dict(zip(VARIANTS, found, strict=True))
+    by_label = dict(zip(VARIANTS, results, strict=True))
     frequencies = [roll.frequency for roll in rolls]
     inertia_figure(folder / "seat_rail.png", by_label, responses, frequencies)
     peaks = [roll_peak(response, roll) for response, roll in zip(responses, frequencies, strict=True)]
@@ -60,7 +60,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="Moment of inertia Ixx of the body (Bommer 2006, sections 3.2.1 and 3.4)",
         claims=[*mode_claims(cars), *seen],
         unjudged={claim.name: TOO_SHORT for claim in seen} if options.quick else {},
-        notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, found[0], options.quick)],
+        notes=[mode_table(dict(zip(VARIANTS, cars, strict=True))), *setting(runs, results[0], options.quick)],
         data={
             "roll_hz": dict(zip(VARIANTS.values(), frequencies, strict=True)),
             "roll_peak_hz": dict(zip(VARIANTS.values(), peaks, strict=True)),
@@ -94,7 +94,7 @@ ROLL_COORDINATE = 3
 
 
 def roll_mode(car: Car) -> Mode:
-    """The mode, dampers stuck, with the largest share of its kinetic energy in the roll of the body."""
+    """Return the mode, dampers stuck, with the largest share of its kinetic energy in the roll of the body."""
     rows, mass = car.matrices.body_rows["body"], car.matrices.body_masses["body"]
 
     def share(mode: Mode) -> float:
@@ -106,19 +106,23 @@ def roll_mode(car: Car) -> Mode:
 
 
 def led_by(modes: Sequence[Mode], part: str) -> list[Mode]:
-    """Modes with the largest share of their energy in a part."""
+    """Return the modes with the largest share of their energy in a part."""
     return [mode for mode in modes if max(mode.energy, key=lambda name: mode.energy[name]) == part]
 
 
 def mode_claims(cars: Sequence[Car]) -> list[Claim]:
-    """Rows about the modes; `cars` with Ixx 1000 and with Ixx 1200."""
+    """Return the rows on the modes of the cars with Ixx 1000 and Ixx 1200 kg m2."""
     published = roll_mode(cars[0]).frequency
     modes = cars[0].modes("stuck")
     rigid = [mode.frequency for mode in led_by(modes, "body")]
     engine = [mode.frequency for mode in led_by(modes, "engine")]
     flexible = np.sort(cars[0].trimmed_body.frequencies)
     lowest, highest = (1.0 - ROUND) * 10.0, (1.0 + ROUND) * 20.0
-    hydromount = next(one.law for one in cars[0].vehicle.composition.connections if isinstance(one.law, Hydromount))
+    hydromount = next(
+        connection.law
+        for connection in cars[0].vehicle.composition.connections
+        if isinstance(connection.law, Hydromount)
+    )
     return [
         COMPARED.number(
             "roll mode (Rx) of the matrices, Ixx 1000 [Hz]",
@@ -165,21 +169,21 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
 
 
 def roll_peak(response: FrequencyResponse, roll: float) -> float:
-    """Frequency [Hz] of the resonance peak of the first channel that is nearest to the roll mode; NaN without peaks.
+    """Return the frequency [Hz] of the resonance peak of the first channel nearest to the roll mode; NaN without peaks.
 
     A line without an estimate is stepped over: on the flank of a peak it would hide the peak.
     """
     magnitude = np.abs(response.response[0])
-    known = np.isfinite(magnitude)
-    quality = (values[0][known] for values in (response.coherence, response.random_error))
-    peaks = resonance_peaks(response.frequency[known], magnitude[known], *quality)
+    finite = np.isfinite(magnitude)
+    quality = (values[0][finite] for values in (response.coherence, response.random_error))
+    peaks = resonance_peaks(response.frequency[finite], magnitude[finite], *quality)
     return min((peak.frequency_hz for peak in peaks), key=lambda at: abs(at - roll), default=float("nan"))
 
 
 def roll_claims(
     peaks: Sequence[float], modes: Sequence[float], moments: Sequence[float], between: Mapping[float, float]
 ) -> list[Claim]:
-    """Rows about roll where the source shows it: at the peak of the FRF of the seat rail, figures 3.3 and 3.37.
+    """Return the rows on roll, at the peak of the FRF of the seat rail (figures 3.3 and 3.37).
 
     Args:
         peaks: frequencies of the peaks with Ixx 1000 and with Ixx 1200 [Hz].
@@ -223,7 +227,7 @@ def roll_claims(
 
 
 def roll_text(moments: Sequence[float]) -> str:
-    """How much 20 % about the origin are about the centre of gravity."""
+    """Return a text: change of Ixx about the centre of gravity for +20 % about the origin."""
     printed = [ixx - COG_PART for ixx in (1000.0, 1200.0)]
     return (
         f"+20 % about the origin are {100.0 * (printed[1] / printed[0] - 1.0):+.0f} % about the centre of gravity "
@@ -240,12 +244,12 @@ HYDROMOUNT_LOSS = 6.5
 
 
 def moment_about_cog(car: Car) -> float:
-    """Moment of inertia of the trimmed body about the longitudinal axis through its centre of gravity [kg m2]."""
+    """Return Ixx of the trimmed body about its centre of gravity [kg m2]."""
     return float(car.matrices.body_masses["body"][ROLL_COORDINATE, ROLL_COORDINATE])
 
 
 def loss_angle(mount: Hydromount, frequency: float) -> float:
-    """Angle [deg] of K(i w) = K1 + K2 D2 i w/(D2 i w + K2) in z, at a frequency [Hz] (equation 2.13)."""
+    """Return the angle [deg] of K(i w) = K1 + K2 D2 i w/(D2 i w + K2) in z at a frequency [Hz] (equation 2.13)."""
     rate = 2j * np.pi * frequency
     branch = mount.maxwell_stiffness * mount.maxwell_damping * rate
     stiffness = mount.stiffness[2] + branch / (mount.maxwell_damping * rate + mount.maxwell_stiffness)
@@ -253,9 +257,9 @@ def loss_angle(mount: Hydromount, frequency: float) -> float:
 
 
 def mode_table(cars: Mapping[str, Car]) -> str:
-    """Modes below 20 Hz of all cars beside each other."""
+    """Return a table of the modes below 20 Hz of all cars."""
     columns = [
-        [f"{one.frequency:.2f} Hz, {100 * one.damping_ratio:.1f} %, {one.description}" for one in modes]
+        [f"{mode.frequency:.2f} Hz, {100 * mode.damping_ratio:.1f} %, {mode.description}" for mode in modes]
         for modes in (car.modes("stuck", highest=20.0) for car in cars.values())
     ]
     head = "Modes below 20 Hz, dampers stuck (natural frequency, damping ratio, what moves):\n\n"

@@ -1,4 +1,4 @@
-"""Probability that a further value of a random signal lies in a published interval, from few values of ours."""
+"""Probability that a further value of a random signal is in a published interval, from few own values."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ def interval_probability(values: npt.ArrayLike, interval: tuple[float, float], *
     distance of the interval from the mean, as a power of it, so that a near miss is unlikely but never impossible.
 
     Args:
-        values: of independent seeds or windows, (n,), finite, best 8 or more; a single value has no spread.
-        interval: lowest and highest published value, infinite where it is open.
+        values: values of independent seeds or windows, (n,), finite, best 8 or more; a single value has no spread.
+        interval: lowest and highest published value, infinite for an open end.
         error: standard uncertainty of every value from another cause than the seed, in the unit of the values; added
             to the spread in quadrature.
 
     Returns:
-        [-]; 1 inside and 0 outside where the values have no spread and no error.
+        Probability [-]; 1 inside and 0 outside the interval for values without spread and error.
 
     Raises:
         ValueError: no value, a value that is not finite, a negative error, or an interval whose ends are in the
@@ -57,7 +57,7 @@ def interval_probability(values: npt.ArrayLike, interval: tuple[float, float], *
 
 
 def _cumulative(freedom: float, value: float) -> float:
-    """Student's t distribution; normal for infinite degrees of freedom."""
+    """Return the cumulative Student's t distribution; normal for infinite degrees of freedom."""
     if math.isinf(value):
         return float(value > 0.0)
     if math.isinf(freedom):

@@ -21,7 +21,7 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.frf_claims import axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.names import across
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -36,8 +36,8 @@ TOO_SHORT = f"{QUICK_DURATION:g} s of signal tell it too coarsely"
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     """Run the three levels, draw the figures into the folder, and compare."""
-    found = runs([runs.case(level_signal(level, runs.wheel, quick=options.quick)) for level in LEVELS])
-    by_level = dict(zip(LEVELS, found, strict=True))
+    results = runs([runs.case(level_signal(level, runs.wheel, quick=options.quick)) for level in LEVELS])
+    by_level = dict(zip(LEVELS, results, strict=True))
     responses = {level: run.frf(channels_of(runs.wheel)) for level, run in by_level.items()}
     level_figures(folder, by_level, responses, QUICK_OUTPUTS if options.quick else tuple(OUTPUTS))
     values = {level: numbers(run, responses[level]) for level, run in by_level.items()}
@@ -51,8 +51,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="Low, mid and high level (Bommer 2006, sections 3.2.1 and 3.3)",
         claims=claims,
         tyres=runs.car().vehicle.driving.words,
-        unjudged={one.name: TOO_SHORT for one in claims if one.name not in sure} if options.quick else {},
-        notes=[slip_table(values, slip_velocity), sets_text(), *setting(runs, found[0], options.quick)],
+        unjudged={row.name: TOO_SHORT for row in claims if row.name not in sure} if options.quick else {},
+        notes=[slip_table(values, slip_velocity), sets_text(), *setting(runs, results[0], options.quick)],
         data={"levels": {level: asdict(value) for level, value in values.items()}, "slip_velocity": slip_velocity},
     )
 
@@ -82,13 +82,13 @@ DAMPER_BAND = (10.0, 50.0)
 
 
 def rigid_lines(runs: CarRuns) -> Vector:
-    """|H| of `CHANNELS` at 1 Hz, body rigid and dampers stuck [(m/s2)/m]."""
+    """Return |H| of `CHANNELS` at 1 Hz, body rigid and dampers stuck [(m/s2)/m]."""
     car = runs.car(("body.flexible=false",))
     return np.abs(car.matrix_frf(channels_of(runs.wheel), [1.0], wheel=runs.wheel))[:, 0]
 
 
 def less_friction(runs: CarRuns) -> FrequencyResponse:
-    """FRFs of the high level with a tenth of the friction, rows as `CHANNELS`."""
+    """Return the FRFs of the high level with a tenth of the friction, rows as `CHANNELS`."""
     friction = 0.1 * runs.car().vehicle.damper.coulomb_friction
     engine = "reduced" if has_compiler() else None
     case = runs.case(
@@ -99,11 +99,11 @@ def less_friction(runs: CarRuns) -> FrequencyResponse:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LevelNumbers:
-    """What is read off one level.
+    """Values of one excitation level.
 
     Attributes:
-        slip: share of the time above the slip velocity, right and left.
-        saturated: the same above 1 mm/s.
+        slip: share of the time above the slip velocity, right and left damper [-].
+        saturated: share of the time above 1 mm/s, right and left damper [-].
         wheel_hz: frequency [Hz] in `WHEEL_BAND` where the phase of the knuckle falls through 90 deg, or NaN.
         wheel_peak_hz, wheel_peak: largest line of the knuckle in `WHEEL_BAND` [Hz], [m/s2 per m].
         body_peak: largest line of the knuckle in `BODY_BAND` [m/s2 per m].
@@ -138,11 +138,11 @@ def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
     )
 
 
-def slip_claims(found: Mapping[str, LevelNumbers], slip_velocity: float) -> list[Claim]:
-    """Rows of table 3.2."""
+def slip_claims(levels: Mapping[str, LevelNumbers], slip_velocity: float) -> list[Claim]:
+    """Return the rows on table 3.2."""
     claims = []
     for level, published in PUBLISHED_SLIP.items():
-        shares = (("right", "left"), published, found[level].slip, found[level].saturated)
+        shares = (("right", "left"), published, levels[level].slip, levels[level].saturated)
         for wheel, share, ours, saturated in zip(*shares, strict=True):
             why = f"share of the samples above {1e3 * slip_velocity:g} mm/s ({100 * saturated:.2f} % above 1 mm/s)"
             name = f"slip share of the {wheel} damper, {level} [%]"
@@ -150,9 +150,9 @@ def slip_claims(found: Mapping[str, LevelNumbers], slip_velocity: float) -> list
     return claims
 
 
-def frequency_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
-    """Frequency of the vertical wheel mode."""
-    low, mid, high = (found[level] for level in ("low", "mid", "high"))
+def frequency_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
+    """Return the rows on the frequency of the vertical wheel mode."""
+    low, mid, high = (levels[level] for level in ("low", "mid", "high"))
     return [
         evidence_claim(
             "wheel_mode",
@@ -175,9 +175,9 @@ def frequency_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
     ]
 
 
-def order_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
-    """Damping from level to level, and the two ends of the damper."""
-    low, mid, high = (found[level] for level in ("low", "mid", "high"))
+def order_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
+    """Return the rows on damping over the level, and on the two ends of the damper."""
+    low, mid, high = (levels[level] for level in ("low", "mid", "high"))
     return [
         PREDICTED.statement(
             "vertical wheel mode for mid and high against low, damping",
@@ -218,11 +218,11 @@ def order_claims(found: Mapping[str, LevelNumbers]) -> list[Claim]:
     ]
 
 
-def slip_table(found: Mapping[str, LevelNumbers], slip_velocity: float) -> str:
-    """Table 3.2 with ours beside it."""
+def slip_table(levels: Mapping[str, LevelNumbers], slip_velocity: float) -> str:
+    """Return table 3.2 with our values."""
     rows = []
     for level, published in PUBLISHED_SLIP.items():
-        shares = zip(published, found[level].slip, found[level].saturated, strict=True)
+        shares = zip(published, levels[level].slip, levels[level].saturated, strict=True)
         rows.append([level, *(text for share in shares for text in _both(*share))])
     head = f"Share of the time in slip [%], |v| > {1e3 * slip_velocity:g} mm/s (in brackets: > 1 mm/s):\n\n"
     return head + markdown(("level", "right, published", "right, ours", "left, published", "left, ours"), rows)
@@ -251,20 +251,20 @@ CHANNELS = (*OUTPUTS, DAMPER[1])
 
 
 def channels_of(wheel: str, names: Sequence[str] = CHANNELS) -> tuple[str, ...]:
-    """Names of channels with the wheel on the shaker in them."""
+    """Return the names of channels for the wheel on the shaker."""
     return tuple(name.format(wheel=wheel) for name in names)
 
 
 def level_figures(
     folder: Path, runs: Mapping[str, Run], responses: Mapping[str, FrequencyResponse], outputs: Sequence[str]
 ) -> None:
-    """Write one figure for each output, and one of damper top and knuckle together.
+    """Write a figure for each output, and a figure of damper top and knuckle.
 
     Args:
-        folder: where to.
+        folder: folder of the figures.
         runs: level to run.
         responses: level to FRFs, rows as `CHANNELS`.
-        outputs: channels of `OUTPUTS` to draw.
+        outputs: drawn channels of `OUTPUTS`.
     """
     run = next(iter(runs.values()))
     levels = ", ".join(f"{level} {1e3 * run.signal.rms(run.wheel):.3g} mm RMS" for level, run in runs.items())

@@ -9,12 +9,12 @@ from scenarios.claims import Claim
 
 
 def placed(rows: Iterable[Claim], place: str, picture: str = "") -> list[Claim]:
-    """Give rows their place in the source and their picture, where they do not name their own.
+    """Set place and picture of rows that have none.
 
     Args:
-        rows: of one place.
+        rows: rows of one place.
         place: figure, table or section of the source.
-        picture: file name of the figure of the study that shows them.
+        picture: file name of the figure of the study that shows the rows.
 
     Returns:
         The rows with both.

@@ -24,7 +24,7 @@ from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.semi_active import LAWS, PASSIVE
+from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Run
@@ -33,7 +33,7 @@ from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.spectra import band_rms
 from vehicle.studies.sweeps.case import Case, all_tyre_words, overrides_of
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 from vehicle.studies.sweeps.sweep import sweep
 
 CAR = "focus_road"
@@ -66,15 +66,15 @@ class Setting:
     factor: float = 1.0
 
     def changes(self, vehicle: Vehicle) -> list[str]:
-        """Overrides that give all dampers this setting."""
-        found = []
+        """Return the overrides that set all dampers of a vehicle to this setting."""
+        overrides = []
         for path in dict.fromkeys(damper.path for damper in vehicle.composition.dampers):
             law = next(damper.law for damper in vehicle.composition.dampers if damper.path == path)
             if law.control is None or law.viscous is None:
-                raise ConfigurationError(f"{path}.control: missing; the study needs it, and {path}.viscous beside it")
-            found += [f"{path}.control.law={self.law}", f"{path}.control.delay={1e-3 * self.delay!r}"]
-            found += [f"{path}.viscous={self.factor * law.viscous!r}"] if self.factor != 1.0 else []
-        return found
+                raise ConfigurationError(f"{path}.control: missing; the study needs it and {path}.viscous")
+            overrides += [f"{path}.control.law={self.law}", f"{path}.control.delay={1e-3 * self.delay!r}"]
+            overrides += [f"{path}.viscous={self.factor * law.viscous!r}"] if self.factor != 1.0 else []
+        return overrides
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -88,30 +88,30 @@ class RideMeasure:
 
     wheels: tuple[str, ...]
     timestep: float = 5e-4
-    """longest step of the reduced engine [s]"""
+    """maximum step of the reduced engine [s]"""
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels that are needed."""
+        """Return the required channels."""
         return (*RAIL, *(f"tyre_{wheel}_force_z" for wheel in self.wheels))
 
     @property
     def units(self) -> Mapping[str, str]:
-        """Name of each number to its unit."""
+        """Return name to unit of each value."""
         return {"weighted": "m/s2", "unfiltered": "m/s2", "tyre": "-", "hop": "-", "lowest": "-"}
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """The numbers of a run."""
+        """Return the values of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """The numbers of several runs."""
+        """Return the values of r runs; (r,) each."""
         step = runs.timestep
         kept = slice(round(LEAD_S / step), None)
         xyz = runs.stacked(*RAIL)
         loads = [runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel in self.wheels]
         return {
-            "weighted": np.array([weighted_rms_of(step, one, skip=LEAD_S)[2] for one in xyz]),
+            "weighted": np.array([weighted_rms_of(step, histories, skip=LEAD_S)[2] for histories in xyz]),
             "unfiltered": comfort_values(step, xyz[:, :, kept]).overall,
             "tyre": np.sqrt(np.mean([np.mean((load - 1.0) ** 2, axis=1) for load in loads], axis=0)),
             "hop": np.sqrt(np.mean([band_rms(step, load, WHEEL_BAND) ** 2 for load in loads], axis=0)),
@@ -124,17 +124,17 @@ Points = Mapping[Setting, Numbers]
 
 
 def settings(quick: bool) -> list[Setting]:
-    """Everything that is run: the laws over speeds and roads, passive settings, delays."""
+    """Return all settings of the study: laws over speeds and roads, passive settings, delays."""
     roads, speeds = ((SHOWN[0],), (SHOWN[1],)) if quick else (("A", "B", "C"), (50.0, 80.0, 120.0))
     laws = (PASSIVE, *LAWS)
-    found = [Setting(law=law, road=road, speed=speed) for road in roads for speed in speeds for law in laws]
-    found += [Setting(factor=factor) for factor in FACTORS[:: 2 if quick else 1]]
-    found += [Setting(law=law, delay=delay) for law in CONTINUOUS for delay in DELAYS_MS[:: 2 if quick else 1]]
-    return list(dict.fromkeys(found))
+    points = [Setting(law=law, road=road, speed=speed) for road in roads for speed in speeds for law in laws]
+    points += [Setting(factor=factor) for factor in FACTORS[:: 2 if quick else 1]]
+    points += [Setting(law=law, delay=delay) for law in CONTINUOUS for delay in DELAYS_MS[:: 2 if quick else 1]]
+    return list(dict.fromkeys(points))
 
 
 def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> dict[Setting, Numbers]:
-    """What is measured of each setting."""
+    """Run all settings and return setting to values."""
     listed = list(chosen)
     table = sweep(
         cases_of(runs, listed, duration, engine), RideMeasure(wheels=runs.car().vehicle.wheels), jobs=runs.jobs
@@ -142,24 +142,24 @@ def computed(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: 
     if table.failed:
         raise ConfigurationError(f"{table.failed[0][0].label}: {table.failed[0][1]}")
     columns = {name: table.column(name) for name in table.units}
-    return {one: {name: float(columns[name][i]) for name in columns} for i, one in enumerate(listed)}
+    return {setting: {name: float(columns[name][i]) for name in columns} for i, setting in enumerate(listed)}
 
 
 def cases_of(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: str) -> list[Case]:
-    """The run of each setting."""
+    """Return the case of each setting."""
     vehicle, cases = runs.car().vehicle, []
-    for one in chosen:
-        numbers = dict.fromkeys(ROAD_NUMBERS) | {"speed": one.speed, "duration": duration}
+    for setting in chosen:
+        numbers = dict.fromkeys(ROAD_NUMBERS) | {"speed": setting.speed, "duration": duration}
         options = argparse.Namespace(**numbers, overrides=runs.overrides)
-        source = road_drive(one.road, options, vehicle)
+        source = road_drive(setting.road, options, vehicle)
         shared = (*runs.overrides, *overrides_of(source))
-        changes = (*shared, *one.changes(vehicle))
+        changes = (*shared, *setting.changes(vehicle))
         cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))
     return cases
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    """Run all settings, draw the figures into the folder, and say what they show."""
+    """Run all settings, write the figures into the folder, and return the findings."""
     engine, duration = chosen_engine(options.engine), 20.0 if options.quick else 60.0
     points = computed(runs, settings(options.quick), duration, engine)
     name, tyres = runs.car().vehicle.name, all_tyre_words(cases_of(runs, points, duration, engine))
@@ -168,21 +168,21 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     delays(folder / "delay.png", points, f"{name}, {duration:g} s of road, tyres {shown}, engine {engine}")
     checks = [] if options.quick or engine == "mujoco" else [engines(runs, points, duration)]
     changed = f", changed: {', '.join(runs.overrides)}" if runs.overrides else ""
-    made = f"Made with {name}{changed}; engine {engine}, {duration:g} s of each road, {LEAD_S:g} s left out."
+    conditions = f"Made with {name}{changed}; engine {engine}, {duration:g} s of each road, {LEAD_S:g} s left out."
     return Findings(
         title="Semi-active dampers on the complete car: comfort against dynamic tyre load",
         claims=[*claims(points), *checks],
         tyres=tyres,
-        notes=[table_of(points), *words(points), made, *([QUICK_NOTE] if options.quick else [])],
-        data={"points": [asdict(one) | dict(numbers) for one, numbers in points.items()]},
+        notes=[table_of(points), *words(points), conditions, *([QUICK_NOTE] if options.quick else [])],
+        data={"points": [asdict(setting) | dict(numbers) for setting, numbers in points.items()]},
     )
 
 
 def engines(runs: CarRuns, points: Points, duration: float) -> Claim:
-    """The reduced engine beside MuJoCo on one road."""
+    """Return the row that compares the reduced engine with MuJoCo on one road."""
     both = [Setting(), Setting(law="skyhook")]
     stepped = computed(runs, both, duration, "mujoco")
-    gaps = {f"{one.law}, {name}": points[one][name] / stepped[one][name] - 1.0 for one in both
+    gaps = {f"{setting.law}, {name}": points[setting][name] / stepped[setting][name] - 1.0 for setting in both
             for name in ("weighted", "tyre")}  # fmt: skip
     text = ", ".join(f"{name} {100.0 * gap:+.2f} %" for name, gap in gaps.items())
     why = "1.5 %: tyre forces of MuJoCo are 0.8 % off at its step of 1 ms, and vanish with it"
@@ -191,67 +191,77 @@ def engines(runs: CarRuns, points: Points, duration: float) -> Claim:
 
 
 def claims(points: Points) -> list[Claim]:
-    """What the laws are made for, and what a delay does.
+    """Return the rows on the purposes of the control laws, and on the effect of a delay.
 
-    Groundhook is made for the hop of the wheel (Ahmadian 1997). It takes the damping of the body away, so that the
-    whole load need not fall: `words` says both.
+    Groundhook is designed against wheel hop (Ahmadian 1997). It reduces the damping of the body, so the
+    total load may still rise: `words` reports both.
     """
-    passive, found = points[Setting()], []
-    for law, name, what in (
+    passive, rows = points[Setting()], []
+    for law, name, quantity in (
         ("skyhook", "weighted", "weighted acceleration of the rail"),
         ("groundhook", "hop", f"dynamic tyre load of the wheel hop, {WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz"),
     ):
         ratio = points[Setting(law=law)][name] / passive[name]
-        best = min(points[one][name] for one in points if one == Setting(factor=one.factor))
+        best = min(points[setting][name] for setting in points if setting == Setting(factor=setting.factor))
         gain = 100.0 * (best / passive[name] - 1.0)
         late = points[Setting(law=law, delay=DELAYS_MS[-1])][name] / passive[name]
-        found.append(
+        rows.append(
             OWN_CHECK.statement(
-                f"{law} against the passive damper: {what}, road B at 80 km/h",
+                f"{law} against the passive damper: {quantity}, road B at 80 km/h",
                 "less",
                 f"{100.0 * (ratio - 1.0):+.1f} %, with a delay of {DELAYS_MS[-1]:g} ms {100.0 * (late - 1.0):+.1f} %",
                 ratio < 1.0,
                 f"what the law is made for, without delay; best passive setting {gain:+.1f} %",
             )
         )
-    return found
+    return rows
 
 
 def words(points: Points) -> list[str]:
-    """Findings in words, from the numbers."""
-    fixed = [(one.factor, numbers) for one, numbers in points.items() if one == Setting(factor=one.factor)]
-    found = []
-    for name, what in (("weighted", "weighted rail"), ("unfiltered", "unfiltered rail"), ("tyre", "tyre load")):
+    """Return sentences on the findings."""
+    fixed = [
+        (setting.factor, numbers) for setting, numbers in points.items() if setting == Setting(factor=setting.factor)
+    ]
+    sentences = []
+    for name, quantity in (("weighted", "weighted rail"), ("unfiltered", "unfiltered rail"), ("tyre", "tyre load")):
         base = points[Setting()][name]
-        best = min(fixed, key=lambda one: one[1][name])
+        best = min(fixed, key=lambda setting: setting[1][name])
         laws = {law: 100.0 * (points[Setting(law=law)][name] / base - 1.0) for law in LAWS}
         first = min(laws, key=lambda law: laws[law])
-        found.append(
-            f"{what.capitalize()}, road B at 80 km/h: lowest with {first} ({laws[first]:+.1f} % against the passive "
-            f"damper); the best passive setting is {best[0]:g} times the damper "
+        sentences.append(
+            f"{quantity.capitalize()}, road B at 80 km/h: lowest with {first} ({laws[first]:+.1f} % against the "
+            f"passive damper); the best passive setting is {best[0]:g} times the damper "
             f"({100.0 * (best[1][name] / base - 1.0):+.1f} %); "
             + ", ".join(f"{law} {value:+.1f} %" for law, value in laws.items())
             + "."
         )
     hooked, passive = (points[Setting(law=law)] for law in ("groundhook", PASSIVE))
     hop = 100.0 * (hooked["hop"] / passive["hop"] - 1.0)
-    rest = 100.0 * (
+    remainder = 100.0 * (
         np.sqrt((hooked["tyre"] ** 2 - hooked["hop"] ** 2) / (passive["tyre"] ** 2 - passive["hop"] ** 2)) - 1.0
     )
-    found.append(
+    sentences.append(
         f"Groundhook changes the tyre load of the wheel hop ({WHEEL_BAND[0]:g} to {WHEEL_BAND[1]:g} Hz) by {hop:+.1f} "
-        f"%, the rest by {rest:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. It "
-        "damps the wheel against ground at rest and leaves the body to swing: a quarter car with an ideal groundhook "
-        "does the same (docs/theory.md, semi-active dampers)."
+        f"%, the rest by {remainder:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. "
+        "It damps the wheel against ground at rest and "
+        "leaves the body to swing: a quarter car with an ideal groundhook "
+        "does the same (docs/theory/elements.md, semi-active dampers)."
     )
-    return found
+    return sentences
 
 
 def table_of(points: Points) -> str:
-    """Every run."""
+    """Return a table of all runs."""
     rows = [
-        (one.road, f"{one.speed:g}", one.law, f"{one.factor:g}", f"{one.delay:g}", *(f"{x:.4g}" for x in n.values()))
-        for one, n in points.items()
+        (
+            setting.road,
+            f"{setting.speed:g}",
+            setting.law,
+            f"{setting.factor:g}",
+            f"{setting.delay:g}",
+            *(f"{x:.4g}" for x in n.values()),
+        )
+        for setting, n in points.items()
     ]
     heads = ("road", "speed [km/h]", "law", "passive factor [-]", "delay [ms]", "weighted rail z [m/s2]")
     more = (
@@ -263,25 +273,34 @@ def table_of(points: Points) -> str:
     return markdown((*heads, *more), rows)
 
 
-def trade_off(path: Path, points: Points, about: str) -> None:
+def trade_off(path: Path, points: Points, description: str) -> None:
     """Write comfort against tyre load: a mark for each law, on the shown road the line of passive settings."""
-    drives = list(dict.fromkeys((one.road, one.speed) for one in points))
-    columns = min(len(drives), 3)
+    roads = list(dict.fromkeys((setting.road, setting.speed) for setting in points))
+    columns = min(len(roads), 3)
     caption = (
         "Lower left is better. Circle: skyhook, square: groundhook, triangle: hybrid, open where on-off; black: "
-        f"passive, on road {SHOWN[0]} at {SHOWN[1]:g} km/h also with its constant times the number beside it. {about}."
+        f"passive, on road {SHOWN[0]} at {SHOWN[1]:g} km/h also with its constant times the number beside it. "
+        f"{description}."
     )
-    size = (4.6 * max(columns, 2), 4.0 * -(-len(drives) // columns) + 1.2)
-    with chart(path, caption, rows=-(-len(drives) // columns), columns=columns, size=size) as axes:
-        for axis, (road, speed) in zip(axes, drives, strict=False):
-            here = {one: n for one, n in points.items() if (one.road, one.speed, one.delay) == (road, speed, 0.0)}
-            passive = sorted((one.factor, n["weighted"], n["tyre"]) for one, n in here.items() if one.law == PASSIVE)
+    size = (4.6 * max(columns, 2), 4.0 * -(-len(roads) // columns) + 1.2)
+    with chart(path, caption, rows=-(-len(roads) // columns), columns=columns, size=size) as axes:
+        for axis, (road, speed) in zip(axes, roads, strict=False):
+            road_points = {
+                setting: n
+                for setting, n in points.items()
+                if (setting.road, setting.speed, setting.delay) == (road, speed, 0.0)
+            }
+            passive = sorted(
+                (setting.factor, n["weighted"], n["tyre"])
+                for setting, n in road_points.items()
+                if setting.law == PASSIVE
+            )
             axis.plot([n[1] for n in passive], [n[2] for n in passive], "k.-", linewidth=1.0, label=PASSIVE)
             for factor, x, y in passive:
                 axis.annotate(f"{factor:g}", (x, y), xytext=(3, 3), textcoords="offset points", fontsize=7)
-            for one, n in here.items():
-                if one.law != PASSIVE:
-                    _mark(axis, one.law, n["weighted"], n["tyre"])
+            for setting, n in road_points.items():
+                if setting.law != PASSIVE:
+                    _mark(axis, setting.law, n["weighted"], n["tyre"])
             axis.set(xlabel="weighted rail acceleration z [m/s²]", ylabel="dynamic / static tyre load, RMS [-]")
             axis.set_title(f"road {road}, {speed:g} km/h")
         axes[0].legend(fontsize=7)
@@ -289,23 +308,23 @@ def trade_off(path: Path, points: Points, about: str) -> None:
 
 def _mark(axis: Any, law: str, x: float, y: float) -> None:
     colour, mark = MARKS[law.removesuffix("_on_off")]
-    face, words = ("none" if law.endswith("_on_off") else colour), law.replace("_on_off", ", on-off")
-    axis.plot([x], [y], mark, color=colour, markerfacecolor=face, label=words)
+    face, label = ("none" if law.endswith("_on_off") else colour), law.replace("_on_off", ", on-off")
+    axis.plot([x], [y], mark, color=colour, markerfacecolor=face, label=label)
 
 
-def delays(path: Path, points: Points, about: str) -> None:
+def delays(path: Path, points: Points, description: str) -> None:
     """Write comfort and tyre load over the delay, relative to the passive damper."""
     base = points[Setting()]
     caption = (
         f"Continuous laws on road {SHOWN[0]} at {SHOWN[1]:g} km/h; delay from sensor to setting of the damper; "
-        f"grey: passive damper. {about}."
+        f"grey: passive damper. {description}."
     )
     panels: Sequence[tuple[str, str]] = (("weighted", "weighted rail acceleration z"), ("tyre", "dynamic tyre load"))
     with chart(path, caption, columns=2, size=(9.4, 4.6)) as axes:
         for axis, (name, label) in zip(axes, panels, strict=True):
             for law in CONTINUOUS:
-                own = [one for one in points if one == Setting(law=law, delay=one.delay)]
-                shown = sorted((one.delay, points[one][name] / base[name]) for one in own)
+                law_settings = [setting for setting in points if setting == Setting(law=law, delay=setting.delay)]
+                shown = sorted((setting.delay, points[setting][name] / base[name]) for setting in law_settings)
                 colour, mark = MARKS[law]
                 axis.plot(*np.transpose(shown), f"{mark}-", color=colour, label=law)
             axis.axhline(1.0, color="#888888", linewidth=1.0)

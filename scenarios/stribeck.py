@@ -22,9 +22,9 @@ from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.model.laws.damper import damper_law
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.slip import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
@@ -47,7 +47,7 @@ FINE_STEP = 1.25e-4
 12 % lower than with an eighth of it; with this step 1.5 %."""
 
 AFTER = BUMP_DURATION_S + 0.2
-"""Slips that begin until this long after the start of the bump count [s]; later ones are the noise."""
+"""Maximum start of a counted slip after the start of the bump [s]; later slips are due to the noise."""
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
@@ -56,18 +56,18 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     signal = bump(amplitude=SIZES[1], duration=record.noisy, start=record.start, wheel=runs.wheel)
     step = f"solver.timestep={min(FINE_STEP, runs.car().vehicle.solver.step)!r}"
     cases = [runs.case(signal, (*law, step)) for law in LAWS.values()]
-    found = dict(zip(LAWS, runs(cases), strict=True))
-    phases = {name: phases_of(run, record.start) for name, run in found.items()}
+    results = dict(zip(LAWS, runs(cases), strict=True))
+    phases = {name: phases_of(run, record.start) for name, run in results.items()}
     counts = counts_of_seeds(runs, 2 if options.quick else SEEDS)
-    peak_figure(folder / "relative_acceleration.png", found, phases, record.start)
-    force_figure(folder / "force_velocity.png", found)
+    peak_figure(folder / "relative_acceleration.png", results, phases, record.start)
+    force_figure(folder / "force_velocity.png", results)
     return Findings(
         title="Coulomb and Stribeck friction over the 7.5 mm bump (Bommer 2006, section 3.4)",
-        claims=peak_claims(found, phases, counts),
+        claims=peak_claims(results, phases, counts),
         tyres=runs.car().vehicle.driving.words,
-        notes=[peak_table(phases, record.start), *setting(runs, found["Coulomb"], options.quick)],
+        notes=[peak_table(phases, record.start), *setting(runs, results["Coulomb"], options.quick)],
         data={
-            "phases": {name: [asdict(phase) for phase in one] for name, one in phases.items()},
+            "phases": {name: [asdict(phase) for phase in phase_list] for name, phase_list in phases.items()},
             "extra_peaks_over_seeds": counts,
         },
     )
@@ -77,7 +77,7 @@ main = car_study("stribeck", study)
 
 
 def phases_of(run: Run, begin: float) -> list[SlipPhase]:
-    """Slides of the damper over the plate, from the start of the bump on.
+    """Return the slip phases of the damper over the plate, from the start of the bump.
 
     Args:
         run: on the bump.
@@ -94,7 +94,7 @@ def phases_of(run: Run, begin: float) -> list[SlipPhase]:
 
 
 def counts_of_seeds(runs: CarRuns, count: int) -> dict[str, list[int]]:
-    """Number of extra peaks with each law for seeds of the noise, which is not published; a compiler is needed.
+    """Return the number of extra peaks with each law for seeds of the unpublished noise; a compiler is needed.
 
     Args:
         runs: the car.
@@ -103,14 +103,14 @@ def counts_of_seeds(runs: CarRuns, count: int) -> dict[str, list[int]]:
     if not has_compiler():
         return {name: [] for name in LAWS}
     wheel = runs.wheel
-    channels = [f"{place}_{wheel}_acc_{axis}" for place in ("damper_top", "knuckle") for axis in AXES]
-    found: dict[str, list[int]] = {}
+    channels = [f"{point}_{wheel}_acc_{axis}" for point in ("damper_top", "knuckle") for axis in AXES]
+    counts: dict[str, list[int]] = {}
     for name, law in LAWS.items():
         for seed in range(count):
             signal = bump(amplitude=SIZES[1], duration=RECORD.noisy, start=RECORD.start, seed=seed, wheel=wheel)
             run = runs.car(law).run(signal, engine="reduced", channels=[*channels, f"damper_{wheel}_velocity"])
-            found.setdefault(name, []).append(len(extra_peaks(phases_of(run, RECORD.start))))
-    return found
+            counts.setdefault(name, []).append(len(extra_peaks(phases_of(run, RECORD.start))))
+    return counts
 
 
 FORCE_TOLERANCE = 0.012
@@ -119,12 +119,12 @@ arctangent (0.6 % of 125 N at 1 mm/s) and a Stribeck limit that is one step of 0
 
 
 def law_force(damper: Damper, velocity: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Damper force [N] of equations 3.1 and 3.2, or with C.1 for D v, at velocities [m/s]."""
+    """Return the damper force [N] of equations 3.1 and 3.2, or with C.1 for D v, at velocities [m/s]."""
     return damper_law(damper).force(np.asarray(velocity, dtype=float))
 
 
 def force_error(run: Run) -> float:
-    """Largest |simulated force - law| over the largest force, above 1 mm/s of the driven damper [-]."""
+    """Return the largest |simulated force - law| over the largest force, above 1 mm/s of the driven damper [-]."""
     velocity, force = damper_velocity(run), run[f"damper_{run.wheel}_force"]
     fast = np.abs(velocity) > SATURATED_VELOCITY
     if not fast.any():
@@ -136,7 +136,7 @@ def force_error(run: Run) -> float:
 def peak_claims(
     runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]], counts: Mapping[str, Sequence[int]]
 ) -> list[Claim]:
-    """Rows: the extra peak with each law, and the simulated force against the law.
+    """Return the rows on the extra peak with each law, and on the simulated force against the law.
 
     Args:
         runs: law to the pictured run.
@@ -144,14 +144,14 @@ def peak_claims(
         counts: law to the number of extra peaks of each further seed of the noise.
     """
     rule = (
-        f"an extremum of the relative acceleration 5 to {1e3 * SEARCHED:g} ms after the end of stick that stands out "
-        f"by at least {100 * STANDING_OUT:g} % of the largest break-away jump of its run"
+        f"an extremum of the relative acceleration 5 to {1e3 * SEARCHED:g} ms after the end of stick with a prominence "
+        f"of at least {100 * STANDING_OUT:g} % of the largest break-away jump of its run"
     )
     claims = []
     for name, published in (("Stribeck", "present"), ("Coulomb", "absent")):
         count, top = len(extra_peaks(phases[name])), most_prominent(phases[name])
-        text = "no extremum" if top is None else f"the largest stands out by {top.prominence:.2f} m/s2"
-        as_printed = [(one > 0) == (published == "present") for one in (count, *counts[name])]
+        text = "no extremum" if top is None else f"the largest has a prominence of {top.prominence:.2f} m/s2"
+        as_printed = [(peaks > 0) == (published == "present") for peaks in (count, *counts[name])]
         seeds = f"{published} with {sum(as_printed)} of {len(as_printed)} seeds of the noise"
         claims.append(
             PREDICTED.statement(
@@ -180,9 +180,9 @@ def peak_claims(
 
 
 def peak_table(phases: Mapping[str, list[SlipPhase]], start: float) -> str:
-    """Every slip with its break-away jump and its most prominent later peak."""
+    """Return a table of every slip with its break-away jump and its most prominent later peak."""
     rows = []
-    for name, phase in ((name, phase) for name, found in phases.items() for phase in found):
+    for name, phase in ((name, phase) for name, listed in phases.items() for phase in listed):
         top = most_prominent([phase])
         text = "none" if top is None else f"{1e3 * top.delay:.0f}, {top.height:.2f}, {top.prominence:.2f}"
         times = (f"{phase.start - start + BUMP_START_S:.3f}", f"{1e3 * (phase.end - phase.start):.0f}")
@@ -225,7 +225,7 @@ def peak_figure(path: Path, runs: Mapping[str, Run], phases: Mapping[str, list[S
             peaks = extra_peaks(phases[name])
             for axis, (begin, end) in zip(
                 (whole, *details),
-                ((start - 0.02, start + 0.7), *((one + DETAIL[0], one + DETAIL[1]) for one in begins)),
+                ((start - 0.02, start + 0.7), *((instant + DETAIL[0], instant + DETAIL[1]) for instant in begins)),
                 strict=False,
             ):
                 keep = (time >= begin) & (time <= end)

@@ -1,4 +1,4 @@
-"""What all studies share: their list and options, how they are run, and what they say they were made with."""
+"""Common parts of all studies: list, options, run as a command, and notes on the conditions."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ STUDIES = {
     "source_choice": "Sides, slip velocity, band edges and body that Bommer 2006 does not print, chosen together.",
     "published": "Every published result of the complete car beside ours.",
 }
-"""Name of a study, `python -m scenarios.NAME`, and what it does."""
+"""Name of a study, `python -m scenarios.NAME`, to its description."""
 
 VERTICAL_TYRES = "vertical springs, the same rolling and standing"
-"""What the tyres of models of few masses do."""
+"""State of the tyres of lumped models."""
 
 QUICK_NOTE = "Short signals (--quick): numbers differ from those of the full study."
 
@@ -53,7 +53,7 @@ AddOptions = Callable[[Parser], None]
 
 
 def main_of(name: str) -> Callable[[list[str] | None], int]:
-    """The command of a study: a module, or a folder with `__main__.py`."""
+    """Return the command of a study: a module, or a folder with `__main__.py`."""
     module = importlib.import_module(f"scenarios.{name}")
     if hasattr(module, "__path__"):
         module = importlib.import_module(f"scenarios.{name}.__main__")
@@ -62,12 +62,12 @@ def main_of(name: str) -> Callable[[list[str] | None], int]:
 
 
 def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
-    """Parser with the options every study has.
+    """Return a parser with the common options of studies.
 
     Args:
-        name: of the study; results go to runs/<name> without --output.
-        quick: what --quick means here.
-        jobs: a remark on --jobs.
+        name: name of the study; results go to runs/<name> without --output.
+        quick: help text of --quick.
+        jobs: addition to the help text of --jobs.
     """
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
     output_options(parser, Path("runs") / name)
@@ -79,12 +79,12 @@ def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Study(Generic[Subject]):
-    """A study as a command: its options, what it works on, what it finds.
+    """Study as a command.
 
     Attributes:
-        parser: its options.
-        load: makes what it works on; what is wrong there is refused before the folder is made.
-        study: computes, draws into the folder and returns the findings, or the line to print if there are none.
+        parser: parser of the options.
+        load: function of the options that returns the subject of the study; called before the folder is created.
+        study: function that computes, writes figures into the folder and returns the findings, or a line to print.
     """
 
     parser: Parser
@@ -95,20 +95,20 @@ class Study(Generic[Subject]):
         """Run the study, write its results, and turn errors into one message and an exit code.
 
         Args:
-            arguments: without the program name; those of the process by default.
+            arguments: command line without the program name; by default that of the process.
 
         Returns:
-            Exit code, as of `run_command`.
+            Exit code, see `run_command`.
         """
 
         def job(options: argparse.Namespace) -> None:
             started = clock.perf_counter()
             subject = self.load(options)
             folder = prepared_folder_of(options, options.output)
-            found = self.study(subject, folder, options)
-            line = found if isinstance(found, str) else found.write(folder)
-            if isinstance(found, Findings):
-                for text in found.values:
+            findings = self.study(subject, folder, options)
+            line = findings if isinstance(findings, str) else findings.write(folder)
+            if isinstance(findings, Findings):
+                for text in findings.values:
                     print(text)
             print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")
 
@@ -121,11 +121,11 @@ def lumped_study(
     study: Callable[[Subject, Path, argparse.Namespace], Findings | str],
     *options: AddOptions,
 ) -> Study[Subject]:
-    """A study of few masses, with a parameter file of its own; arguments as of `Study`, and what adds more options."""
+    """Return a study of a lumped model with a parameter file; arguments as in `Study`, and functions for options."""
     jobs = "; this study batches its runs in one process, so that it changes nothing"
     parser = study_parser(name, quick="fewer points on the curves", jobs=jobs)
-    own = "own parameters, named as the shipped ones"
-    parser.add_argument("--parameters", type=Path, metavar="FILE.toml", help=own)
+    text = "own parameters, named as the shipped ones"
+    parser.add_argument("--parameters", type=Path, metavar="FILE.toml", help=text)
     for add in options:
         add(parser)
     return Study(parser=parser, load=load, study=study)
@@ -134,7 +134,7 @@ def lumped_study(
 def car_study(
     name: str, study: Callable[[CarRuns, Path, argparse.Namespace], Findings], *options: AddOptions
 ) -> Study[CarRuns]:
-    """A study of the complete car; arguments as of `Study`, and what adds more options."""
+    """Return a study of the complete car; arguments as in `Study`, and functions for options."""
     parser = study_parser(name, quick="short signals; what they cannot judge is left open")
     vehicle_options(parser)
     engine_option(parser, "mujoco")
@@ -150,14 +150,14 @@ def _car_runs(options: argparse.Namespace) -> CarRuns:
 
 
 def computed_by(run: Run) -> str:
-    """Tyres, engine and step of a run, for captions and notes."""
+    """Return a text on tyres, engine and step of a run for captions and notes."""
     statistics = run.recording.statistics
     tyres = f"tyres {run.car.vehicle.driving.words}"
     return f"{tyres}, engine {statistics.engine}, step {1e3 * statistics.timestep:g} ms"
 
 
 def estimator_text(response: FrequencyResponse) -> str:
-    """Estimator, averages and resolution of FRFs from whole records, for captions."""
+    """Return a text on estimator, averages and resolution of FRFs for captions."""
     return (
         f"estimator: {response.estimator} on the whole record, {np.nanmedian(response.averages):.2g} averages (degrees "
         f"of freedom, median), resolution {response.resolution_hz:.2g} Hz"
@@ -165,11 +165,11 @@ def estimator_text(response: FrequencyResponse) -> str:
 
 
 def car_text(runs: CarRuns) -> str:
-    """The car that all numbers were made with."""
+    """Return a text on the car and its overrides."""
     file = "the car of Bommer 2006" if runs.vehicle is None else runs.vehicle.name
     return file + (f", changed: {', '.join(runs.overrides)}" if runs.overrides else "")
 
 
 def setting(runs: CarRuns, run: Run, quick: bool) -> list[str]:
-    """Paragraphs that say what all numbers were made with."""
+    """Return the paragraphs on the conditions of all values."""
     return [f"Made with {car_text(runs)}; {computed_by(run)}.", *([QUICK_NOTE] if quick else [])]

@@ -1,4 +1,4 @@
-"""Which parameters of the car comfort answers to: all changed by -20 and +20 %, smooth and rough road in one chart.
+"""Sensitivity of comfort to all parameters, each changed by -20 and +20 %, on both roads in a tornado chart.
 
 python -m scenarios.tornado [--output DIR] [--quick] [--jobs N] [--engine auto|reduced|mujoco] [--records N]
     [--vehicle FILE.toml] [--set PATH=VALUE]
@@ -28,7 +28,7 @@ from vehicle.signals.excitation.exact_road import ROAD_RMS
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    """Run all cars on both roads, draw the chart into the folder, and say what stands out."""
+    """Run all cars on both roads, write the chart into the folder, and return the findings."""
     comfort = ComfortRuns(runs, records_of(options), folder / "sweep")
     started = clock.perf_counter()
     cars: list[Changes] = [(), *(car for parameter in PARAMETERS for car in ends(comfort, parameter).values())]
@@ -106,13 +106,13 @@ PARAMETERS = (
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bar:
-    """A parameter and what its two ends make of comfort.
+    """Parameter with the comfort values at its two ends.
 
     Attributes:
         label: with its unit.
         nominal, low, high: values of the parameter.
-        reason: why the ends are not -20 and +20 %.
-        at_low, at_high: by road; NaN error of a single record.
+        reason: reason for ends other than -20 and +20 %.
+        at_low, at_high: road to point at each end; the error is NaN for a single record.
     """
 
     label: str
@@ -124,13 +124,13 @@ class Bar:
     at_high: Mapping[str, Point]
 
     def swing(self, road: str) -> float:
-        """Largest minus smallest relative comfort value, the nominal car included [-]."""
-        found = (self.at_low[road].relative, self.at_high[road].relative, 1.0)
-        return max(found) - min(found)
+        """Return largest minus smallest relative comfort value, including the nominal car [-]."""
+        values = (self.at_low[road].relative, self.at_high[road].relative, 1.0)
+        return max(values) - min(values)
 
 
 def ends(comfort: ComfortRuns, parameter: Parameter) -> dict[float, Changes]:
-    """The two cars of a parameter by its value, low end first."""
+    """Return value to overrides of the two cars of a parameter, low end first."""
     vehicle = comfort.runs.car().vehicle
     factors = ((1.0 - SHARE) ** parameter.power, (1.0 + SHARE) ** parameter.power)
     pair = parameter.ends or tuple(value_of(vehicle, parameter.path) * factor for factor in factors)
@@ -138,7 +138,7 @@ def ends(comfort: ComfortRuns, parameter: Parameter) -> dict[float, Changes]:
 
 
 def all_bars(comfort: ComfortRuns) -> list[Bar]:
-    """Bars of all parameters, the largest swing on either road first."""
+    """Return the bars of all parameters, sorted by their largest swing on either road."""
     bars = []
     for parameter in PARAMETERS:
         cars = ends(comfort, parameter)
@@ -147,8 +147,8 @@ def all_bars(comfort: ComfortRuns) -> list[Bar]:
             {road: comfort.point(value, car, road, ()) for road in ROAD_RMS} for value, car in cars.items()
         )
         nominal = value_of(comfort.runs.car().vehicle, parameter.path)
-        found = {"nominal": nominal, "low": low, "high": high}
-        bars.append(Bar(label=parameter.label, reason=parameter.reason, at_low=at_low, at_high=at_high, **found))
+        points = {"nominal": nominal, "low": low, "high": high}
+        bars.append(Bar(label=parameter.label, reason=parameter.reason, at_low=at_low, at_high=at_high, **points))
     return sorted(bars, key=lambda bar: -max(bar.swing(road) for road in ROAD_RMS))
 
 
@@ -161,7 +161,7 @@ WAYS = (
 
 
 def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
-    """The conclusions of section 4.4 at the ends of the bars."""
+    """Return the rows on the conclusions of section 4.4 at the ends of the bars."""
     claims = []
     for name, statement, rising in WAYS:
         bar = next(bar for bar in bars if bar.label.startswith(name))
@@ -181,14 +181,16 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
 
 
 def bar_table(bars: Sequence[Bar]) -> str:
-    """The bars as a Markdown table."""
+    """Return the bars as a Markdown table."""
     head = [cell for road in ROAD_RMS for cell in (f"{road}: comfort value at the low, high end [%]", "swing [points]")]
     rows = []
     for bar in bars:
         row = [bar.label + (f" ({bar.reason})" if bar.reason else ""), f"{bar.nominal:g}", f"{bar.low:g}, {bar.high:g}"]
         for road in ROAD_RMS:
             both = (bar.at_low[road], bar.at_high[road])
-            row.append(", ".join(f"{100.0 * one.relative:.2f} ± {number(100.0 * one.relative_error)}" for one in both))
+            row.append(
+                ", ".join(f"{100.0 * point.relative:.2f} ± {number(100.0 * point.relative_error)}" for point in both)
+            )
             row.append(f"{100.0 * bar.swing(road):.1f}")
         rows.append(row)
     return markdown(["parameter", "nominal", "low, high end", *head], rows)
@@ -220,12 +222,12 @@ def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
     ) as figure:
         axes = figure.subplots(1, len(ROAD_RMS), sharex=True, sharey=True)
         for axis, road in zip(axes, ROAD_RMS, strict=True):
-            for label, colour, shift, found, values in (
+            for label, colour, shift, points, values in (
                 ("low end", LOW_COLOUR, 0.19, [bar.at_low[road] for bar in bars], [bar.low for bar in bars]),
                 ("high end", HIGH_COLOUR, -0.19, [bar.at_high[road] for bar in bars], [bar.high for bar in bars]),
             ):
-                change = np.array([100.0 * (one.relative - 1.0) for one in found])
-                error = 200.0 * np.nan_to_num([one.relative_error for one in found])
+                change = np.array([100.0 * (point.relative - 1.0) for point in points])
+                error = 200.0 * np.nan_to_num([point.relative_error for point in points])
                 axis.barh(
                     height + shift, change, 0.36, xerr=error, color=colour, label=label, ecolor="#222222", capsize=2
                 )

@@ -42,7 +42,8 @@ WORDS = (
     "[" * 1500, '"' * 3, "\\u0000", "-0.0", "1e-9", "1e9", "None", "\r", "\t",
 )  # fmt: skip
 ROWS = [
-    f"{k / 500:.3f},{z:.6e}" for k, z in enumerate(random_road(rms=2e-4, seed=1, duration=2.0).displacement["fr"][::2])
+    f"{k / 500:.3f},{z:.6e}"
+    for k, z in enumerate(random_road(rms=2e-4, seed=1, wheel="fr", duration=2.0).displacement["fr"][::2])
 ]
 SIGNAL = "\n".join(["time [s],displacement [m]", *ROWS]) + "\n"
 CAR = FOCUS_FILE.read_text(encoding="utf-8")

@@ -23,8 +23,8 @@ from vehicle import (
     write_report,
 )
 from vehicle.signals.records.text_format import write_table
-from vehicle.studies.sweeps.inputs import file_of, inputs_of
 from vehicle.studies.sweeps.plan import changes_of, plan_sweep
+from vehicle.studies.sweeps.sweep_inputs import file_of, inputs_of
 from vehicle.studies.tuning.car_fit import ranges_of
 
 VISCOUS = "damper.viscous"
@@ -64,9 +64,9 @@ def test_inputs_of_many_runs(sedan):
     roads: list[Any] = [Road("A", speed=72, seed=1), Road("A", speed=72, seed=2), Road("C", speed=72), "low.csv"]
     assert [one.name for one in inputs_of(sedan, roads)] == ["road_A_72_seed_1", "road_A_72_seed_2", "road_C_72", "low"]
     signal = Signal(time=np.arange(40) / 100.0, displacement={"fr": np.zeros(40)}, source="mine", highest=40.0)
-    with pytest.raises(DataError, match="mine: holds vibration up to 40 Hz alone"):
+    with pytest.raises(DataError, match="mine: contains vibration only up to 40 Hz"):
         inputs_of(sedan, signal)
-    with pytest.raises(ConfigurationError, match="inputs: none is given"):
+    with pytest.raises(ConfigurationError, match="inputs: no input"):
         inputs_of(sedan, [])
     with pytest.raises(ConfigurationError, match=r"road class 'nowhere\.csv'"):
         inputs_of(sedan, Road("nowhere.csv", speed=60))[0].signal()
@@ -82,7 +82,7 @@ def test_a_sweep_runs_the_car_that_it_is_given(sedan):
     ]
     assert plan.skip == 1.0 and plan.cases[0].vehicle == file_of(sedan)
     changed = Car(stiff.vehicle)  # from no file: workers could not load it
-    with pytest.raises(ConfigurationError, match=r"loaded from a file; load it by Car\.load"):
+    with pytest.raises(ConfigurationError, match=r"loaded from a file; load the car with Car\.load"):
         run_sweep(changed, {"front.damper.viscous": [1500]}, "low.csv")
 
 
@@ -94,7 +94,7 @@ def test_parameters_of_a_fit_start_at_the_car(focus):
         ranges_of(focus.vehicle, {VISCOUS: (500.0,)})
     with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.viscous"):
         tune_car(focus, {"damper.vicsous": (1.0, 2.0)}, [])
-    with pytest.raises(ConfigurationError, match="targets: none to fit to"):
+    with pytest.raises(ConfigurationError, match="targets: no measurement to fit to"):
         tune_car(focus, {VISCOUS: (500.0, 5000.0)}, [])
 
 
@@ -123,11 +123,11 @@ def test_wrong_arguments_are_refused(focus, record, tmp_path):
     for call, message in (
         (lambda: focus.run("low.csv", skip=70.0), r"--skip 70 s: allowed is 0 s to less than low\.csv"),
         (lambda: compare_run(tmp_path, record, drift=0.2), "--drift 200000: must be"),
-        (lambda: compare_run(tmp_path, record, bands=(9.0, 3.0)), "needed are rising edges"),
+        (lambda: compare_run(tmp_path, record, bands=(9.0, 3.0)), "must be increasing edges"),
         (lambda: write_report("nowhere", "report.html"), "nowhere: is no folder"),
         (lambda: write_report([tmp_path], "report.pdf"), r"this file is written as \.html"),
         (lambda: optimise_car(focus, vary, "low.csv", ["comfort"], cars=4), "--cars 4: must be at least 8"),
-        (lambda: optimise_car(focus, vary, "low.csv", ["comfort"], samples=8), "belong to tolerances"),
+        (lambda: optimise_car(focus, vary, "low.csv", ["comfort"], samples=8), "only valid with tolerances"),
         (lambda: optimise_car(focus, {VISCOUS: (1.0,)}, "low.csv", ["comfort"]), r"must be \(lower, upper\)"),
         (lambda: replicate_drive(focus, record, {"knuckle_fr_acc_z": "z"}, wheels=("fr", "fl")), "2 plates"),
         (lambda: replicate_drive(focus, record, ["knuckle_fr_acc_z"], gain=2.0), "--gain 2: must be above 0"),

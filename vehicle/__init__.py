@@ -5,8 +5,8 @@
     car = Car.load("focus", {"damper.coulomb_friction": 93.75})
     run = car.run("low.csv")
 
-Names are imported at their first use; `help(vehicle.run_sweep)` explains one. A function is never named as a module of
-`python -m vehicle.NAME`, whose import would replace it.
+Names are imported at their first use; `help(vehicle.run_sweep)` prints the documentation of a name. No function has the
+name of a module of `python -m vehicle.NAME`: the import of the module would replace the function.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from vehicle.runs.car.road import Road as Road
     from vehicle.runs.car.run import Run as Run
     from vehicle.runs.comparison.compared_run import compare_run as compare_run
+    from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
-    from vehicle.runs.comparison.tables import Comparison as Comparison
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
     from vehicle.runs.output.saved_run import save_run as save_run
     from vehicle.runs.report.report_file import write_report as write_report
@@ -41,27 +41,27 @@ if TYPE_CHECKING:
     from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
     from vehicle.studies.optimisation.car_search import optimise_car as optimise_car
-    from vehicle.studies.optimisation.found_cars import FoundCars as FoundCars
+    from vehicle.studies.optimisation.search_result import FoundCars as FoundCars
     from vehicle.studies.replication.drive_files import save_drive as save_drive
-    from vehicle.studies.replication.found_drive import FoundDrive as FoundDrive
-    from vehicle.studies.replication.found_drive import replicate_drive as replicate_drive
+    from vehicle.studies.replication.drive_search import FoundDrive as FoundDrive
+    from vehicle.studies.replication.drive_search import replicate_drive as replicate_drive
     from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
     from vehicle.studies.sweeps.plan import run_sweep as run_sweep
-    from vehicle.studies.sweeps.table import SweepTable as SweepTable
+    from vehicle.studies.sweeps.sweep_table import SweepTable as SweepTable
     from vehicle.studies.tuning.car_fit import tune_car as tune_car
+    from vehicle.studies.tuning.fit_result import TuningResult as TuningResult
     from vehicle.studies.tuning.measured_targets import measured_histories as measured_histories
     from vehicle.studies.tuning.measured_targets import measured_responses as measured_responses
-    from vehicle.studies.tuning.result import TuningResult as TuningResult
 
 _MODULES = {
     "Car": "vehicle.runs.car.car",
     "Choice": "vehicle.signals.records.choice",
     "ComfortMeasure": "vehicle.studies.sweeps.measure",
-    "Comparison": "vehicle.runs.comparison.tables",
+    "Comparison": "vehicle.runs.comparison.comparison",
     "ConfigurationError": "vehicle.errors",
     "DataError": "vehicle.errors",
-    "FoundCars": "vehicle.studies.optimisation.found_cars",
-    "FoundDrive": "vehicle.studies.replication.found_drive",
+    "FoundCars": "vehicle.studies.optimisation.search_result",
+    "FoundDrive": "vehicle.studies.replication.drive_search",
     "MissingPartError": "vehicle.errors",
     "OutputError": "vehicle.errors",
     "RecordComfort": "vehicle.signals.records.record_comfort",
@@ -69,8 +69,8 @@ _MODULES = {
     "Run": "vehicle.runs.car.run",
     "Signal": "vehicle.signals.excitation.signal",
     "SimulationError": "vehicle.errors",
-    "SweepTable": "vehicle.studies.sweeps.table",
-    "TuningResult": "vehicle.studies.tuning.result",
+    "SweepTable": "vehicle.studies.sweeps.sweep_table",
+    "TuningResult": "vehicle.studies.tuning.fit_result",
     "VehicleError": "vehicle.errors",
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
     "compare_run": "vehicle.runs.comparison.compared_run",
@@ -81,7 +81,7 @@ _MODULES = {
     "read_measured": "vehicle.signals.records.measured",
     "read_record": "vehicle.signals.records.reader",
     "read_signal": "vehicle.signals.excitation.signal_file",
-    "replicate_drive": "vehicle.studies.replication.found_drive",
+    "replicate_drive": "vehicle.studies.replication.drive_search",
     "run_sweep": "vehicle.studies.sweeps.plan",
     "save_comparison": "vehicle.runs.output.comparison_files",
     "save_drive": "vehicle.studies.replication.drive_files",

@@ -13,32 +13,53 @@ from vehicle.errors import ConfigurationError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """List the commands, or run one.
+    """Run a command; without one, print the list of commands.
 
     Args:
-        arguments: name of a command and its options; those of the process by default.
+        arguments: name of the command and its options; the arguments of the process by default.
 
     Returns:
-        Exit code, as of `run_command`.
+        Exit code, see `run_command`.
     """
-    given = sys.argv[1:] if arguments is None else list(arguments)
+    typed = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:
         begin_process()
-    if given and given[0] in COMMANDS:
-        code: int = import_module(f"vehicle.commands.{given[0]}").main(given[1:])
+    if typed and typed[0] in COMMANDS:
+        code: int = import_module(f"vehicle.commands.{typed[0]}").main(typed[1:])
         return code
-    return run_command(lambda: _list(given))
+    return run_command(lambda: _print(typed))
 
 
-def _list(given: Sequence[str]) -> None:
-    """Print a line for each command; refuse a name that is none of them."""
-    if given and given[0] not in ("-h", "--help"):
-        close = get_close_matches(given[0], COMMANDS, n=1)
+def _print(typed: Sequence[str]) -> None:
+    """Print the list of commands, the version, a JSON Schema or a completion script.
+
+    Raises:
+        ConfigurationError: the first word is no command and no option.
+    """
+    if typed[:1] == ["--version"]:
+        from vehicle.commands.version import package_version
+
+        print(package_version())
+        return
+    if typed[:1] == ["--schema"]:
+        from vehicle.commands.schema_text import schema_text
+
+        print(schema_text(typed[1:]))
+        return
+    if typed[:1] == ["--print-completion"]:
+        from vehicle.commands.completion import completion_script
+
+        print(completion_script("".join(typed[1:2])), end="")
+        return
+    if typed and typed[0] not in ("-h", "--help"):
+        close = get_close_matches(typed[0], COMMANDS, n=1)
         nearest = f"; did you mean {close[0]}?" if close else ""
-        raise ConfigurationError(f"no command {given[0]!r}; allowed are {', '.join(COMMANDS)}{nearest}")
-    print("usage: python -m vehicle COMMAND [options]; --help behind a command lists its options\n")
+        raise ConfigurationError(f"no command {typed[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
+    print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")
+    print("\n--version prints the version; --print-completion bash|zsh a script that completes commands and options")
+    print("--schema prints the JSON Schema of a vehicle file, --schema template that of a template")
 
 
 if __name__ == "__main__":

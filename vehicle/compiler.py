@@ -1,9 +1,8 @@
-"""Functions for compiled code, and where numba keeps it: beside the sources, in the user's cache, or temporarily.
+"""Registration of functions for numba, and the cache folder of compiled code.
 
-`jitable` marks a function of plain numbers, arrays and records that compiled code calls by its name; it stays what it
-is in Python. numba itself is loaded by `numba_module`, at the first need. Its own search
-for a folder ends with an error where the package is read-only and there is no home folder. What is kept there is loaded
-and run by the next process, so a folder that others could have written is not used.
+`jitable` marks a function of numbers, arrays and records for calls from compiled code, and leaves it unchanged in
+Python. `numba_module` loads numba at the first use. numba's search for a cache folder fails for a read-only package
+without a home folder. The next process executes code from the cache, so folders writable by others are not used.
 """
 
 from __future__ import annotations
@@ -20,14 +19,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 VARIABLE = "NUMBA_CACHE_DIR"
-"""numba reads this when it is imported; processes that are started from here inherit it."""
+"""Environment variable that numba reads at import; child processes inherit it."""
 
 PACKAGE = Path(__file__).parent
 COMPILING = ("engines/simulation", "engines/reduced")
-"""Rooms with functions whose compiled form is kept."""
+"""Packages with functions whose compiled form is cached."""
 
 OPTIONS: dict[str, Any] = {"boundscheck": False, "error_model": "numpy", "fastmath": {"reassoc", "contract", "nsz"}}
-"""Division as numpy has it; sums in any order, with fused products, so that they fill the vector units: round-off."""
+"""Compiler options: division as in numpy; sums in any order and fused products for SIMD, which changes round-off."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _marked: list[Callable[..., Any]] = []
@@ -35,7 +34,7 @@ _loaded: list[Any] = []
 
 
 def jitable(function: Function) -> Function:
-    """Mark a function that is put into the compiled code which calls it, and return it as it is."""
+    """Mark a function for inlining into compiled callers, and return it unchanged."""
     _marked.append(function)
     if _loaded:
         _register()
@@ -43,7 +42,7 @@ def jitable(function: Function) -> Function:
 
 
 def numba_module() -> Any:
-    """The compiler, which knows all marked functions.
+    """Import numba and register all marked functions.
 
     Raises:
         ImportError: numba is not installed.
@@ -57,18 +56,18 @@ def numba_module() -> Any:
 
 
 def _register() -> None:
-    """Make the marked functions known to the compiler."""
+    """Register the marked functions with numba."""
     while _marked:
-        # Put into their callers by LLVM. Not by numba: its loops err. Not left to be called: a process that compiles
-        # takes each from its own module, and one that loads the callers from theirs, whose sums are rounded otherwise.
+        # Inlined by LLVM: inlining by numba gives wrong loops. Without inlining, a process that compiles calls the
+        # function from another module than a process that loads the callers, which changes round-off.
         _loaded[0](forceinline=True, **OPTIONS)(_marked.pop(0))
 
 
 @cache
 def stamp() -> int:
-    """A number that changes with the sources of the compiled functions and with what they stand on.
+    """Return a hash of the sources of the compiled functions and of the versions of MuJoCo and numpy.
 
-    numba keeps compiled code by the file of its entry function alone, and by what that closes over: this number.
+    The cache of numba depends only on the file of the entry function and on its closure values: this hash.
     """
     versions = (importlib.import_module("mujoco").__version__, importlib.import_module("numpy").__version__)
     digest = hashlib.sha256(repr(versions).encode())
@@ -80,51 +79,51 @@ def stamp() -> int:
 
 @cache
 def prepare_compiler_cache() -> None:
-    """Choose the folder of compiled code; to be called before numba is imported.
+    """Choose the cache folder of compiled code; call this before numba is imported.
 
-    Order: NUMBA_CACHE_DIR as given, `__pycache__` beside the sources (numba's own first choice), $XDG_CACHE_HOME or
-    ~/.cache, a folder of the user's below the temporary one, a new one there. The first that can be written is taken.
+    Order: NUMBA_CACHE_DIR from the environment, `__pycache__` next to the sources (numba's default), $XDG_CACHE_HOME or
+    ~/.cache, a private folder in the temporary folder, a new temporary folder. The first writable folder is used.
     """
-    given = os.environ.get(VARIABLE)
-    if given:
-        if _writable(Path(given)):
+    environment_folder = os.environ.get(VARIABLE)
+    if environment_folder:
+        if _writable(Path(environment_folder)):
             return
     elif all(_writable(PACKAGE / room / "__pycache__") for room in COMPILING):
         return
-    place = next((place for place in _places() if _writable(place)), None)
-    chosen = tempfile.mkdtemp(prefix="vehicle-") if place is None else str(place)
+    folder = next((folder for folder in _candidates() if _writable(folder)), None)
+    chosen = tempfile.mkdtemp(prefix="vehicle-") if folder is None else str(folder)
     os.environ[VARIABLE] = chosen
     if "numba" in sys.modules:
         sys.modules["numba"].config.CACHE_DIR = chosen
 
 
-def _places() -> list[Path]:
-    """Folders outside the package, best first."""
-    found = []
+def _candidates() -> list[Path]:
+    """Return candidate cache folders outside the package, preferred first."""
+    candidates = []
     named = os.environ.get("XDG_CACHE_HOME", "")
     home = Path(os.path.expanduser("~"))  # noqa: PTH111 - Path.home() raises where there is none
     if Path(named).is_absolute():
-        found.append(Path(named) / "vehicle")
+        candidates.append(Path(named) / "vehicle")
     elif home.is_absolute() and home.is_dir():
-        found.append(home / ".cache" / "vehicle")
+        candidates.append(home / ".cache" / "vehicle")
     shared = Path(tempfile.gettempdir()) / f"vehicle-{os.geteuid()}"
     if _private(shared):
-        found.append(shared)
-    return found
+        candidates.append(shared)
+    return candidates
 
 
 def _private(folder: Path) -> bool:
-    """Whether a folder exists, or could be made, that belongs to this user alone."""
+    """Return True if a folder exists, or can be made, that belongs to this user alone."""
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
-        found = folder.lstat()
+        status = folder.lstat()
     except OSError:
         return False
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o077
+    return stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid() and not status.st_mode & 0o077
 
 
 def _writable(folder: Path) -> bool:
-    """Whether a file can be made in a folder, which is made where it is missing; asked by doing it."""
+    """Return True if a file can be created in a folder, which is made if missing; tested by creating a file."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

@@ -1,33 +1,33 @@
-"""Every error a user can meet: one base class, one exit code for each kind."""
+"""Errors of the package: one base class, one exit code for each class."""
 
 from collections.abc import Mapping
 from typing import Any
 
 
 class VehicleError(Exception):
-    """Any error of this package: what is wrong, where, the value, what is allowed and the remedy, in one message."""
+    """Base class of all errors; the message contains the fault, its location, the value, the limits and the remedy."""
 
     exit_code = 4
 
 
 class ConfigurationError(VehicleError):
-    """A parameter, an argument, an option or a path is wrong."""
+    """Error for a wrong parameter, argument, option or path."""
 
     exit_code = 2
 
 
 class DataError(VehicleError):
-    """An input file (signal, modal model, measurement) holds bad data."""
+    """Error for bad data in an input file (signal, modal model, measurement)."""
 
     exit_code = 3
 
 
 class SimulationError(VehicleError):
-    """The simulation could not be carried through; no result may be used.
+    """Error for a failed simulation, whose results are invalid.
 
     Args:
-        message: as of `VehicleError`.
-        state: the last good state, name to array, where there is one.
+        message: see `VehicleError`.
+        state: last good state, name to array; None if there is none.
     """
 
     exit_code = 4
@@ -38,12 +38,12 @@ class SimulationError(VehicleError):
 
 
 class MissingPartError(VehicleError):
-    """A library or a program that the request needs is not on this machine."""
+    """Error for a missing library or program."""
 
     exit_code = 5
 
 
 class OutputError(VehicleError):
-    """A result could not be written."""
+    """Error for a result that cannot be written."""
 
     exit_code = 6

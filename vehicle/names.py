@@ -1,4 +1,4 @@
-"""Names that more than one room uses, each written once: corners, sides, axes, engines, channels with their units."""
+"""Names of the whole package: corners, sides, axes, engines, channels with their units."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from collections.abc import Iterable, Sequence
 from vehicle.errors import ConfigurationError
 
 CORNERS = {"front_right": "fr", "front_left": "fl", "rear_right": "rr", "rear_left": "rl"}
-"""Words for the corners of a car with two axles to the names of its wheels; a car tells which of them it has."""
+"""Names of the wheels of a car with two axles, by corner in words; a car may have fewer."""
 
 SIDE_SIGN = {"right": 1.0, "left": -1.0}
-"""Sign of y of each side: +y points to the driver's right."""
+"""Sign of y on each side: +y points to the driver's right."""
 
 ENGINES = ("mujoco", "reduced", "auto")
-"""What computes a run: the complete car, its poles, or the poles where they are valid."""
+"""Engines of a run: complete MuJoCo model, reduced model, or the reduced model inside its valid range."""
 
 AXES = ("x", "y", "z")
 
@@ -30,80 +30,88 @@ _UNITS = {
 
 
 def side_of(wheel: str, wheels: Iterable[str]) -> str:
-    """The word for a wheel among those of its car: its side where the car has one axle, else its corner, else its name.
+    """Return a wheel in words: the side for a car with one axle, else the corner, else the name of the wheel.
 
     Args:
-        wheel: its name, as "fr".
+        wheel: name of the wheel, as "fr".
         wheels: names of all wheels of the car.
     """
-    words = {name: words.replace("_", " ") for words, name in CORNERS.items()}
-    if len({name[0] for name in wheels}) == 1 and wheel in words:
-        return words[wheel].split()[1]
-    return words.get(wheel, wheel)
+    sides = {name: sides.replace("_", " ") for sides, name in CORNERS.items()}
+    if len({name[0] for name in wheels}) == 1 and wheel in sides:
+        return sides[wheel].split()[1]
+    return sides.get(wheel, wheel)
 
 
 def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
-    """A wheel in a sentence: "right front wheel" of a car with one axle there, else "rear right wheel"."""
+    """Return a wheel for a sentence: "right front wheel" for a car with one axle, else "rear right wheel"."""
     side = side_of(wheel, wheels)
     return f"{side} front wheel" if side in SIDE_SIGN and wheel.startswith("f") else f"{side} wheel"
 
 
 def axle_and_side(wheel: str) -> tuple[str, str]:
-    """Axle and side of a wheel in words: "front", "right" of fr, "middle", "left" of middle_l.
+    """Return axle and side of a wheel in words: "front", "right" for fr; "middle", "left" for middle_l.
 
     Args:
-        wheel: its name, as of `is_wheel`.
+        wheel: name of the wheel, see `is_wheel`.
     """
     axle = wheel[:-1].rstrip("_").replace("_", " ")
     return {"f": "front", "r": "rear"}.get(axle, axle), {"r": "right", "l": "left"}[wheel[-1]]
 
 
 def across(wheel: str) -> str:
-    """The wheel on the other side of its axle, as "fl" of "fr"."""
+    """Return the other wheel of the axle, as "fl" for "fr"."""
     return wheel[:-1] + ("l" if wheel.endswith("r") else "r")
 
 
 def is_wheel(name: str) -> bool:
-    """Whether a wheel may have this name: a corner, or the side of a further axle, as middle_r."""
+    """Return True for a valid name of a wheel: a corner, or the side of a further axle, as middle_r."""
     return name in CORNERS.values() or re.fullmatch(r"[a-z]\w*_[rl]", name) is not None
 
 
 def in_order(wheels: Iterable[str]) -> tuple[str, ...]:
-    """Wheels in the order of files: the corners, then those of further axles."""
-    known = list(CORNERS.values())
-    return tuple(sorted(wheels, key=lambda wheel: (known.index(wheel) if wheel in known else len(known), wheel)))
+    """Return wheels in the order of files: the corners, then the wheels of further axles."""
+    corners = list(CORNERS.values())
+    return tuple(sorted(wheels, key=lambda wheel: (corners.index(wheel) if wheel in corners else len(corners), wheel)))
 
 
-def acceleration_channels(places: Iterable[str]) -> tuple[str, ...]:
-    """Channels `<place>_acc_<axis>` of places."""
-    return tuple(f"{place}_acc_{axis}" for place in places for axis in AXES)
+def acceleration_channels(points: Iterable[str]) -> tuple[str, ...]:
+    """Return the channels `<point>_acc_<axis>` of output points."""
+    return tuple(f"{point}_acc_{axis}" for point in points for axis in AXES)
 
 
 def wheel_channels(wheels: Iterable[str], dampers: Sequence[str]) -> tuple[str, ...]:
-    """Channels of wheels and dampers: those of a corner together.
+    """Return the channels of wheels and dampers, ordered by corner.
 
     Args:
         wheels: names of the wheels.
-        dampers: names of the dampers; that of a corner is "damper_" and its wheel.
+        dampers: names of the dampers; the damper of a corner is "damper_" and the wheel.
     """
-    found: list[str] = []
-    own = {wheel: f"damper_{wheel}" for wheel in wheels}
-    for wheel, damper in own.items():
-        found += [f"{damper}_velocity", f"{damper}_force"] if damper in dampers else []
-        found += [f"tyre_{wheel}_force_z", f"plate_{wheel}_displacement"]
-    return (*found, *(f"{one}_{kind}" for one in dampers if one not in own.values() for kind in ("velocity", "force")))
+    channels: list[str] = []
+    corner_dampers = {wheel: f"damper_{wheel}" for wheel in wheels}
+    for wheel, damper in corner_dampers.items():
+        channels += [f"{damper}_velocity", f"{damper}_force"] if damper in dampers else []
+        channels += [f"tyre_{wheel}_force_z", f"plate_{wheel}_displacement"]
+    return (
+        *channels,
+        *(
+            f"{damper}_{quantity}"
+            for damper in dampers
+            if damper not in corner_dampers.values()
+            for quantity in ("velocity", "force")
+        ),
+    )
 
 
 def channel_units(channels: Iterable[str]) -> dict[str, str]:
-    """Channels to their units, which their names tell.
+    """Return the unit of each channel, derived from its name.
 
     Args:
-        channels: names.
+        channels: names of channels.
 
     Raises:
-        ConfigurationError: there can be no such channel.
+        ConfigurationError: the name is not of a channel.
     """
-    found = {}
+    units = {}
     for channel in channels:
         unit = next((unit for form, unit in _UNITS.items() if re.fullmatch(form, channel)), None)
         if unit is None:
@@ -111,5 +119,5 @@ def channel_units(channels: Iterable[str]) -> dict[str, str]:
                 f"no channel {channel!r}; channels are called as seat_rail_acc_z, damper_fr_velocity, damper_fr_force, "
                 "tyre_fr_force_z, plate_fr_displacement"
             )
-        found[channel] = unit
-    return found
+        units[channel] = unit
+    return units

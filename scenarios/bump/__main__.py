@@ -83,7 +83,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of this study alone."""
+    """Add the options of this study."""
     meaning = "A of the printed formula as peak height, or taken literally (peak 2 A)"
     parser.add_argument("--reading", choices=sorted(OTHER), default="height", help=meaning)
     film = "film of both bumps side by side, in step"
@@ -94,7 +94,7 @@ main = car_study("bump", study, add_options)
 
 
 def seeds_text(seeds: BumpSeeds) -> str:
-    """How the rows over seeds were made."""
+    """Return a note on the seeds, noise and engine of the rows over seeds."""
     return (
         f"End of sticking and extremes: {seeds.count} seeds of the noise, {RECORD.noisy:g} s each with the bump at "
         f"{RECORD.start:g} s, engine {seeds.engine}; the pictured runs have the seed of the shipped inputs. "
@@ -103,7 +103,7 @@ def seeds_text(seeds: BumpSeeds) -> str:
 
 
 def slip_table(bumps: Bumps) -> str:
-    """First slip by friction limit, and ring-down times, as tables."""
+    """Return tables of the first slip by friction limit, and of the ring-down times."""
     slip, end = (bumps.first_slip(velocity) for velocity in (bumps.slip_velocity, SATURATED_VELOCITY))
     low, high = (ring_down_times(run, bumps.record.end) for run in bumps.quiet)
     times = {point: (time, high[point], time / high[point]) for point, time in low.items()}

@@ -1,4 +1,4 @@
-"""Published statements about the bumps beside ours: end of sticking, extremes over noise seeds, ring-down."""
+"""Rows of published statements about the bumps: end of sticking, extremes over noise seeds, ring-down."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ RATIO = 2.0
 
 
 def slip_claims(bumps: Bumps, seeds: BumpSeeds) -> list[Claim]:
-    """Rows about the end of sticking of both bumps, over the seeds of the noise."""
+    """Return the rows about the end of sticking of both bumps, over the seeds of the noise."""
     ends, low = seeds.stick_end, seeds.fastest[SIZES[0]]
     ordered = np.array([ends[friction] for friction in sorted(ends)])
     rising = bool(np.all(np.isfinite(ordered)) and np.all(np.diff(ordered, axis=0) > 0.0))
@@ -68,7 +68,7 @@ PANELS = {SIZES[1]: HIGH_PANELS, SIZES[0]: LOW_PANELS}
 
 
 def extreme_claims(seeds: BumpSeeds, trials: Mapping[str, Mapping[str, float]]) -> list[Claim]:
-    """A row for each readable end of each axis, over the seeds of the noise.
+    """Return a row for each readable end of each axis, over the seeds of the noise.
 
     Args:
         seeds: ours.
@@ -83,7 +83,7 @@ def extreme_claims(seeds: BumpSeeds, trials: Mapping[str, Mapping[str, float]]) 
                 row = f"bump {1e3 * size:g} mm, {word} {name} [m/s2]"
                 claim = evidence_claim(key, row, ours, AXIS, picture=picture_of(point))
                 if not claim.within and trials:
-                    why = reason(evidence_of(key).interval, {label: one[key] for label, one in trials.items()})
+                    why = reason(evidence_of(key).interval, {label: values[key] for label, values in trials.items()})
                     claim = evidence_claim(key, row, ours, f"{AXIS}; {why}", picture=picture_of(point))
                 claims.append(claim)
     return claims
@@ -93,7 +93,7 @@ AXIS = "3 s from the bump; the axis holds model and measurement, either of which
 
 
 def picture_of(point: str) -> str:
-    """File name of the figure that shows a point."""
+    """Return the file name of the figure that shows a point."""
     if point == "relative":
         return "relative_acceleration.png"
     return "histories_horizontal.png" if point[-2:] in ("_x", "_y") else "histories_vertical.png"
@@ -102,7 +102,7 @@ def picture_of(point: str) -> str:
 SHOWN_POINTS = {
     "seat_rail": ("figure 3.13", "where it is not said"),
     "seat": ("figure 3.14", "where it is not said"),
-    "engine": ("figure 3.17", "where the source says so"),
+    "engine": ("figure 3.17", "as the thesis states"),
     "roof_right_rear": ("figure 3.18", "where it is not said"),
 }
 """Points whose vertical histories the source shows for both bumps, and the figure."""
@@ -111,11 +111,11 @@ WEAKEST = "the weakest of all points and of the body as a whole"
 
 
 def ring_down_claims(bumps: Bumps) -> Iterator[Claim]:
-    """Rows: the low bump rings down more slowly."""
+    """Return the rows on the slower ring-down after the low bump."""
     low, high = (ring_down_times(run, bumps.record.end) for run in bumps.quiet)
     for name in (*SHOWN_POINTS, WEAKEST):
-        place, said = SHOWN_POINTS.get(name, ("", ""))
-        point = min(low, key=lambda one: low[one] / high[one]) if name == WEAKEST else name
+        source_place, said = SHOWN_POINTS.get(name, ("", ""))
+        point = min(low, key=lambda motion: low[motion] / high[motion]) if name == WEAKEST else name
         why = f"definition below the table; {said}" if said else left_ringing(bumps.quiet[1], bumps.record.end, point)
         ratio = low[point] / high[point]
         yield (PREDICTED if name == "engine" else OWN_CHECK).statement(
@@ -124,27 +124,27 @@ def ring_down_claims(bumps: Bumps) -> Iterator[Claim]:
             f"{point.replace('_', ' ')}: {low[point]:.2f} s against {high[point]:.2f} s, {ratio:.1f} times",
             ratio >= RATIO,
             why,
-            place=place,
+            place=source_place,
             picture="ring_down.png",
         )
 
 
 def left_ringing(run: Run, end: float, point: str) -> str:
-    """What the damper leaves of the motion of a point after the high bump when it sticks for good, in words.
+    """Return a text on the motion of a point that remains when the damper finally sticks after the high bump.
 
     Args:
-        run: of the high bump without noise.
-        end: of the bump [s].
-        point: output, or "body" for all of it.
+        run: run of the high bump without noise.
+        end: end of the bump [s].
+        point: output point, or "body" for the RMS over the whole body.
     """
     sliding = run.time[np.abs(damper_velocity(run)) > SATURATED_VELOCITY]
     stuck = max(float(sliding[-1]), end) if sliding.size else end
-    what = "own check"
+    status = "own check"
     if point == "body":
-        return f"{what}; the damper sticks for good {stuck - end:.2f} s after the bump"
+        return f"{status}; the damper sticks for good {stuck - end:.2f} s after the bump"
     motion = np.abs(run[f"{point}_acc_z"])
     share = float(np.max(motion[run.time > stuck]) / np.max(motion[run.time >= end]))
     return (
-        f"{what}: the damper sticks for good {stuck - end:.2f} s after the high bump, where {100.0 * share:.0f} % of "
+        f"{status}: the damper sticks for good {stuck - end:.2f} s after the high bump, where {100.0 * share:.0f} % of "
         "the motion are left; from there it rings on as slowly as after the low one"
     )

@@ -60,25 +60,25 @@ SHOWN = (-0.25, 3.25)
 
 
 def excerpt(run: Run, start: float, shown: tuple[float, float], values: Vector) -> tuple[Vector, Vector]:
-    """Times, as if the bump began at 5 s, and values of a stretch.
+    """Return times, shifted to a bump that begins at 5 s, and values of a time window.
 
     Args:
-        run: on a bump.
-        start: of the bump [s].
-        shown: ends of the stretch after the start [s].
-        values: of every sample, (n,).
+        run: run on a bump.
+        start: start of the bump [s].
+        shown: begin and end of the window after the start of the bump [s].
+        values: values of every sample, (n,).
     """
     keep = (run.time >= start + shown[0]) & (run.time <= start + shown[1])
     return run.time[keep] + BUMP_START_S - start, values[keep]
 
 
 def history_figures(folder: Path, bumps: Bumps, seeds: BumpSeeds) -> None:
-    """Write the time histories of all points into a folder, the low bump at the left and the high one at the right.
+    """Write the figures of the time histories of all points, the low bump on the left and the high bump on the right.
 
     Args:
-        folder: where to.
-        bumps: what is drawn.
-        seeds: extremes of further seeds, drawn as bars behind the histories, beside the published intervals.
+        folder: folder of the figures.
+        bumps: runs on both bumps.
+        seeds: extremes over further seeds, drawn as bars next to the published intervals.
     """
     start = bumps.record.start
     for name, title, channels in (
@@ -112,7 +112,7 @@ def history_figures(folder: Path, bumps: Bumps, seeds: BumpSeeds) -> None:
 
 
 def _published_ends(axis: Any, size: float, point: str, seeds: BumpSeeds) -> None:
-    """Draw the published intervals of the extremes of a panel and ours over the seeds; nothing where none is known."""
+    """Draw the published intervals of the extremes of a panel and our extremes over the seeds, if published."""
     for column, word in enumerate(("lowest", "highest")):
         try:
             low, high = evidence_of(row_key(size, point, word)).interval
@@ -125,7 +125,7 @@ def _published_ends(axis: Any, size: float, point: str, seeds: BumpSeeds) -> Non
 
 
 BAR_AT = -0.12
-"""Where the bar of the extremes stands, after the start of the bump [s]."""
+"""Time of the bar of the extremes after the start of the bump [s]."""
 
 
 def friction_figure(path: Path, bumps: Bumps) -> None:
@@ -156,8 +156,8 @@ def friction_figure(path: Path, bumps: Bumps) -> None:
             (bumps.slip_velocity, "o-", "first slip"),
             (SATURATED_VELOCITY, "o:", "end of stick"),
         ):
-            known = [(friction, time) for friction, time in bumps.first_slip(velocity).items() if time is not None]
-            times.plot(*zip(*known, strict=True), style, color=COLOURS[0], label=label)
+            slips = [(friction, time) for friction, time in bumps.first_slip(velocity).items() if time is not None]
+            times.plot(*zip(*slips, strict=True), style, color=COLOURS[0], label=label)
         read_off = {"yerr": [FIRST_SLIP_TOLERANCE], "fmt": "s", "label": "published, ±10 ms"}
         times.errorbar([PUBLISHED_FRICTION], [FIRST_SLIP], color=COLOURS[1], **read_off)
         times.set(xlabel="friction limit Fd [N]", ylabel="time [s]")
@@ -175,13 +175,13 @@ def ring_down_figure(path: Path, bumps: Bumps) -> None:
     )
     with figure_file(path, (12.5, 6.6), "Ring-down after the bump", note) as figure:
         axes = rows_of(figure, len(RINGING), 1, sharey=True)[:, 0]
-        for axis, (label, place) in zip(axes, RINGING.items(), strict=True):
+        for axis, (label, point) in zip(axes, RINGING.items(), strict=True):
             for run, size, colour, line in zip(bumps.quiet, SIZES, COLOURS, LINES, strict=False):
-                motion = run[f"{place}_acc_z"]
+                motion = run[f"{point}_acc_z"]
                 relative = motion / np.max(np.abs(motion[run.time >= end]))
                 time, shown = excerpt(run, end, (0.0, 4.0), relative)
-                words = f"A = {1e3 * size:g} mm"
-                axis.plot(time - BUMP_START_S, shown, color=colour, linestyle=line, label=words)
+                size_label = f"A = {1e3 * size:g} mm"
+                axis.plot(time - BUMP_START_S, shown, color=colour, linestyle=line, label=size_label)
                 axis.axvline(ring_down_time(run.time, motion, end), color=colour, linestyle=":", linewidth=1.3)
             axis.axhspan(-RUNG_DOWN, RUNG_DOWN, color="#e2e2e2", zorder=0)
             axis.set(ylim=(-1.1, 1.1), ylabel=f"{label}\n[-]")
@@ -189,11 +189,12 @@ def ring_down_figure(path: Path, bumps: Bumps) -> None:
         axes[-1].set_xlabel("time after the bump [s]")
 
 
-def _caption(bumps: Bumps, what: str) -> str:
+def _caption(bumps: Bumps, subject: str) -> str:
     run = bumps.noisy[0]
     wheel = run.car.vehicle.wheel_text(run.wheel)
     return (
-        f"{what}. Bump under the {wheel} from t = {BUMP_START_S:g} s; time histories, no averages; {computed_by(run)}"
+        f"{subject}. Bump under the {wheel} from t = {BUMP_START_S:g} s; time histories, no averages; "
+        f"{computed_by(run)}"
     )
 
 
@@ -238,10 +239,10 @@ def side_by_side(path: Path, runs: Sequence[Run], *, start: float, duration: flo
 
 
 def _banner(text: str) -> Picture:
-    """A strip with a text in its middle, (height, width, 3)."""
+    """Return an image of a text centred in a strip, (height, width, 3)."""
     from PIL import Image, ImageDraw
 
     image = Image.new("RGB", (HALF[0], BANNER), (28, 37, 48))
-    place = (HALF[0] / 2, BANNER / 2)
-    ImageDraw.Draw(image).text(place, text, fill=(255, 255, 255), font=font(24, bold=True), anchor="mm")
+    position = (HALF[0] / 2, BANNER / 2)
+    ImageDraw.Draw(image).text(position, text, fill=(255, 255, 255), font=font(24, bold=True), anchor="mm")
     return np.asarray(image)

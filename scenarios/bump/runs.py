@@ -20,7 +20,7 @@ Vector = npt.NDArray[np.float64]
 
 
 def relative_acceleration(run: Run) -> Vector:
-    """Acceleration of the damper top less that of the knuckle over the plate, along the strut axis [m/s2], (n,).
+    """Return the acceleration of damper top minus knuckle over the plate, along the strut axis [m/s2], (n,).
 
     a = n (a_top - a_knuckle), n from the damper bottom to the strut top in the design position. In the vertical alone
     the rotation of the strut would show while it sticks.
@@ -29,7 +29,7 @@ def relative_acceleration(run: Run) -> Vector:
     axis = np.array(points[f"strut_top_{wheel}"]) - np.array(points[f"damper_bottom_{wheel}"])
     direction = axis / np.linalg.norm(axis)
     top, knuckle = (
-        np.array([run[f"{place}_{wheel}_acc_{name}"] for name in AXES]) for place in ("damper_top", "knuckle")
+        np.array([run[f"{point}_{wheel}_acc_{name}"] for name in AXES]) for point in ("damper_top", "knuckle")
     )
     return np.asarray(direction @ (top - knuckle))
 
@@ -49,7 +49,7 @@ PUBLISHED_FRICTION = 125.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Record:
-    """When the bump begins, how long the records with and without noise are, and the film [s]."""
+    """Start of the bump, durations of the records with and without noise, and duration of the film [s]."""
 
     start: float
     noisy: float
@@ -58,11 +58,11 @@ class Record:
 
     @property
     def end(self) -> float:
-        """End of the bump [s]."""
+        """Return the end of the bump [s]."""
         return self.start + BUMP_DURATION_S
 
     def signal(self, size: float, reading: Reading, wheel: str, *, noise: bool = True) -> Signal:
-        """Bump of an amplitude A [m], with or without the random noise of the source.
+        """Return a bump of amplitude A [m], with or without the noise of the thesis.
 
         Args:
             size: A [m].
@@ -74,7 +74,7 @@ class Record:
         signal = bump(
             amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level, wheel=wheel
         )
-        # The film writes the source over its picture, where the text of the generator has no room.
+        # The film shows the name of the source, and the text of the generator is too long for it.
         return replace(signal, source=f"bump {1e3 * size:g} mm")
 
 
@@ -107,15 +107,15 @@ class Bumps:
 
     @property
     def slip_velocity(self) -> float:
-        """That of the parameters [m/s]."""
+        """Return the slip velocity of the parameters [m/s]."""
         return self.noisy[0].car.vehicle.damper.slip_velocity
 
     def first_slip(self, velocity: float) -> dict[float, float | None]:
-        """Friction limit [N] to the first time above a velocity [s], None for never."""
+        """Return friction limit [N] to the first time above a velocity [s], None if never above."""
         return {friction: slip_after(run, self.record.start, velocity) for friction, run in self.by_friction.items()}
 
     def data(self) -> dict[str, Any]:
-        """For `results.json`."""
+        """Return the entries of `results.json`."""
         low = fastest(self.noisy[0])
         times = {"first_slip_s": self.slip_velocity, "first_saturated_s": SATURATED_VELOCITY}
         return {
@@ -133,49 +133,49 @@ class Bumps:
 
 
 def run_bumps(runs: CarRuns, record: Record, reading: Reading, frictions: Sequence[float]) -> Bumps:
-    """All runs of the study, independent ones at once."""
+    """Run all cases of the study, independent runs in parallel."""
     other = OTHER[reading]
     cases = [
-        runs.case(record.signal(size, kind, runs.wheel, noise=noise))
-        for kind, noise in ((reading, True), (reading, False), (other, True))
+        runs.case(record.signal(size, reading_of_case, runs.wheel, noise=noise))
+        for reading_of_case, noise in ((reading, True), (reading, False), (other, True))
         for size in SIZES
     ]
     varied = [runs.case(cases[1].source, [f"damper.coulomb_friction={value!r}"]) for value in frictions]
-    found = runs([*cases, *varied])
+    results = runs([*cases, *varied])
     return Bumps(
         record=record,
-        noisy=found[:2],
-        quiet=found[2:4],
-        other=found[4:6],
+        noisy=results[:2],
+        quiet=results[2:4],
+        other=results[4:6],
         other_reading=other,
-        by_friction=dict(zip(frictions, found[6:], strict=True)),
+        by_friction=dict(zip(frictions, results[6:], strict=True)),
     )
 
 
 def damper_velocity(run: Run) -> Vector:
-    """Velocity of the damper over the plate [m/s], (n,)."""
+    """Return the velocity of the damper over the plate [m/s], (n,)."""
     return np.asarray(run[f"damper_{run.wheel}_velocity"])
 
 
 def fastest(run: Run) -> float:
-    """Largest velocity of the damper over the plate [m/s]."""
+    """Return the largest velocity of the damper over the plate [m/s]."""
     return float(np.max(np.abs(damper_velocity(run))))
 
 
 def saturated_time(run: Run) -> float:
-    """Time with the damper over the plate above 1 mm/s, where the friction is saturated [s]."""
+    """Return the time with the damper over the plate above 1 mm/s, where the friction is saturated [s]."""
     return run.slip_share(run.wheel, SATURATED_VELOCITY) * run.signal.duration
 
 
 def slip_after(run: Run, start: float, velocity: float) -> float | None:
-    """First time [s] of the damper over the plate above a velocity after the bump begins, as if that were at 5 s."""
+    """Return the first time of the damper over the plate above a velocity, for a bump that begins at 5 s [s]."""
     speed = np.abs(damper_velocity(run))
     at = np.flatnonzero((speed > velocity) & (run.time >= start))
     return None if not at.size else float(run.time[at[0]]) - start + BUMP_START_S
 
 
 def when(time: float | None) -> str:
-    """A time [s] in words."""
+    """Return a text for a time [s], or for None."""
     return "never" if time is None else f"{time:.3f} s"
 
 
@@ -186,14 +186,14 @@ RUNG_DOWN = 0.2
 """Rung down when the motion stays below this share of its largest value after the bump."""
 
 BODY = ("seat_rail", "seat", "roof_right_rear", "body_front")
-"""Output points on the body; the RMS over them stands for its vertical motion."""
+"""Output points on the body; the RMS over these points represents the vertical motion of the body."""
 
 POINTS = (*BODY, "suspension_mount_fr", "suspension_mount_fl", "engine")
-"""Points whose ring-down times are told."""
+"""Points whose ring-down times are reported."""
 
 
 def ring_down_time(time: Vector, motion: Vector, end: float, share: float = RUNG_DOWN) -> float:
-    """Time from the end of a bump until |motion| last exceeds a share of its largest value after the bump.
+    """Return the time from the end of a bump until |motion| last exceeds a share of its largest value after the bump.
 
     Args:
         time: [s], (n,).
@@ -211,7 +211,7 @@ def ring_down_time(time: Vector, motion: Vector, end: float, share: float = RUNG
 
 
 def ring_down_times(run: Run, end: float) -> dict[str, float]:
-    """Ring-down times [s] of the body as a whole and of single points."""
-    body = np.sqrt(np.mean([run[f"{place}_acc_z"] ** 2 for place in BODY], axis=0))
-    motions = {"body": body, **{place: run[f"{place}_acc_z"] for place in POINTS}}
+    """Return the ring-down times [s] of the whole body and of single points."""
+    body = np.sqrt(np.mean([run[f"{point}_acc_z"] ** 2 for point in BODY], axis=0))
+    motions = {"body": body, **{point: run[f"{point}_acc_z"] for point in POINTS}}
     return {name: ring_down_time(run.time, motion, end) for name, motion in motions.items()}

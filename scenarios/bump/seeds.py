@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import changes
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Car
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ
@@ -33,22 +33,22 @@ EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "tyre z -20 %": ("bushings.tyre.stiffness.z=200000.0",),
     "D +33 %": ("damper.viscous=3000",),
 }
-"""What is changed to find the reason of a row that disagrees; beside it the other reading, no noise, another band."""
+"""Modifications that test the reason of a disagreement, in addition to the other reading, no noise, another band."""
 
 LOW_EDGE_HZ = 1.5
-"""Lower edge of the noise where it is another one: the level is printed, the band is not."""
+"""Alternative lower edge of the noise [Hz]: the level is printed, the band is not."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BumpSeeds:
-    """What is read off the bumps of all seeds.
+    """Values of the bump runs over all seeds.
 
     Attributes:
-        extremes: A of the bump [m] and key of the point to lowest and highest acceleration [m/s2], (n, 2).
-        fastest: A of the bump to the largest velocity of the damper over the plate [m/s], (n,).
-        stick_end: friction limit [N] to the end of sticking after the high bump, as if that began at 5 s [s], (n,);
-            infinite where it sticks.
-        engine: that of the runs.
+        extremes: (amplitude A of the bump [m], key of the point) to lowest and highest acceleration [m/s2], (n, 2).
+        fastest: amplitude A to the largest velocity of the damper over the shaker plate [m/s], (n,).
+        stick_end: friction limit [N] to the end of sticking for a high bump that begins at 5 s [s], (n,);
+            infinite without slip.
+        engine: engine of the runs.
     """
 
     extremes: Mapping[tuple[float, str], Vector]
@@ -58,11 +58,11 @@ class BumpSeeds:
 
     @property
     def count(self) -> int:
-        """Number of seeds."""
+        """Return the number of seeds."""
         return len(self.fastest[SIZES[0]])
 
     def data(self) -> dict[str, Any]:
-        """For `results.json`."""
+        """Return the entries of `results.json`."""
         return {
             "extremes_over_seeds": {
                 row_key(size, point, word): values[:, column].tolist()
@@ -74,14 +74,14 @@ class BumpSeeds:
 
 
 def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], count: int = SEEDS) -> BumpSeeds:
-    """Run both bumps with many seeds of the noise, and the high one with other friction limits.
+    """Run both bumps with many seeds of the noise, and the high bump also with other friction limits.
 
     Args:
-        runs: the car. The reduced engine runs it, where there is a compiler: the parts turn by less than its
+        runs: runs of the car, with the reduced engine if there is a compiler: the parts rotate by less than its
             limit of validity.
         reading: of the printed amplitude.
-        frictions: limits Fd [N].
-        count: seeds.
+        frictions: friction limits Fd [N].
+        count: number of seeds.
     """
     engine = "reduced" if has_compiler() else "mujoco"
     ends: dict[float, list[float]] = {friction: [] for friction in frictions}
@@ -92,12 +92,12 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
     for seed in range(count):
         for size in SIZES:
             signal = _signal(nominal, size, reading, seed)
-            found = motions(nominal, signal, engine)
-            fastest[size].append(float(np.max(np.abs(found["velocity"]))))
-            for point, values in found.items():
+            recorded = motions(nominal, signal, engine)
+            fastest[size].append(float(np.max(np.abs(recorded["velocity"]))))
+            for point, values in recorded.items():
                 kept.setdefault((size, point), []).append((float(np.min(values)), float(np.max(values))))
         for friction, car in cars.items():  # `found` is that of the high bump
-            speed = np.abs((found if car is nominal else motions(car, signal, engine))["velocity"])
+            speed = np.abs((recorded if car is nominal else motions(car, signal, engine))["velocity"])
             above = np.flatnonzero(speed > SATURATED_VELOCITY)
             ends[friction].append(BUMP_START_S + above[0] * signal.timestep if above.size else np.inf)
     return BumpSeeds(
@@ -109,7 +109,7 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
 
 
 def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeeds) -> dict[str, Mapping[str, float]]:
-    """Means of the extremes with a part of the model changed: label to "A in mm, key of the point, word" to value.
+    """Return label of a modification to means of the extremes by "A in mm, key of the point, word".
 
     Args:
         runs: the car.
@@ -124,20 +124,22 @@ def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeed
         f"noise from {LOW_EDGE_HZ:g} Hz on": (runs.car(), reading, NOISE_RMS, LOW_EDGE_HZ),
         **{label: (car, reading, NOISE_RMS, SHAKER_EDGE_HZ) for label, car in changed.items()},
     }
-    found: dict[str, Mapping[str, float]] = {}
-    for label, (car, kind, noise, edge) in trials.items():
+    extremes: dict[str, Mapping[str, float]] = {}
+    for label, (car, modification, noise, edge) in trials.items():
         values: dict[str, list[float]] = {}
         for size in SIZES:
             for seed in range(seeds.count if noise else 1):
-                for point, motion in motions(car, _signal(car, size, kind, seed, noise, edge), seeds.engine).items():
+                for point, motion in motions(
+                    car, _signal(car, size, modification, seed, noise, edge), seeds.engine
+                ).items():
                     values.setdefault(row_key(size, point, "lowest"), []).append(float(np.min(motion)))
                     values.setdefault(row_key(size, point, "highest"), []).append(float(np.max(motion)))
-        found[label] = {key: float(np.mean(one)) for key, one in values.items()}
-    return found
+        extremes[label] = {key: float(np.mean(samples)) for key, samples in values.items()}
+    return extremes
 
 
 def row_key(size: float, point: str, word: str) -> str:
-    """Key of `scenarios.evidence` of an end of a panel.
+    """Return the key of `scenarios.evidence` of an end of a panel.
 
     Args:
         size: A of the bump [m].
@@ -148,7 +150,7 @@ def row_key(size: float, point: str, word: str) -> str:
 
 
 def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
-    """Accelerations [m/s2] by key of the point and the velocity of the damper over the plate [m/s], 3 s from the bump.
+    """Return accelerations [m/s2] by key of the point, and damper velocity over the plate [m/s], 3 s from the bump.
 
     Args:
         car: the car.
@@ -165,11 +167,11 @@ def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
         "engine_z": "engine_acc_z",
         "roof_z": "roof_right_rear_acc_z",
     }
-    strut = [f"{place}_{wheel}_acc_{axis}" for place in ("damper_top", "knuckle") for axis in AXES]
+    strut = [f"{strut_end}_{wheel}_acc_{axis}" for strut_end in ("damper_top", "knuckle") for axis in AXES]
     run = car.run(signal, engine=engine, channels=[*channels.values(), *strut, f"damper_{wheel}_velocity"])
     shown = (run.time >= RECORD.start) & (run.time <= RECORD.start + SHOWN_S)
-    found = {point: run[channel][shown] for point, channel in channels.items()}
-    return {**found, "relative": relative_acceleration(run)[shown], "velocity": damper_velocity(run)[shown]}
+    recorded = {point: run[channel][shown] for point, channel in channels.items()}
+    return {**recorded, "relative": relative_acceleration(run)[shown], "velocity": damper_velocity(run)[shown]}
 
 
 def _signal(

@@ -47,14 +47,14 @@ from scenarios.comfort_sensitivity.histories import (
 )
 from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 
 QUICK_WHY = f"records of {QUICK.duration:g} s tell it too coarsely"
 
 SURE = f"comfort value against {TITLES['coulomb_friction']}, smooth road"
-"""What short records can judge: friction makes a smooth road worse, by far more than their error."""
+"""Row that short records can judge: friction reduces comfort on a smooth road by far more than their error."""
 
 EDGES_HZ = (0.015, 0.02, 0.025, ROAD_EDGE_HZ, 0.035, 0.05, 0.1)
 """Band edges at which the slip shares are shown [Hz]."""
@@ -94,20 +94,20 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     if rigid:
         more, numbers = beyond_findings(comfort, folder, curves)
         notes += more
-        data |= numbers | plain({"rigid_body_" + name: found for name, found in rigid.items()})
+        data |= numbers | plain({"rigid_body_" + name: entries for name, entries in rigid.items()})
     levels = road_levels(comfort)
     draw_wheel(folder / "wheel.png", comfort, levels)
     trials, louder = (end_trials(comfort), level_trials(comfort)) if beyond else ({}, {})
     data["levels"] = {
         road: {
-            "largest_seat_rail": {name: one.tolist() for name, one in found.largest.items()},
-            "swing": found.swing.tolist(),
+            "largest_seat_rail": {name: entry.tolist() for name, entry in entries.largest.items()},
+            "swing": entries.swing.tolist(),
         }
-        for road, found in levels.items()
+        for road, entries in levels.items()
     }
     data["trials"] = {
-        label: {f"{name}, {road}, {value:g}": one for (name, road, value), one in found.items()}
-        for label, found in trials.items()
+        label: {f"{name}, {road}, {value:g}": entry for (name, road, value), entry in entries.items()}
+        for label, entries in trials.items()
     }
     slip = slip_claims(comfort.nominal(), runs.car().vehicle.damper.slip_velocity)
     claims = [*slip, *order_claims(curves), *size_claims(curves, trials), *level_claims(levels, louder)]
@@ -117,14 +117,14 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="Comfort on a smooth and a rough road (Bommer 2006, chapter 4)",
         claims=claims,
         tyres=comfort.tyres,
-        unjudged={one.name: QUICK_WHY for one in claims if one.name != SURE} if options.quick else {},
+        unjudged={entry.name: QUICK_WHY for entry in claims if entry.name != SURE} if options.quick else {},
         notes=[*notes, *([QUICK_NOTE] if options.quick else [])],
         data=data,
     )
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of this study alone."""
+    """Add the options of this study."""
     parser.add_argument("--source-only", action="store_true", help="only the three parameters of Bommer 2006")
 
 
@@ -132,7 +132,7 @@ main = car_study("comfort_sensitivity", study, comfort_options, add_options)
 
 
 def beyond_cases(comfort: ComfortRuns) -> list[Case]:
-    """All runs that go beyond the source: other dampers and bodies, band edges, both engines on one record."""
+    """Return the runs not in the thesis: other dampers and bodies, band edges, both engines on one record."""
     more = [
         case for base in (DEGRESSIVE, RIGID_BODY) for variation in SOURCE for case in comfort.all_cases(variation, base)
     ]
@@ -161,8 +161,8 @@ def beyond_findings(
     against = {road: comfort.point(0.0, DEGRESSIVE, road, ()) for road in ROAD_RMS}
     damper = comfort.runs.car(DEGRESSIVE).vehicle.damper
     ratios = (
-        f"{100.0 * one.relative:.1f} ± {100.0 * one.relative_error:.2f} % on the {road} road"
-        for road, one in against.items()
+        f"{100.0 * point.relative:.1f} ± {100.0 * point.relative_error:.2f} % on the {road} road"
+        for road, point in against.items()
     )
     notes = [
         f"Degressive damper ({damper.degressive_viscous:g} N s/m up to {damper.degressive_velocity:g} m/s, "
@@ -189,22 +189,22 @@ def beyond_findings(
     notes += ["Band edge of the roads, nominal car:", edge_table(edges), check_table(comfort)]
     return notes, {
         "degressive": plain(degressive),
-        "degressive_against_linear": {road: asdict(one) for road, one in against.items()},
+        "degressive_against_linear": {road: asdict(point) for road, point in against.items()},
         **plain({BODY.name: body, "band_edge": edges}),
     }
 
 
 def corners(comfort: ComfortRuns) -> dict[str, Changes]:
-    """Cars on which both engines are compared, by name: nominal, both ends of each variation, another damper."""
-    found: dict[str, Changes] = {"nominal": ()}
+    """Return name to overrides of the cars for the comparison of both engines: nominal, ends of variations, damper."""
+    changes: dict[str, Changes] = {"nominal": ()}
     for variation in SOURCE:
         cars = comfort.cars(variation)
-        found |= {f"{variation.label}: {value:g}": cars[value] for value in variation.values[:: len(cars) - 1]}
-    return {name: car for name, car in found.items() if car or name == "nominal"} | {"degressive damper": DEGRESSIVE}
+        changes |= {f"{variation.label}: {value:g}": cars[value] for value in variation.values[:: len(cars) - 1]}
+    return {name: car for name, car in changes.items() if car or name == "nominal"} | {"degressive damper": DEGRESSIVE}
 
 
 def check_table(comfort: ComfortRuns) -> str:
-    """Differences of both engines on the first record as a Markdown table."""
+    """Return the differences of both engines on the first record as a Markdown table."""
     if not has_compiler():
         return "The reduced engine was not compared with MuJoCo: it needs numba."
     rows = []

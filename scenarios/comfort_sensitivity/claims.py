@@ -1,4 +1,4 @@
-"""Published statements about comfort on the smooth and the rough road beside ours."""
+"""Rows of published statements about comfort on the smooth and the rough road with our values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PUBLISHED: Mapping[tuple[str, str], Ends] = {
     pair: {value: interval for name, _, road, _, value, interval in COMFORT_ENDS if (name, road) == pair}
     for pair in dict.fromkeys((name, road) for name, _, road, *_ in COMFORT_ENDS)
 }
-"""Parameter and road to the ends of its curve. The curves are not in the text of the source, only the labels of their
+"""(Parameter, road) to the ends of the curve. The text of the thesis contains no curves, only the labels of their
 axes: an end lies in the last interval. The lowest label of 4.4 is unreadable, 99 follows from the ticks."""
 
 FIGURES = {(name, road): figure for name, _, road, figure, *_ in COMFORT_ENDS}
@@ -35,27 +35,28 @@ SAME_INFLUENCE = 0.25
 
 
 def slip_claims(nominal: Mapping[str, Point], slip_velocity: float) -> list[Claim]:
-    """Slip shares of both roads, nominal car."""
+    """Return the rows on the slip shares of the nominal car on both roads."""
     return [
         evidence_claim(
             f"slip_{road}",
             f"slip share of the right damper, {road} road [%]",
-            100.0 * found.slip,
-            f"above {1e3 * slip_velocity:g} mm/s, as in all rows; standard error {100.0 * found.slip_error:.2f} "
-            f"points; {100.0 * found.saturated:.1f} % above 1 mm/s. One band edge for both roads, {ROAD_EDGE_HZ:g} Hz",
+            100.0 * numbers.slip,
+            f"above {1e3 * slip_velocity:g} mm/s, as in all rows; standard error {100.0 * numbers.slip_error:.2f} "
+            f"points; {100.0 * numbers.saturated:.1f} % above 1 mm/s. One band edge for both "
+            f"roads, {ROAD_EDGE_HZ:g} Hz",
             printed=100.0 * PUBLISHED_SLIP[road],
         )
-        for road, found in nominal.items()
+        for road, numbers in nominal.items()
     ]
 
 
 def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
-    """Rising and falling, and which road feels it more."""
+    """Return the rows on the direction of each curve, and on the road with the larger change."""
     trends = [
         PREDICTED.statement(
             f"comfort value against {TITLES[name]}, {road} road",
             f"{'rises' if rising else 'falls'} over the whole range",
-            ", ".join(f"{100.0 * one.relative:.1f}" for one in points) + " %",
+            ", ".join(f"{100.0 * point.relative:.1f}" for point in points) + " %",
             is_monotone(points, rising=rising),
             "from point to point by more than twice the standard error of both",
             place=f"figure {FIGURES[name, road]}",
@@ -67,7 +68,9 @@ def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
     greater = ("greater on the smooth road", "largest minus smallest relative comfort value")
     same = ("about the same", f"ranges within {100.0 * SAME_INFLUENCE:g} % of each other")
     for name, (published, why) in zip(RISING, (greater, greater, same), strict=True):
-        smooth, rough = (100.0 * np.ptp([one.relative for one in curves[name][road]]) for road in ("smooth", "rough"))
+        smooth, rough = (
+            100.0 * np.ptp([point.relative for point in curves[name][road]]) for road in ("smooth", "rough")
+        )
         trends.append(
             PREDICTED.statement(
                 f"influence of {TITLES[name]}, smooth road against rough",
@@ -83,11 +86,11 @@ def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
 
 
 Trials = Mapping[str, Mapping[tuple[str, str, float], float]]
-"""What is changed, to the relative comfort value [%] by parameter, road and value."""
+"""Label of a modification to (parameter, road, value) to relative comfort value [%]."""
 
 
 def size_claims(curves: Mapping[str, Curves], trials: Trials | None = None) -> list[Claim]:
-    """Relative comfort at the ends of the curves.
+    """Return the rows on relative comfort at the ends of the curves.
 
     Args:
         curves: variation to its points.
@@ -95,13 +98,13 @@ def size_claims(curves: Mapping[str, Curves], trials: Trials | None = None) -> l
     """
     claims = []
     for name, word, road, _, value, interval in COMFORT_ENDS:
-        found = _at(curves[name][road], value)
+        point = _at(curves[name][road], value)
         row = (f"comfort_{name}_{road}_{value:g}".replace("+0", ""), _end_name(word, value, road))
-        why = f"standard error {100.0 * found.relative_error:.2f}"
-        claim = evidence_claim(*row, 100.0 * found.relative, why, picture=f"{name}.png")
+        why = f"standard error {100.0 * point.relative_error:.2f}"
+        claim = evidence_claim(*row, 100.0 * point.relative, why, picture=f"{name}.png")
         if not claim.within and trials:
-            why += f"; {reason(interval, {label: one[name, road, value] for label, one in trials.items()})}"
-            claim = evidence_claim(*row, 100.0 * found.relative, why, picture=f"{name}.png")
+            why += f"; {reason(interval, {label: values[name, road, value] for label, values in trials.items()})}"
+            claim = evidence_claim(*row, 100.0 * point.relative, why, picture=f"{name}.png")
         claims.append(claim)
     return claims
 
@@ -111,7 +114,7 @@ def _end_name(word: str, value: float, road: str) -> str:
 
 
 def is_monotone(points: Sequence[Point], *, rising: bool) -> bool:
-    """Whether relative comfort goes one way from each point to the next, by more than twice the error of both."""
+    """Return True if relative comfort rises (falls) at each point by more than twice the error of both points."""
     sign = 1.0 if rising else -1.0
     return all(
         sign * (after.relative - before.relative)

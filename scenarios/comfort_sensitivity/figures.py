@@ -30,7 +30,7 @@ WINDOW_S = 4.0
 """Length of the windows of the spectra [s]."""
 
 MARGINS = Margins(left=1.0, right=0.12, bottom=1.22, top=0.62, across=0.55, down=0.52)
-"""Around the axes of a variation: room for a caption of five lines."""
+"""Margins of the axes of a variation, with space for a caption of five lines."""
 
 ROAD_COLOURS = {"smooth": COLOURS[0], "rough": COLOURS[3]}
 
@@ -52,12 +52,12 @@ def draw_variation(
 
     Args:
         path: PNG file.
-        comfort: what runs the cars.
-        variation: the parameter.
-        curves: its points.
-        base: changes of all its cars.
-        title: of the figure; that of the variation by default.
-        beside: further curves of relative comfort, by label.
+        comfort: runs of the cars.
+        variation: varied parameter.
+        curves: points of the variation.
+        base: overrides of all cars.
+        title: title of the figure, by default that of the variation.
+        beside: label to further curves of relative comfort.
     """
     cars = comfort.cars(variation, base)
     step = max(1, -(-len(cars) // SHOWN))
@@ -153,11 +153,11 @@ def draw_wheel(path: Path, comfort: ComfortRuns, levels: Mapping[str, RoadLevels
     title = "Power spectral density of the wheel's vertical acceleration (figure 2.1)"
     with figure_file(path, (7.6, 5.0), title, caption) as figure:
         axis = figure.subplots()
-        for (road, level), (kind, measured) in zip(levels.items(), MEASURED_PEAKS.items(), strict=True):
+        for (road, level), (surface, measured) in zip(levels.items(), MEASURED_PEAKS.items(), strict=True):
             colour = ROAD_COLOURS[road]
             shown = (level.frequency >= 1.0) & (level.frequency <= 50.0)
             axis.plot(level.frequency[shown], level.wheel[shown], color=colour, label=f"{road} road")
-            axis.axvline(measured, color=colour, linestyle="--", linewidth=0.9, label=f"measured on {kind}")
+            axis.axvline(measured, color=colour, linestyle="--", linewidth=0.9, label=f"measured on {surface}")
         axis.set(xscale="log", yscale="log", xlim=(1.0, 50.0))
         axis.set(xlabel="frequency [Hz]", ylabel="PSD of the knuckle, z [(m/s²)²/Hz]")
         axis.legend(loc="upper left")
@@ -171,7 +171,7 @@ def _history(axis: Any, rail: Vector, look: Mapping[str, Any]) -> None:
 
 
 def _legend_above(axis: Any) -> None:
-    """A legend in room of its own above the curves."""
+    """Draw a legend above the curves, with the axis extended for it."""
     low, high = axis.get_ylim()
     axis.set_ylim(low, high + 0.3 * (high - low))
     axis.legend(loc="upper center", ncols=3, fontsize=7)
@@ -179,9 +179,9 @@ def _legend_above(axis: Any) -> None:
 
 def _spectrum(axis: Any, rail: Vector, lead: float, look: Mapping[str, Any]) -> None:
     record = rail[round(lead * RATE_HZ) + 1 :]
-    found = power_spectral_density(1.0 / RATE_HZ, record, window_s=min(WINDOW_S, record.size / RATE_HZ))
-    inside = (found.frequency >= COMFORT_BAND[0]) & (found.frequency <= COMFORT_BAND[1])
-    axis.plot(found.frequency[inside], found.density[0, inside], **look)
+    spectrum = power_spectral_density(1.0 / RATE_HZ, record, window_s=min(WINDOW_S, record.size / RATE_HZ))
+    inside = (spectrum.frequency >= COMFORT_BAND[0]) & (spectrum.frequency <= COMFORT_BAND[1])
+    axis.plot(spectrum.frequency[inside], spectrum.density[0, inside], **look)
     axis.set(yscale="log", xlim=COMFORT_BAND, xlabel="frequency [Hz]")
     axis.tick_params(which="minor", labelleft=False)
 
@@ -201,7 +201,7 @@ def _comfort(axis: Any, points: Sequence[Point], colour: str, label: str | None,
 
 
 def _two_errors(errors: Sequence[float]) -> list[float]:
-    """Two standard errors in percent; nothing where a single record tells none."""
+    """Return two standard errors [%] of each point; 0 for a single record, which has no error."""
     return [200.0 * float(np.nan_to_num(error)) for error in errors]
 
 
@@ -210,16 +210,16 @@ def _levels() -> str:
 
 
 def setting(comfort: ComfortRuns) -> list[str]:
-    """Paragraphs for `results.md`."""
+    """Return the paragraphs on the conditions for `results.md`."""
     slip_velocity = comfort.runs.car().vehicle.damper.slip_velocity
     levels = ", ".join(
         f"{road} {1e3 * rms:g} mm RMS (velocity PSD {velocity_density(rms):.3g} (m/s)²/Hz)"
         for road, rms in ROAD_RMS.items()
     )
     errors = ", ".join(
-        f"{road} {100.0 * one.comfort_error / one.comfort:.2f} % over the records, "
-        f"{100.0 * one.gaussian_error / one.comfort:.2f} % as a Gaussian road"
-        for road, one in comfort.nominal().items()
+        f"{road} {100.0 * numbers.comfort_error / numbers.comfort:.2f} % over the records, "
+        f"{100.0 * numbers.gaussian_error / numbers.comfort:.2f} % as a Gaussian road"
+        for road, numbers in comfort.nominal().items()
     )
     return [
         f"Made with {car_text(comfort.runs)}; engine {comfort.engine}. Roads: {levels}, {ROAD_EDGE_HZ:g} to 50 Hz, "
@@ -235,7 +235,7 @@ def setting(comfort: ComfortRuns) -> list[str]:
 
 
 def curve_table(label: str, curves: Curves) -> str:
-    """Relative comfort of a variation on both roads as a Markdown table."""
+    """Return the relative comfort of a variation on both roads as a Markdown table."""
     columns = (
         "relative comfort value [%],\nlower is better",
         "comfort value [m/s²]",
@@ -246,48 +246,48 @@ def curve_table(label: str, curves: Curves) -> str:
         label,
         curves,
         columns,
-        lambda one: (
-            f"{100.0 * one.relative:.2f} ± {number(100.0 * one.relative_error)}",
-            f"{one.comfort:.4f} ± {number(one.comfort_error, 4)}",
-            f"{100.0 * one.slip:.1f}, {100.0 * one.saturated:.1f}, {100.0 * one.slip_left:.1f}",
-            f"{one.lowest_load:.0f} ({100.0 * one.pulling:.2g} %)",
+        lambda point: (
+            f"{100.0 * point.relative:.2f} ± {number(100.0 * point.relative_error)}",
+            f"{point.comfort:.4f} ± {number(point.comfort_error, 4)}",
+            f"{100.0 * point.slip:.1f}, {100.0 * point.saturated:.1f}, {100.0 * point.slip_left:.1f}",
+            f"{point.lowest_load:.0f} ({100.0 * point.pulling:.2g} %)",
         ),
     )
 
 
 def _points_table(label: str, curves: Curves, columns: Sequence[str], cells: Callable[[Point], tuple[str, ...]]) -> str:
-    """A row for each value, the cells of one road behind those of the other; the road stands in its first column."""
+    """Return a table with a row for each value: first the cells of one road, then those of the other road."""
     head = [f"{road}: {name}" if name == columns[0] else name for road in curves for name in columns]
     rows = zip(*curves.values(), strict=True)
     return markdown(
-        [label, *head], [[f"{row[0].value:g}", *(cell for one in row for cell in cells(one))] for row in rows]
+        [label, *head], [[f"{row[0].value:g}", *(cell for point in row for cell in cells(point))] for row in rows]
     )
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A standard error, or a question mark where a single record tells none."""
+    """Return a standard error as a text, or a question mark for a single record."""
     return f"{value:.{digits}f}" if np.isfinite(value) else "?"
 
 
 def edge_table(edges: Curves) -> str:
-    """Slip shares and comfort over the band edge of the roads; `value` of the points is the edge [Hz]."""
+    """Return a table of slip shares and comfort over the band edge of the roads, `Point.value` [Hz]."""
     columns = ("slip share, right [%]", "above 1 mm/s", "left", "comfort value [m/s²]")
     return _points_table(
         "lower band edge [Hz]",
         edges,
         columns,
-        lambda one: (
-            f"{100.0 * one.slip:.2f} ± {number(100.0 * one.slip_error)}",
-            f"{100.0 * one.saturated:.1f}",
-            f"{100.0 * one.slip_left:.1f}",
-            f"{one.comfort:.4f} ± {number(one.comfort_error, 4)}",
+        lambda point: (
+            f"{100.0 * point.slip:.2f} ± {number(100.0 * point.slip_error)}",
+            f"{100.0 * point.saturated:.1f}",
+            f"{100.0 * point.slip_left:.1f}",
+            f"{point.comfort:.4f} ± {number(point.comfort_error, 4)}",
         ),
     )
 
 
 def plain(curves: Mapping[str, Curves]) -> dict[str, dict[str, list[dict[str, float]]]]:
-    """All points of variations for a JSON file."""
+    """Return all points of variations as plain data for a JSON file."""
     return {
-        name: {road: [asdict(one) for one in points] for road, points in by_road.items()}
+        name: {road: [asdict(point) for point in points] for road, points in by_road.items()}
         for name, by_road in curves.items()
     }

@@ -1,4 +1,4 @@
-"""Statements of chapter 4 about the histories: their level, which car moves less, and what the wheel does."""
+"""Rows of chapter 4 on time histories: levels, cars with less motion, and wheel motion."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from vehicle.signals.analysis.segments import window_extremes
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import signal_of
-from vehicle.studies.sweeps.evaluation import recordings_of
+from vehicle.studies.sweeps.case_evaluation import recordings_of
 
 Vector = npt.NDArray[np.float64]
 
@@ -44,14 +44,14 @@ MEASURED_PEAKS = {"asphalt": 20.0, "cobbles": 13.0}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadLevels:
-    """Histories of one road, over all records.
+    """Values of the time histories on one road, over all records.
 
     Attributes:
-        largest: figure to the largest |vertical acceleration of the seat rail| over all its cars in each 0.5 s
+        largest: figure to the largest |vertical acceleration of the seat rail| over its cars in each 0.5 s
             [m/s2], (w,).
-        seat_rail: name of the parameter and its value to the RMS of the vertical acceleration of each record [m/s2],
+        seat_rail: (parameter, value) to the RMS of the vertical acceleration of the seat rail in each record [m/s2],
             (records,).
-        apart: the same to the RMS of the difference to the nominal car [m/s2], (records,).
+        apart: (parameter, value) to the RMS of the difference to the nominal car [m/s2], (records,).
         swing: highest less lowest displacement of the road in each 30 s [m], (s,).
         frequency, wheel: lines [Hz] and mean PSD of the vertical acceleration of the knuckle [(m/s2)2/Hz], (n,).
     """
@@ -65,12 +65,12 @@ class RoadLevels:
 
 
 def ends_of(comfort: ComfortRuns, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
-    """Cars at both ends of a variation, and the nominal one, by the value of the parameter.
+    """Return value of the parameter to overrides, for the cars at both ends of a variation and the nominal car.
 
     Args:
-        comfort: what runs them.
-        variation: the parameter.
-        base: changes that all have.
+        comfort: runs of the cars.
+        variation: varied parameter.
+        base: overrides of all cars.
     """
     cars = comfort.cars(variation, base)
     kept = {variation.values[0], variation.values[-1]}
@@ -78,7 +78,7 @@ def ends_of(comfort: ComfortRuns, variation: Variation, base: Changes = ()) -> d
 
 
 def road_levels(comfort: ComfortRuns) -> dict[str, RoadLevels]:
-    """Histories of both roads, the lead left out."""
+    """Return the values of the histories on both roads, without the lead."""
     return {road: _levels_of(comfort, road) for road in ROAD_RMS}
 
 
@@ -94,13 +94,13 @@ def _levels_of(comfort: ComfortRuns, road: str) -> RoadLevels:
         rails = dict(zip(cars, comfort.histories(cars, road, record=number), strict=True))
         nominal = rails[()][record]
         for name, ends in variations.items():
-            together = [rails[car][record] for car in ends.values()]
-            for value, rail in zip(ends, together, strict=True):
+            histories = [rails[car][record] for car in ends.values()]
+            for value, rail in zip(ends, histories, strict=True):
                 sizes.setdefault((name, value), []).append(float(np.std(rail)))
                 apart.setdefault((name, value), []).append(float(np.std(rail - nominal)))
-            for figure, *_ in (one for one in LEVELS if one[1:3] == (name, road)):
-                found = [window_extremes(1.0 / RATE_HZ, rail, WINDOW_S) for rail in together]
-                largest.setdefault(figure, []).append(np.max(found, axis=0))
+            for figure, *_ in (level for level in LEVELS if level[1:3] == (name, road)):
+                values = [window_extremes(1.0 / RATE_HZ, rail, WINDOW_S) for rail in histories]
+                largest.setdefault(figure, []).append(np.max(values, axis=0))
         case = comfort.cases((), road)[number]
         signal = signal_of(case.source)
         ((wheel, plate),) = signal.displacement.items()
@@ -112,9 +112,9 @@ def _levels_of(comfort: ComfortRuns, road: str) -> RoadLevels:
         frequency = spectrum.frequency
         spectra.append(spectrum.density[0])
     return RoadLevels(
-        largest={figure: np.concatenate(found) for figure, found in largest.items()},
-        seat_rail={key: np.array(found) for key, found in sizes.items()},
-        apart={key: np.array(found) for key, found in apart.items()},
+        largest={figure: np.concatenate(values) for figure, values in largest.items()},
+        seat_rail={key: np.array(values) for key, values in sizes.items()},
+        apart={key: np.array(values) for key, values in apart.items()},
         swing=np.concatenate(swings),
         frequency=frequency,
         wheel=np.mean(spectra, axis=0),
@@ -122,11 +122,11 @@ def _levels_of(comfort: ComfortRuns, road: str) -> RoadLevels:
 
 
 def level_claims(levels: Mapping[str, RoadLevels], trials: Mapping[str, Mapping[str, float]]) -> list[Claim]:
-    """Level of the seat rail on both roads, swing of the road.
+    """Return the rows on the level of the seat rail on both roads, and on the swing of the road.
 
     Args:
-        levels: of both roads.
-        trials: label of a change to the mean of each figure with it, as evidence for the reason of a disagreement.
+        levels: values of the histories on both roads.
+        trials: label of a modification to the mean of each figure, as evidence for the reason of a disagreement.
     """
     rows = []
     for figure, name, road, *_ in LEVELS:
@@ -135,7 +135,7 @@ def level_claims(levels: Mapping[str, RoadLevels], trials: Mapping[str, Mapping[
         why = f"nominal car and both ends of {TITLES[name]}; the label is that of an axis that holds all curves"
         claim = evidence_claim(key, row, ours, why, picture=f"{name}.png")
         if not claim.within and trials:
-            means = {label: found[figure] for label, found in trials.items()}
+            means = {label: values[figure] for label, values in trials.items()}
             why += f"; means of {reason(evidence_of(key).interval, means)}"
             claim = evidence_claim(key, row, ours, why, picture=f"{name}.png")
         rows.append(claim)
@@ -154,7 +154,7 @@ def level_claims(levels: Mapping[str, RoadLevels], trials: Mapping[str, Mapping[
 
 
 def history_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
-    """Which car moves less, as the histories of figures 4.1 to 4.10 show it."""
+    """Return the rows on the cars with less motion in the histories of figures 4.1 to 4.10."""
     friction, damping, stiffness = SOURCE
     return [
         _lower(levels, friction, "4.1", rising=True),
@@ -181,13 +181,19 @@ def _lower(levels: Mapping[str, RoadLevels], variation: Variation, figure: str, 
 
 
 def _share(level: RoadLevels, name: str) -> float:
-    """Largest RMS of the difference to the nominal car over the RMS of that, over the values of a parameter [-]."""
-    ratios = [np.mean(found) / np.mean(_nominal(level, name)) for (one, _), found in level.apart.items() if one == name]
+    """Return the largest RMS of the difference to the nominal car over its RMS, over the values of a parameter [-]."""
+    ratios = [
+        np.mean(ratio) / np.mean(_nominal(level, name))
+        for (parameter, _), ratio in level.apart.items()
+        if parameter == name
+    ]
     return float(np.max(ratios))
 
 
 def _nominal(level: RoadLevels, name: str) -> Vector:
-    return next(level.seat_rail[key] for key, found in level.apart.items() if key[0] == name and not found.any())
+    return next(
+        level.seat_rail[key] for key, difference in level.apart.items() if key[0] == name and not difference.any()
+    )
 
 
 def _clearer(levels: Mapping[str, RoadLevels], variation: Variation, figure: str) -> Claim:
@@ -204,23 +210,23 @@ def _clearer(levels: Mapping[str, RoadLevels], variation: Variation, figure: str
 
 
 def _small(levels: Mapping[str, RoadLevels], variation: Variation, others: Sequence[Variation]) -> Claim:
-    found = {road: _share(level, variation.name) for road, level in levels.items()}
-    least = min(_share(level, other.name) for level in levels.values() for other in others)
-    texts = ", ".join(f"{100.0 * value:.0f} % of the nominal motion ({road})" for road, value in found.items())
+    shares = {road: _share(level, variation.name) for road, level in levels.items()}
+    smallest = min(_share(level, other.name) for level in levels.values() for other in others)
+    texts = ", ".join(f"{100.0 * value:.0f} % of the nominal motion ({road})" for road, value in shares.items())
     return PREDICTED.statement(
         f"differences of the seat rail's histories with {TITLES[variation.name]}",
         "very small",
         texts,
-        max(found.values()) < least,
+        max(shares.values()) < smallest,
         f"RMS as above; smaller on both roads than every difference with Fd or mount stiffness (at least "
-        f"{100.0 * least:.0f} %)",
+        f"{100.0 * smallest:.0f} %)",
         place="figures 4.5 and 4.6",
         picture=f"{variation.name}.png",
     )
 
 
 def wheel_modes(comfort: ComfortRuns) -> dict[float, float]:
-    """Vertical wheel mode of the matrices, dampers stuck [Hz], by the stiffness of the suspension mount [N/m]."""
+    """Return mount stiffness [N/m] to frequency of the vertical wheel mode of the matrices, dampers stuck [Hz]."""
     lines, wheel = np.arange(10.0, 50.0, 0.02), comfort.runs.car().vehicle.shaker_wheel
     return {
         value: phase_resonance(
@@ -231,20 +237,20 @@ def wheel_modes(comfort: ComfortRuns) -> dict[float, float]:
 
 
 def amplification_claim(nominal: Mapping[str, Point]) -> Claim:
-    """Comfort value over the RMS of the road, nominal car on both roads."""
-    found = {road: one.comfort / (1e3 * ROAD_RMS[road]) for road, one in nominal.items()}
+    """Return the row on the comfort value over the RMS of the road, for the nominal car on both roads."""
+    amplification = {road: numbers.comfort / (1e3 * ROAD_RMS[road]) for road, numbers in nominal.items()}
     return PREDICTED.statement(
         "amplification from road to seat rail, smooth road against rough",
         "higher for a low level than for a high one",
-        ", ".join(f"{road} {value:.4f} m/s2 per mm" for road, value in found.items()),
-        found["smooth"] > found["rough"],
+        ", ".join(f"{road} {value:.4f} m/s2 per mm" for road, value in amplification.items()),
+        amplification["smooth"] > amplification["rough"],
         "comfort value of the nominal car over the RMS of the road; one road at two levels",
         place="chapter 4",
     )
 
 
 def stiffness_claim(wheel_mode: Mapping[float, float]) -> Claim:
-    """Frequency of the vertical wheel mode, dampers stuck, against the stiffness of the suspension mount."""
+    """Return the row on the frequency of the vertical wheel mode, dampers stuck, over the mount stiffness."""
     values = sorted(wheel_mode)
     return PREDICTED.statement(
         "vertical wheel mode against mount stiffness",
@@ -257,15 +263,15 @@ def stiffness_claim(wheel_mode: Mapping[float, float]) -> Claim:
 
 
 def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
-    """Statements about a car measured on roads that nobody describes, beside ours on the roads of chapter 4."""
+    """Return the rows on a car measured on undescribed roads, with our values on the roads of chapter 4."""
     peaks = {road: wheel_peak(level) for road, level in levels.items()}
     sizes = {road: _rms(level) for road, level in levels.items()}
     unknown = (
-        "neither the car nor its roads nor the speed are told; ours stands on one plate, and its road falls as 1/f2"
+        "neither the car nor its roads nor the speed are described; our car is on one plate, and its road falls as 1/f2"
     )
     rows = [
         NOT_TESTABLE.number(
-            f"peak of the wheel's vertical acceleration, measured on {kind} [Hz]",
+            f"peak of the wheel's vertical acceleration, measured on {surface} [Hz]",
             printed,
             peaks[road][0],
             1.0,
@@ -273,7 +279,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
             place="figure 2.1",
             picture="wheel.png",
         )
-        for (kind, printed), road in zip(MEASURED_PEAKS.items(), ROAD_RMS, strict=True)
+        for (surface, printed), road in zip(MEASURED_PEAKS.items(), ROAD_RMS, strict=True)
     ]
     (low, narrow), (high, wide) = peaks["smooth"], peaks["rough"]
     rows.append(
@@ -303,7 +309,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
 
 
 def wheel_peak(level: RoadLevels) -> tuple[float, float]:
-    """Frequency of the largest line of the wheel's PSD and its width at half the power [Hz]."""
+    """Return frequency and half-power width of the largest line of the PSD of the wheel [Hz]."""
     inside = (level.frequency >= WHEEL_BAND[0]) & (level.frequency <= WHEEL_BAND[1])
     frequency, density = level.frequency[inside], level.wheel[inside]
     above = frequency[density >= 0.5 * np.max(density)]

@@ -67,7 +67,7 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     wide = np.arange(0.02, 30.0, 0.02)
     quarter, half = quarter_responses(parameters, lines), half_responses(parameters, wide)
     roads = {"highway": parameters.highway, "city": parameters.city}
-    found = {
+    holding = {
         road: {measure: road_holding(parameters, measure, density, damping) for measure in MEASURES}
         for road, density in roads.items()
     }
@@ -80,24 +80,24 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     claims = [
         *ratio_claims(parameters),
         *quarter_response_claims(parameters, lines, quarter),
-        *quarter_optimum_claims(parameters, found["highway"]["printed"], "printed"),
-        *quarter_optimum_claims(parameters, found["highway"]["physical"], "physical"),
+        *quarter_optimum_claims(parameters, holding["highway"]["printed"], "printed"),
+        *quarter_optimum_claims(parameters, holding["highway"]["physical"], "physical"),
         *half_response_claims(parameters, wide, half),
-        *half_optimum_claims(found["highway"]["printed"], "printed"),
-        *rate_claims(parameters, found["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
-        *half_optimum_claims(found["highway"]["physical"], "physical"),
+        *half_optimum_claims(holding["highway"]["printed"], "printed"),
+        *rate_claims(parameters, holding["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
+        *half_optimum_claims(holding["highway"]["physical"], "physical"),
         *curve_claims(curves),
     ]
     curve_figure(folder, curves)
     response_figures(folder, lines, quarter, wide, half)
-    for road, measures in found.items():
+    for road, measures in holding.items():
         optimum_figure(folder, measures, road)
-    iteration_figure(folder, found["highway"]["printed"], printed)
+    iteration_figure(folder, holding["highway"]["printed"], printed)
     for name, trade in trades.items():
         trade_off_figure(folder / f"trade_off_{name.replace(' ', '_')}.png", trade, name.capitalize())
-    notes = [_optimum_table(found, roads), _trade_note(trades), _fit_note(parameters)]
+    notes = [_optimum_table(holding, roads), _trade_note(trades), _fit_note(parameters)]
     data: dict[str, Any] = {
-        "optima": {road: {m: _optimum_data(one) for m, one in row.items()} for road, row in found.items()},
+        "optima": {road: {m: _optimum_data(result) for m, result in row.items()} for road, row in holding.items()},
         "trade_off": {name: _trade_data(trade) for name, trade in trades.items()},
         "parameters": as_table(parameters),
         "complete_car_quarter": as_table(cars["complete car"]),
@@ -108,17 +108,17 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
     return Findings(title=TITLE, claims=claims, tyres=VERTICAL_TYRES, unjudged=None, notes=notes, data=data)
 
 
-def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:
+def _optimum_table(road_holding: Mapping[str, Mapping[str, RoadHolding]], roads: Mapping[str, ExponentialRoad]) -> str:
     heads = ("road", "measure", "quarter car", "half car, equal: front", "rear", "iteration: front, rear")
     rows = []
-    for road, measures in found.items():
-        for name, one in measures.items():
-            last, (front, rear, values) = one.continuous[-1], one.joint
-            optima = (f"{best.damping:.0f}" for best in (one.quarter_optimum, *one.equal_optima))
+    for road, measures in road_holding.items():
+        for name, result in measures.items():
+            last, (front, rear, values) = result.continuous[-1], result.joint
+            optima = (f"{best.damping:.0f}" for best in (result.quarter_optimum, *result.equal_optima))
             iterated = (f"{last.front:.0f}, {last.rear:.0f}", "{:.3f}, {:.3f}".format(*last.fluctuation))
             joint = (f"{front:.0f}, {rear:.0f}", "{:.3f}, {:.3f}".format(*values))
             rows.append((road, name, *optima, *iterated, *joint))
-    heights = " and ".join(
+    maxima_text = " and ".join(
         f"{1e3 * math.sqrt(road.roughness / road.decay):.0f} mm ({name})" for name, road in roads.items()
     )
     return "\n\n".join(
@@ -127,7 +127,7 @@ def _optimum_table(found: Mapping[str, Mapping[str, RoadHolding]], roads: Mappin
             markdown((*heads, "R front, rear", "joint optimum: front, rear", "R front, rear"), rows),
             "The iteration lets each end look after its own tyre, the joint optimum (scipy.optimize, Nelder-Mead) "
             "after the sum of both. Physical ratios above 1/3 mean that the tyres leave these roads: the printed "
-            f"densities have an RMS height of {heights}, so the values rank dampers and no more.",
+            f"densities have an RMS height of {maxima_text}, so the values rank dampers and no more.",
         ]
     )
 
@@ -137,7 +137,7 @@ def _trade_note(trades: Mapping[str, TradeOff]) -> str:
     rows = []
     for name, trade in trades.items():
         load, acceleration, travel = (
-            float(np.interp(trade.own, trade.damping, [getattr(one, key) for one in trade.measures["C"]]))
+            float(np.interp(trade.own, trade.damping, [getattr(measure, key) for measure in trade.measures["C"]]))
             for key in ("tyre_load", "acceleration", "travel")
         )
         best = f"{trade.best('acceleration'):.0f} N s/m"
@@ -166,22 +166,24 @@ def _fit_note(parameters: DamperChoiceParameters) -> str:
 
 def _refit_note(refit: Mapping[str, Any]) -> str:
     lines = ["Refit (sum of squared residuals, each over its scale):", ""]
-    for name, one in refit.items():
-        lines.append(f"- {name}: {one['cost']:.2f}; " + ", ".join(f"{k} {v:.5g}" for k, v in one["values"].items()))
+    for name, fitted in refit.items():
+        lines.append(
+            f"- {name}: {fitted['cost']:.2f}; " + ", ".join(f"{k} {v:.5g}" for k, v in fitted["values"].items())
+        )
     return "\n".join(lines)
 
 
-def _optimum_data(one: RoadHolding) -> dict[str, Any]:
-    front, rear, values = one.joint
+def _optimum_data(result: RoadHolding) -> dict[str, Any]:
+    front, rear, values = result.joint
     return {
-        "quarter_car": {"damping": one.quarter_optimum.damping, "value": one.quarter_optimum.value},
-        "half_car_equal": [{"damping": best.damping, "value": best.value} for best in one.equal_optima],
-        "iteration_read_off": [as_table(step) for step in one.read_off],
-        "iteration": [as_table(step) for step in one.continuous],
+        "quarter_car": {"damping": result.quarter_optimum.damping, "value": result.quarter_optimum.value},
+        "half_car_equal": [{"damping": best.damping, "value": best.value} for best in result.equal_optima],
+        "iteration_read_off": [as_table(step) for step in result.read_off],
+        "iteration": [as_table(step) for step in result.continuous],
         "joint": {"front": front, "rear": rear, "values": [float(value) for value in values]},
-        "damping": one.damping.tolist(),
-        "quarter_car_curve": one.quarter.tolist(),
-        "half_car_curves": one.equal.tolist(),
+        "damping": result.damping.tolist(),
+        "quarter_car_curve": result.quarter.tolist(),
+        "half_car_curves": result.equal.tolist(),
     }
 
 
@@ -189,7 +191,7 @@ def _trade_data(trade: TradeOff) -> dict[str, Any]:
     return {
         "damping": trade.damping.tolist(),
         "own_damping": trade.own,
-        "classes": {road: [as_table(one) for one in row] for road, row in trade.measures.items()},
+        "classes": {road: [as_table(measure) for measure in row] for road, row in trade.measures.items()},
     }
 
 
@@ -213,12 +215,12 @@ def _refit(parameters: DamperChoiceParameters) -> dict[str, Any]:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of this study alone."""
-    parser.add_argument("--refit", action="store_true", help="repeat the fit of the parameters and write it beside")
+    """Add the options of this study."""
+    parser.add_argument("--refit", action="store_true", help="repeat the fit of the parameters and report it")
 
 
 def load(options: argparse.Namespace) -> DamperChoiceParameters:
-    """The parameters."""
+    """Return the parameters."""
     return damper_choice_parameters(options.parameters or FITTED)
 
 

@@ -1,4 +1,4 @@
-"""Printed statements about the choice of dampers beside what the equations say."""
+"""Rows of printed statements about the choice of dampers with the results of the equations."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIO
 from scenarios.damper_choice.response_features import crossing, last_peak, local_peaks, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
 from scenarios.places import placed
-from vehicle.engines.lumped.half_car_rider import ENDS
+from vehicle.engines.lumped.half_car_rider_model import ENDS
 from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 
@@ -39,11 +39,13 @@ ASIDE = 1500.0
 
 
 def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
-    """Rows on the damping ratios: the fit of sqrt(k m) to several printed ratios at once."""
+    """Return the rows on the damping ratios: the fit of sqrt(k m) to several printed ratios."""
     quarter, half = parameters.quarter_car, parameters.half_car
     tyres = (*quarter_car_model(quarter).tyres, *half_car_model(half).tyres)
     names = (("quarter car", QUARTER_RATIOS), ("half car front", FRONT_RATIOS), ("half car rear", REAR_RATIOS))
-    ends = [(*one, t.axle.suspension_stiffness, t.sprung_share) for one, t in zip(names, tyres, strict=True)]
+    ends = [
+        (*axle_names, t.axle.suspension_stiffness, t.sprung_share) for axle_names, t in zip(names, tyres, strict=True)
+    ]
     why = "c / (2 sqrt(k m)); one sqrt(k m) is fitted to four printed ratios, so each may be off by its last digit"
     rows = [
         FITTED.number(f"{name}: damping ratio at {c:.0f} N s/m", printed, c / (2.0 * np.sqrt(k * m)), 0.011, why)
@@ -57,12 +59,12 @@ def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
 def quarter_response_claims(
     parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
 ) -> list[Claim]:
-    """Rows on figures 2 and 3.
+    """Return the rows on figures 2 and 3.
 
     Args:
-        parameters: the quarter car.
-        lines: [Hz], (m,).
-        responses: |response| of wheel and body; damping [N s/m] -> (2, m).
+        parameters: parameters of the quarter car.
+        lines: frequencies [Hz], (m,).
+        responses: damping [N s/m] to |response| of wheel and body, (2, m).
     """
     wheel = np.array([responses[c][0] for c in QUARTER_DAMPING])
     body = np.array([responses[c][1] for c in QUARTER_DAMPING])
@@ -106,16 +108,16 @@ def quarter_response_claims(
 
 
 def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
-    """Row on the height of the second maximum of the wheel."""
-    dampings, heights = (4000.0, 3000.0, 2500.0), []
+    """Return the row on the height of the second maximum of the wheel."""
+    dampings, maxima = (4000.0, 3000.0, 2500.0), []
     for c in dampings:
         curve = np.abs(quarter_car_model(parameters.quarter_car, c).response(lines))[0]
-        heights.append(float(curve[np.searchsorted(lines, last_peak(lines, curve))]))
+        maxima.append(float(curve[np.searchsorted(lines, last_peak(lines, curve))]))
     return PREDICTED.statement(
         "the second maximum of the wheel grows as the damping falls",
         "grows",
-        f"{_values(np.array(heights))} m/m at {', '.join(f'{c:.0f}' for c in dampings)} N s/m",
-        bool(np.all(np.diff(heights) > 0.0)),
+        f"{_values(np.array(maxima))} m/m at {', '.join(f'{c:.0f}' for c in dampings)} N s/m",
+        bool(np.all(np.diff(maxima) > 0.0)),
         "last local maximum up to 15 Hz",
     )
 
@@ -123,7 +125,7 @@ def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
 def half_response_claims(
     parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
 ) -> list[Claim]:
-    """Rows on figures 5 to 8; arguments as of `quarter_response_claims`, responses of the half car."""
+    """Return the rows on figures 5 to 8; arguments as in `quarter_response_claims`, for the half car."""
     stack = np.array([responses[c] for c in HALF_DAMPING])  # (damping, coordinate, line)
     rows = []
     for end, (name, figure) in enumerate((("front", 5), ("rear", 6))):
@@ -171,15 +173,16 @@ def half_response_claims(
     return rows
 
 
-def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHolding, measure: str) -> list[Claim]:
-    """Rows on figure 9 for one measure."""
-    best = found.quarter_optimum
+def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: RoadHolding, measure: str) -> list[Claim]:
+    """Return the rows on figure 9 for one measure."""
+    best = road_holding.quarter_optimum
     below, above = (
-        float(np.interp(best.damping + shift, found.damping, found.quarter)) - best.value for shift in (-ASIDE, ASIDE)
+        float(np.interp(best.damping + shift, road_holding.damping, road_holding.quarter)) - best.value
+        for shift in (-ASIDE, ASIDE)
     )
-    kind = FITTED if measure == "printed" else COMPARED
+    row_maker = FITTED if measure == "printed" else COMPARED
     rows = [
-        kind.number(
+        row_maker.number(
             f"quarter car optimum damping, {measure} measure [N s/m]",
             3750.0,
             best.damping,
@@ -217,24 +220,26 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, found: RoadHoldin
     return placed(rows, "figure 9", PICTURES[9])
 
 
-def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
-    """Rows on figures 10 to 13 for one measure; the values of R only for the printed one."""
-    front, rear = found.equal_optima
-    first, second, third = found.read_off[:3]
-    kind = FITTED if measure == "printed" else COMPARED
+def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
+    """Return the rows on figures 10 to 13 for a measure; values of R only for the printed measure."""
+    front, rear = road_holding.equal_optima
+    first, second, third = road_holding.read_off[:3]
+    row_maker = FITTED if measure == "printed" else COMPARED
     why = "printed to 250 N s/m"
     if measure == "physical":
         why += "; the source optimises the printed measure, to which the car is fitted: here for comparison"
     rows = [
-        kind.number(f"front optimum, equal dampers, {measure} measure [N s/m]", 4000.0, front.damping, READING, why),
-        kind.number(
+        row_maker.number(
+            f"front optimum, equal dampers, {measure} measure [N s/m]", 4000.0, front.damping, READING, why
+        ),
+        row_maker.number(
             f"rear optimum, equal dampers, {measure} measure [N s/m]",
             3125.0,
             rear.damping,
             2.0 * READING,
             f"{why}; both 3000 and 3250 are printed, their middle is compared",
         ),
-        kind.statement(
+        row_maker.statement(
             f"optimum front above rear, {measure} measure",
             "front above rear",
             f"front {front.damping:.0f}, rear {rear.damping:.0f} N s/m with equal dampers; front {second.front:.0f}, "
@@ -243,9 +248,10 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             "the rear wheel is heavier than the front one in the fitted car",
         ),
     ]
-    for end, (best, curve) in enumerate(zip(found.equal_optima, found.equal, strict=True)):
+    for end, (best, curve) in enumerate(zip(road_holding.equal_optima, road_holding.equal, strict=True)):
         below, above = (
-            float(np.interp(best.damping + shift, found.damping, curve)) - best.value for shift in (-ASIDE, ASIDE)
+            float(np.interp(best.damping + shift, road_holding.damping, curve)) - best.value
+            for shift in (-ASIDE, ASIDE)
         )
         rows.append(
             (PREDICTED if measure == "printed" else COMPARED).statement(
@@ -259,7 +265,7 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
     rows = placed(rows, "figure 10", PICTURES[9])
     for step, printed, figure in ((first, 4250.0, 11), (second, 3000.0, 12), (third, 4250.0, 13)):
         rows.append(
-            kind.number(
+            row_maker.number(
                 f"step {figure - 10}: {step.changed} damping, {measure} measure [N s/m]",
                 printed,
                 step.damping,
@@ -270,11 +276,12 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
             )
         )
     rows.append(
-        kind.statement(
+        row_maker.statement(
             f"iteration converges in three steps, {measure} measure",
             "3 steps",
-            f"{len(found.read_off)} steps: " + ", ".join(f"{s.changed} {s.damping:.0f}" for s in found.read_off),
-            len(found.read_off) == 3,
+            f"{len(road_holding.read_off)} steps: "
+            + ", ".join(f"{s.changed} {s.damping:.0f}" for s in road_holding.read_off),
+            len(road_holding.read_off) == 3,
             "each end read among multiples of 250 N s/m, as printed",
             place="section 4.2",
             picture=ITERATION,
@@ -283,8 +290,10 @@ def half_optimum_claims(found: RoadHolding, measure: str) -> list[Claim]:
     return rows
 
 
-def rate_claims(parameters: DamperChoiceParameters, found: RoadHolding, at_front: Array, at_rear: Array) -> list[Claim]:
-    """Rows on the values of R of the printed measure.
+def rate_claims(
+    parameters: DamperChoiceParameters, road_holding: RoadHolding, at_front: Array, at_rear: Array
+) -> list[Claim]:
+    """Return the rows on the values of R of the printed measure.
 
     Args:
         parameters: vehicle, road, bands.
@@ -292,7 +301,7 @@ def rate_claims(parameters: DamperChoiceParameters, found: RoadHolding, at_front
         at_front: R with 4000 N s/m at both ends.
         at_rear: R with 3250 N s/m at both ends.
     """
-    first, second, third = found.read_off[:3]
+    first, second, third = road_holding.read_off[:3]
     rows = []
     for name, printed, ours in (
         ("front, equal dampers 4000 N s/m", 2.25, at_front[0]),
@@ -334,7 +343,7 @@ def _regions(
     printed_edge: str,
     why: tuple[str, str] = ("", ""),
 ) -> list[Claim]:
-    """Rows on the three frequency regions of a wheel response; `why` holds an experiment for each of both rows."""
+    """Return the rows on the three frequency regions of a wheel response; `why` has a note for each of two rows."""
     softest, firmest = curves[0], curves[-1]
     middle, high = (lines > 3.0) & (lines < 5.0), lines > 8.0
     apart = spread_of(curves)
@@ -342,7 +351,7 @@ def _regions(
     beyond = float(lines[np.flatnonzero(apart > SAME)[0]])
     above = firmest > softest
     change = crossing(lines, softest, firmest)
-    extra = [f"; {one}" if one else "" for one in why]
+    extra = [f"; {note}" if note else "" for note in why]
     return [
         PREDICTED.statement(
             f"{name}: no effect of damping below {printed_edge}",

@@ -1,7 +1,8 @@
-"""Damper curves with other coefficients in bump and rebound, at low and high velocity: an experiment beside the text.
+"""Experiment with damper curves of different coefficients in bump and rebound, at low and high velocity.
 
-The introduction of the source says what is usual, and prints neither a curve nor a number; its models have one
-coefficient for each damper. Here the fitted quarter car meets the printed highway with three dampers of the same work.
+The introduction of the paper (IOSRJEN 2014) describes usual curves without a curve or a number; its models have one
+coefficient for each damper. The experiment runs the fitted quarter car on the printed highway with three dampers of
+equal work.
 """
 
 from __future__ import annotations
@@ -16,10 +17,10 @@ from scenarios.charts import chart, lines
 from scenarios.claims import NOT_TESTABLE, Claim
 from scenarios.places import placed
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.linear.parts import ROAD, Network, masses_of
+from vehicle.engines.linear.network import ROAD, Network, masses_of
 from vehicle.engines.linear.system import Slide
-from vehicle.engines.lumped.half_car_rider import axle_links
-from vehicle.engines.lumped.marched_solution import marched_solution
+from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
+from vehicle.engines.lumped.half_car_rider_model import axle_links
 from vehicle.engines.lumped.road_holding import exponential_density, quarter_car_model
 from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 
@@ -29,7 +30,7 @@ RATIO = 2.0
 """Of the coefficients at low and high velocity, and in rebound and bump [-]."""
 
 STEP, SETTLED = 2e-3, 2.0
-"""Step of the march, and time after which the start from rest has died away [s]."""
+"""Step of the time integration, and decay time of the transient from rest [s]."""
 
 SEEDS = (2014, 2015, 2016, 2017)
 
@@ -52,13 +53,13 @@ class FourSlopes:
     knee: float
 
     def force(self, velocity: npt.ArrayLike) -> Array:
-        """Force [N] at a velocity [m/s]."""
+        """Return the force [N] at a velocity [m/s]."""
         v = np.asarray(velocity, dtype=float)
         inner = np.clip(v, -self.knee, self.knee)
         return np.asarray(np.where(v < 0.0, self.low_bump, self.low_rebound) * inner + self._high(v) * (v - inner))
 
     def slope(self, velocity: npt.ArrayLike) -> Array:
-        """Derivative d F / d v [N s/m]."""
+        """Return the derivative d F / d v [N s/m]."""
         v = np.asarray(velocity, dtype=float)
         low = np.where(v < 0.0, self.low_bump, self.low_rebound)
         return np.asarray(np.where(np.abs(v) < self.knee, low, self._high(v)))
@@ -91,15 +92,15 @@ class Compared:
 
 
 def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compared:
-    """March the fitted quarter car with three dampers over roads of the printed highway.
+    """Simulate the fitted quarter car with three dampers on roads of the printed highway.
 
     The damper with two slopes does the same work as the one with one coefficient c at a Gaussian velocity v of the
-    same RMS: E[F v] = E[v^2] E[dF/dv], so that c = ch + (cl - ch) P(|v| < knee), 68 % at a knee of one RMS. The one
-    with more in rebound has the mean c, and so the same work too.
+    same RMS: E[F v] = E[v^2] E[dF/dv], so that c = ch + (cl - ch) P(|v| < knee), 68 % at a knee of one RMS. The damper
+    with the larger coefficient in rebound has the mean c, and so also does the same work.
 
     Args:
         parameters: quarter car, highway and bands.
-        duration: of each road [s].
+        duration: duration of each road [s].
     """
     car, wheel = parameters.quarter_car, parameters.quarter_car.wheel
     c = wheel.suspension_damping
@@ -131,7 +132,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
         slides=(Slide(row=travel, friction=law(stacked)),),
     )
     roads = np.array([_road(frequency, density * line, seed, duration) for seed in SEEDS])
-    history = marched_solution(network.first_order(), STEP, np.tile(roads, (len(NAMES), 1)).T)
+    history = fixed_step_solution(network.first_order(), STEP, np.tile(roads, (len(NAMES), 1)).T)
     late = history.time >= SETTLED
     shape = (len(NAMES), len(SEEDS), -1)
     moved = {name: history.displacement(name)[late].T.reshape(shape) for name in ("wheel", "body")}
@@ -141,7 +142,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
     return Compared(
         velocity=knee,
         slow_share=float(speed[frequency < 3.0].sum() / speed.sum()),
-        curves=(velocity, np.array([law(one[None]).force(velocity) for one in each])),
+        curves=(velocity, np.array([law(forces[None]).force(velocity) for forces in each])),
         tyre_load=np.asarray(force.std(axis=-1) / static),
         height=np.asarray((moved["body"] - roads[:, late]).mean(axis=-1)),
         time=history.time[late],
@@ -150,7 +151,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
 
 
 def _road(frequency: Array, power: Array, seed: int, duration: float) -> Array:
-    """Gaussian road [m] of the mean square of each line [m2], from 0 to the duration at `STEP`."""
+    """Return a Gaussian road [m] with a mean square for each line [m2], from 0 to the duration at `STEP`."""
     generator = np.random.default_rng(seed)
     count = round(duration / STEP)
     spectrum = np.zeros(count // 2 + 1, dtype=complex)
@@ -160,28 +161,29 @@ def _road(frequency: Array, power: Array, seed: int, duration: float) -> Array:
     return np.append(road, road[0])
 
 
-def curve_claims(found: Compared) -> list[Claim]:
-    """Rows on what the introduction says of damper curves."""
-    one, low, rebound = found.tyre_load.mean(axis=1)
-    drop = -1e3 * (found.height[2] - found.height[0]).mean()
+def curve_claims(comparison: Compared) -> list[Claim]:
+    """Return the rows on the damper curves of the introduction."""
+    comparison_case, low, rebound = comparison.tyre_load.mean(axis=1)
+    drop = -1e3 * (comparison.height[2] - comparison.height[0]).mean()
     why = (
         "a statement about practice: the source prints no curve, its models have one coefficient for each damper and "
         "no roll. Beside it the fitted quarter car on the printed highway, dampers of the same work, "
-        f"{found.tyre_load.shape[1]} roads"
+        f"{comparison.tyre_load.shape[1]} roads"
     )
     rows = [
         NOT_TESTABLE.statement(
             "damper curve: more damping at low velocity, where the body moves, than at high",
             "typical",
-            f"twice as much below {found.velocity:.2f} m/s: RMS tyre force {_change(low, one)}; below 3 Hz, where the "
-            f"body moves, is {found.slow_share:.0%} of the mean square of the damper velocity",
+            f"twice as much below {comparison.velocity:.2f} m/s: RMS tyre force {_change(low, comparison_case)}; "
+            f"below 3 Hz, where the body moves, is {comparison.slow_share:.0%} of the mean square of the damper "
+            "velocity",
             False,
             why,
         ),
         NOT_TESTABLE.statement(
             "damper curve: more damping in rebound than in bump",
             "often",
-            f"twice as much: RMS tyre force {_change(rebound, one)}; the body rides {drop:.1f} mm lower",
+            f"twice as much: RMS tyre force {_change(rebound, comparison_case)}; the body rides {drop:.1f} mm lower",
             False,
             why,
         ),
@@ -193,17 +195,17 @@ def _change(value: float, base: float) -> str:
     return f"{100.0 * (value / base - 1.0):+.1f} %"
 
 
-def curve_figure(folder: Path, found: Compared) -> None:
+def curve_figure(folder: Path, comparison: Compared) -> None:
     """Draw force over velocity of the three dampers, and the height of the body with each."""
     caption = (
         "Dampers of the same work on the fitted quarter car, printed highway. Left: force over velocity, rebound "
         "positive. Right: height of the body on one road; the damper with more in rebound pulls it down."
     )
-    velocity, forces = found.curves
-    shown = found.time <= found.time[0] + 4.0
+    velocity, forces = comparison.curves
+    shown = comparison.time <= comparison.time[0] + 4.0
     looks = list(zip(NAMES, COLOURS, ("-", "--", "-."), strict=False))
     damping = [(name, 1e-3 * force, *look) for (name, *look), force in zip(looks, forces, strict=True)]
-    height = [(name, 1e3 * body[shown], *look) for (name, *look), body in zip(looks, found.body, strict=True)]
+    height = [(name, 1e3 * body[shown], *look) for (name, *look), body in zip(looks, comparison.body, strict=True)]
     with chart(folder / PICTURE, caption, columns=2, size=(11.0, 4.8)) as (left, right):
         lines(left, velocity, damping, xlabel="damper velocity [m/s]", ylabel="damper force [kN]")
-        lines(right, found.time[shown], height, xlabel="time [s]", ylabel="height of the body [mm]")
+        lines(right, comparison.time[shown], height, xlabel="time [s]", ylabel="height of the body [mm]")

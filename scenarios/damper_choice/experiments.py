@@ -22,7 +22,7 @@ MATCHED = 1.04
 
 
 def rear_experiment(parameters: DamperChoiceParameters) -> str:
-    """What raising R of the rear by its tyre does to the R after step 1."""
+    """Return a text: R of the rear before and after step 1 with a stiffer rear tyre."""
     rear = parameters.half_car.rear
     stiffer = replace(rear, tyre_stiffness=MATCHED * rear.tyre_stiffness)
     other = replace(parameters, half_car=replace(parameters.half_car, rear=stiffer))
@@ -35,12 +35,12 @@ def rear_experiment(parameters: DamperChoiceParameters) -> str:
 
 
 def wheel_experiments(parameters: DamperChoiceParameters, lines: Array, end: int) -> tuple[str, str]:
-    """Experiments for the two rows on a wheel of the half car.
+    """Return the texts of the experiments for the two rows on a wheel of the half car.
 
     Args:
-        parameters: the half car.
-        lines: [Hz], (m,).
-        end: 0 front, 1 rear.
+        parameters: parameters of the half car.
+        lines: frequencies [Hz], (m,).
+        end: 0 for front, 1 for rear.
     """
     ratios = (FRONT_RATIOS, REAR_RATIOS)[end]
     scale = np.mean([c / ratio for c, ratio in ratios.items()])

@@ -57,7 +57,7 @@ _READING = 125.0  # half of the 250 N s/m to which the source reads its optima [
 
 
 def root_stiffness_mass(ratios: dict[float, float]) -> float:
-    """sqrt(k m) = mean of c / (2 zeta) over printed pairs [N s/m]."""
+    """Return sqrt(k m) = mean of c / (2 zeta) over printed pairs [N s/m]."""
     return float(np.mean([damping / (2.0 * ratio) for damping, ratio in ratios.items()]))
 
 
@@ -85,14 +85,14 @@ def fit_half_car(
 
 
 def quarter_car_of(values: npt.ArrayLike) -> RoadHoldingQuarterCar:
-    """Quarter car of values in the order of `QUARTER_FREE`; the damper is the printed optimum."""
+    """Return the quarter car of values in the order of `QUARTER_FREE`, with the printed optimum damper."""
     mass, unsprung, tyre = (float(value) for value in np.asarray(values, dtype=float))
     stiffness = root_stiffness_mass(QUARTER_RATIOS) ** 2 / mass
     return RoadHoldingQuarterCar(sprung_mass=mass, wheel=_axle(unsprung, stiffness, 3750.0, tyre))
 
 
 def half_car_of(values: npt.ArrayLike) -> RoadHoldingHalfCar:
-    """Half car of values in the order of `HALF_FREE`; the dampers are the printed end of the iteration."""
+    """Return the half car of values in the order of `HALF_FREE`, with the dampers of the printed last iteration."""
     mass, index, wheelbase, share, front, rear, front_tyre, rear_tyre = (float(v) for v in np.asarray(values))
     a, b = share * wheelbase, (1.0 - share) * wheelbase
     front_stiffness = root_stiffness_mass(FRONT_RATIOS) ** 2 / (mass * b / wheelbase)
@@ -108,12 +108,12 @@ def half_car_of(values: npt.ArrayLike) -> RoadHoldingHalfCar:
 
 
 def quarter_car_values(car: RoadHoldingQuarterCar) -> Array:
-    """Values of a quarter car in the order of `QUARTER_FREE`."""
+    """Return the values of a quarter car in the order of `QUARTER_FREE`."""
     return np.array([car.sprung_mass, car.wheel.unsprung_mass, car.wheel.tyre_stiffness])
 
 
 def half_car_values(car: RoadHoldingHalfCar) -> Array:
-    """Values of a half car in the order of `HALF_FREE`."""
+    """Return the values of a half car in the order of `HALF_FREE`."""
     base = car.front_arm + car.rear_arm
     ends = [getattr(axle, name) for name in ("unsprung_mass", "tyre_stiffness") for axle in (car.front, car.rear)]
     index = car.pitch_inertia / (car.sprung_mass * car.front_arm * car.rear_arm)
@@ -121,7 +121,7 @@ def half_car_values(car: RoadHoldingHalfCar) -> Array:
 
 
 def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Array:
-    """Deviations of a quarter car from what is printed, each over its scale; order of the comments within."""
+    """Return the deviations of a quarter car from printed values, over their scales, in the order of the comments."""
     car = quarter_car_of(values)
     best = _valley(lambda c: float(printed_load_fluctuation(quarter_car_model(car, c), road, bands)[0]))
     lines = np.arange(0.02, 15.0, 0.02)
@@ -138,7 +138,7 @@ def quarter_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: F
 
 
 def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: FrequencyBands) -> Array:
-    """Deviations of a half car from what is printed, each over its scale; order of the comments within."""
+    """Return the deviations of a half car from printed values, over their scales, in the order of the comments."""
     car = half_car_of(values)
 
     def rate(front: float, rear: float) -> Array:
@@ -159,7 +159,7 @@ def half_car_residuals(values: npt.ArrayLike, road: ExponentialRoad, bands: Freq
     highest = peaks.max(axis=0)
     residuals = [value / _READING for value in optima]
     residuals += [value / 0.05 for value in front] + [value / 0.1 for value in rear]  # 2 % of the printed R
-    # axes of figures 5 to 8: the largest value lies between the last two ticks
+    # axes of figures 5 to 8: the largest value is between the last two ticks
     residuals += [_outside(float(highest[0]), 1.0, 1.5) / 0.1, _outside(float(highest[1]), 1.6, 1.8) / 0.1]
     residuals += [_outside(float(highest[2]), 2.5, 3.0) / 0.2, _outside(float(highest[3]), 0.6, 0.7) / 0.1]
     residuals.append((lines[responses[:, 2].argmax(axis=1)].mean() - 2.0) / 0.3)  # heave peak as the quarter car's
@@ -175,14 +175,14 @@ def _fit(
     scale: Array,
     bounds: tuple[Array, Array],
 ) -> tuple[Array, Array]:
-    found = least_squares(
+    solution = least_squares(
         lambda scaled: residuals(scaled * scale, road, bands),
         np.asarray(start, dtype=float) / scale,
         bounds=(bounds[0] / scale, bounds[1] / scale),
         diff_step=2e-3,  # wider than the steps that frequency grids and magnitudes leave in the residuals
         max_nfev=60,
     )
-    return found.x * scale, found.fun
+    return solution.x * scale, solution.fun
 
 
 def _axle(unsprung: float, stiffness: float, damping: float, tyre: float) -> Axle:
@@ -196,7 +196,7 @@ def _axle(unsprung: float, stiffness: float, damping: float, tyre: float) -> Axl
 
 
 def _valley(measure: Callable[[float], float]) -> float:
-    """Vertex of the parabola through the least of a coarse grid and its neighbours [N s/m]: smooth for the fit."""
+    """Return the vertex of the parabola through the minimum of a coarse grid and its neighbours [N s/m]."""
     values = np.array([measure(float(c)) for c in _COARSE])
     best = int(np.clip(values.argmin(), 1, _COARSE.size - 2))
     left, middle, right = values[best - 1 : best + 2]
@@ -209,7 +209,7 @@ def _outside(value: float, low: float, high: float) -> float:
 
 
 def _last_peak(lines: Array, magnitude: Array) -> float:
-    """Frequency of the highest-lying local maximum [Hz]."""
+    """Return the frequency of the local maximum with the highest frequency [Hz]."""
     inner = magnitude[1:-1]
-    found = np.flatnonzero((inner > magnitude[:-2]) & (inner > magnitude[2:])) + 1
-    return float(lines[found[-1]]) if found.size else 0.0
+    peaks = np.flatnonzero((inner > magnitude[:-2]) & (inner > magnitude[2:])) + 1
+    return float(lines[peaks[-1]]) if peaks.size else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize, minimize_scalar
 
-from vehicle.engines.lumped.half_car_rider import ENDS
+from vehicle.engines.lumped.half_car_rider_model import ENDS
 from vehicle.errors import ConfigurationError, SimulationError
 
 Array = npt.NDArray[np.float64]
@@ -38,7 +38,7 @@ class Step:
     """One step of the front/rear iteration."""
 
     changed: str
-    """"front" or "rear": the damper that was optimised, for its own tyre."""
+    """"front" or "rear": end of the optimised damper, whose tyre load is minimised."""
     front: float
     """Front damper coefficient after the step [N s/m]."""
     rear: float
@@ -48,20 +48,20 @@ class Step:
 
     @property
     def damping(self) -> float:
-        """Coefficient of the damper that was optimised [N s/m]."""
+        """Return the coefficient of the optimised damper [N s/m]."""
         return self.front if self.changed == "front" else self.rear
 
 
 def optimum(measure: Callable[[float], float], grid: npt.ArrayLike | None = None) -> Optimum:
-    """Coefficient of least fluctuation.
+    """Find the damping coefficient of minimum load fluctuation.
 
     Args:
-        measure: damping [N s/m] -> measure [-].
-        grid: coefficients to choose from [N s/m]; without it the whole range is searched, to 1 N s/m.
+        measure: function of the damping [N s/m] that returns the fluctuation [-].
+        grid: allowed coefficients [N s/m]; None to search the whole range, to 1 N s/m.
 
     Returns:
-        The optimum. The continuous search starts around the best of a coarse grid: the printed measure, a sum of
-        magnitudes, need not have one minimum only.
+        The optimum. The continuous search starts at the minimum of a coarse grid: the printed measure, a sum of
+        magnitudes, may have several minima.
     """
     coarse = np.linspace(*SEARCHED, 47) if grid is None else np.asarray(grid, dtype=float)
     values = np.array([measure(float(c)) for c in coarse])
@@ -69,24 +69,24 @@ def optimum(measure: Callable[[float], float], grid: npt.ArrayLike | None = None
     if grid is not None:
         return Optimum(damping=float(coarse[best]), value=float(values[best]))
     inside = (float(coarse[max(best - 1, 0)]), float(coarse[min(best + 1, coarse.size - 1)]))
-    found = minimize_scalar(measure, bounds=inside, method="bounded", options={"xatol": 1.0})
-    return Optimum(damping=float(found.x), value=float(found.fun))
+    minimum = minimize_scalar(measure, bounds=inside, method="bounded", options={"xatol": 1.0})
+    return Optimum(damping=float(minimum.x), value=float(minimum.fun))
 
 
 def iterate(measure: Fluctuation, *, rear: float, grid: npt.ArrayLike | None = None, limit: int = 20) -> list[Step]:
-    """Optimise front and rear damper in turn, each for its own tyre, until neither changes.
+    """Optimise front and rear damper alternately, each for the tyre at its end, until both are constant.
 
     Args:
         measure: fluctuation of both tyres.
-        rear: rear coefficient to start with [N s/m].
-        grid: coefficients to choose from [N s/m]; without it the whole range, and "no change" means 5 N s/m.
-        limit: most steps.
+        rear: start value of the rear coefficient [N s/m].
+        grid: allowed coefficients [N s/m]; None for the whole range with a tolerance of 5 N s/m.
+        limit: maximum number of steps.
 
     Returns:
-        The steps, front first; the last one repeats the damper found two steps before.
+        The steps, front first; the last step repeats the damper of two steps before.
 
     Raises:
-        SimulationError: still changing after the limit.
+        SimulationError: no convergence within the limit.
 
     Source: "Dynamic Modeling of Vehicles and Damper" (2014), section 4.2, figures 11 to 13.
     """
@@ -109,7 +109,7 @@ def iterate(measure: Fluctuation, *, rear: float, grid: npt.ArrayLike | None = N
 
 
 def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[float, float, Array]:
-    """Front and rear coefficient of the least sum of both measures.
+    """Return the front and rear coefficient of the minimum sum of both measures.
 
     Args:
         measure: fluctuation of both tyres.
@@ -121,14 +121,14 @@ def joint_optimum(measure: Fluctuation, *, start: tuple[float, float]) -> tuple[
     Raises:
         SimulationError: the search did not converge.
     """
-    found = minimize(
+    minimum = minimize(
         lambda pair: float(measure(float(pair[0]), float(pair[1])).sum()),
         np.array(start),
         method="Nelder-Mead",  # the printed measure has kinks where a band passes |H| = 1
         bounds=[SEARCHED, SEARCHED],
         options={"xatol": 1.0, "fatol": 1e-7},
     )
-    if not found.success:
-        raise SimulationError(f"joint optimum of the dampers: {found.message}")
-    front, rear = (float(value) for value in found.x)
+    if not minimum.success:
+        raise SimulationError(f"joint optimum of the dampers: {minimum.message}")
+    front, rear = (float(value) for value in minimum.x)
     return front, rear, measure(front, rear)

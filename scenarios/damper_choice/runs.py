@@ -53,7 +53,7 @@ MEASURES: dict[str, Callable[[RoadHoldingModel, ExponentialRoad, FrequencyBands]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RoadHolding:
-    """Everything about one measure on one road."""
+    """Curves and optima of a measure on a road."""
 
     damping: Array
     """Abscissa of the curves [N s/m], shape (m,)."""
@@ -72,14 +72,14 @@ class RoadHolding:
 
 
 def quarter_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[float, Array]:
-    """|response| of wheel and body for the damping of figures 2 and 3; damping -> (2, m)."""
+    """Return damping of figures 2 and 3 to |response| of wheel and body, (2, m)."""
     return {c: np.abs(quarter_car_model(parameters.quarter_car, c).response(lines)) for c in QUARTER_DAMPING}
 
 
 def half_responses(
     parameters: DamperChoiceParameters, lines: Array, dampings: Sequence[float] = HALF_DAMPING
 ) -> dict[float, Array]:
-    """|response| of front wheel, rear wheel, heave, pitch with equal dampers.
+    """Return |response| of front wheel, rear wheel, heave, pitch with equal dampers.
 
     Args:
         parameters: the half car.
@@ -102,13 +102,13 @@ def half_car_measure(parameters: DamperChoiceParameters, measure: str, road: Exp
 def road_holding(
     parameters: DamperChoiceParameters, measure: str, road: ExponentialRoad, damping: Sequence[float]
 ) -> RoadHolding:
-    """Curves and optima of one measure on one road.
+    """Compute the curves and optima of a measure on a road.
 
     Args:
-        parameters: vehicle, bands.
+        parameters: parameters of the vehicles, and bands.
         measure: "printed" or "physical".
-        road: displacement density.
-        damping: abscissa of the curves [N s/m].
+        road: displacement PSD of the road.
+        damping: damping coefficients of the curves [N s/m].
     """
     rate = MEASURES[measure]
     both = half_car_measure(parameters, measure, road)
@@ -137,17 +137,17 @@ LINK_PARTS = ("a_arm", "steering_rod")
 
 
 def complete_car_quarter(vehicle: Vehicle) -> RoadHoldingQuarterCar:
-    """Quarter car that stands for the front right corner of the complete car.
+    """Return the equivalent quarter car of the front right corner of the complete car.
 
     The sprung mass is the share of body and engine on one front wheel between front wheels and rear supports; spring
-    and damper act along the strut, at the wheel with the square of the cosine of its angle. Left out: the flexible
+    and damper act along the strut, at the wheel with the square of the cosine of its angle. Neglected: the flexible
     body, the engine on its mounts, the friction of the damper, the suspension mount and the stabilizer.
 
     Args:
         vehicle: the complete car.
 
     Returns:
-        Its equivalent quarter car.
+        The quarter car.
     """
     points, parts = vehicle.points, {part.name: part for part in vehicle.composition.parts}
     rear, engine = points["rear_support_right"][0], parts["engine"]
@@ -190,12 +190,12 @@ class TradeOff:
     """Damping of the car itself [N s/m]."""
 
     def best(self, name: str) -> float:
-        """Damping of the least value of a measure: the same for every class, for all densities are proportional."""
-        return float(self.damping[np.argmin([getattr(one, name) for one in self.measures["A"]])])
+        """Return the damping of the minimum of a measure, equal for all classes, as their PSDs are proportional."""
+        return float(self.damping[np.argmin([getattr(measure, name) for measure in self.measures["A"]])])
 
 
 def trade_off(car: RoadHoldingQuarterCar, damping: npt.ArrayLike) -> TradeOff:
-    """Measures of a quarter car over damping on all classes of ISO 8608.
+    """Return the measures of a quarter car over damping on all classes of ISO 8608.
 
     Args:
         car: quarter car.

@@ -22,19 +22,19 @@ Exact = Mapping[tuple[str, str], npt.NDArray[np.complex128]]
 
 
 def level_words(level: float) -> str:
-    """A level in words: displacements over those of a road of class A."""
+    """Return a text for a level: displacements over those of a road of class A."""
     return "class A" if level == 1.0 else f"1/{1.0 / level:g} of class A"
 
 
 def response_figure(path: Path, car: Car, runs: Sequence[OneRun], exact: Exact, caption: str) -> None:
-    """Transmissibility of body and wheel carriers to each motion of the plates, runs and matrices.
+    """Draw the transmissibility of body and wheel carriers to each motion of the plates, from runs and matrices.
 
     Args:
         path: PNG file.
         car: the car.
-        runs: the lowest and the highest level of each motion, with FRFs.
-        exact: as of `matrix_response`, by motion and state of the dampers.
-        caption: what the curves were made with.
+        runs: runs of the lowest and highest level of each motion, with FRFs.
+        exact: FRFs of `matrix_response` by motion and state of the dampers.
+        caption: conditions of the curves.
     """
     title = f"{car.vehicle.name} on four posts: displacement over that of the plates"
     with figure_file(path, (15.0, 9.0), title, caption) as figure:
@@ -46,13 +46,13 @@ def response_figure(path: Path, car: Car, runs: Sequence[OneRun], exact: Exact, 
                     colour, style = LINEAR[state]
                     size = transmissibility(LINES, exact[motion, state][row])
                     axis.plot(LINES, size, color=colour, linestyle=style, label=f"matrices, dampers {state}")
-                own = [run for run in runs if run.motion == motion]
-                for one, colour, line in zip(own, COLOURS, STYLES, strict=False):
-                    found = one.response
-                    assert found is not None
-                    size = transmissibility(found.frequency, found.response[row])
+                motion_runs = [run for run in runs if run.motion == motion]
+                for level_run, colour, line in zip(motion_runs, COLOURS, STYLES, strict=False):
+                    response = level_run.response
+                    assert response is not None
+                    size = transmissibility(response.frequency, response.response[row])
                     look = {"color": colour, "linestyle": line, "linewidth": 1.0}
-                    axis.plot(found.frequency, size, label=level_words(one.level), **look)
+                    axis.plot(response.frequency, size, label=level_words(level_run.level), **look)
                 axis.set(xscale="log", yscale="log", xlim=(1.0, 40.0))
                 axis.set_title(f"{motion}: {channel.replace('_acc_', ', ').replace('_', ' ')}")
         axes[0, 0].legend(loc="lower left")
@@ -65,23 +65,25 @@ def response_figure(path: Path, car: Car, runs: Sequence[OneRun], exact: Exact, 
 
 
 def slip_figure(path: Path, car: Car, runs: Sequence[OneRun], caption: str) -> None:
-    """Slip shares of the dampers and the comfort value over the level, a line for each motion.
+    """Draw slip shares of the dampers and comfort value over the level, a line for each motion.
 
     Args:
         path: PNG file.
         car: the car.
-        runs: of all levels.
-        caption: what slip and level are.
+        runs: runs of all levels.
+        caption: definitions of slip and level.
     """
     with figure_file(path, (12.5, 4.6), f"{car.vehicle.name} on four posts: does it slide?", caption) as figure:
         front, rear, comfort = figure.subplots(1, 3)
         for motion, colour, mark in zip(MOTIONS, COLOURS, "os^D", strict=False):
-            own = [run for run in runs if run.motion == motion]
-            levels = [run.level for run in own]
+            motion_runs = [run for run in runs if run.motion == motion]
+            levels = [run.level for run in motion_runs]
             for axis, wheel in ((front, "fr"), (rear, "rr")):
-                shares = [100.0 * run.slip.get(wheel, np.nan) for run in own]
+                shares = [100.0 * run.slip.get(wheel, np.nan) for run in motion_runs]
                 axis.plot(levels, shares, f"{mark}-", color=colour, label=motion, markersize=4)
-            comfort.plot(levels, [run.comfort / run.level for run in own], f"{mark}-", color=colour, markersize=4)
+            comfort.plot(
+                levels, [run.comfort / run.level for run in motion_runs], f"{mark}-", color=colour, markersize=4
+            )
         for axis, title in ((front, "front right damper"), (rear, "rear right damper")):
             axis.set(xscale="log", ylim=(-3.0, 100.0), title=title, ylabel="share of the time in slip [%]")
         comfort.set(

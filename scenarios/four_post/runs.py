@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.rendering.recorded_run import hub_channel
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.first_order import first_order
-from vehicle.engines.linear.modes import Mode
 from vehicle.engines.linear.response import frequency_response
 from vehicle.names import AXES
 from vehicle.runs.car import Car
@@ -38,7 +38,7 @@ HIGHEST_PEAK_HZ = 30.0
 """Peaks are compared up to here [Hz]."""
 
 NEAR = 0.05
-"""A peak of a run, and a mode, belong to a peak of the matrices within this share of its frequency."""
+"""Maximum relative distance in frequency of a peak of a run, or a mode, that matches a peak of the matrices."""
 
 WHEELS_FROM_HZ = 10.0
 """Peaks of the wheel carriers are listed from here on [Hz]; below they ride with the body."""
@@ -49,15 +49,15 @@ PROMINENCE_DB = 6.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OneRun:
-    """What is kept of a run.
+    """Values of a run on the rig.
 
     Attributes:
         motion: name of the motion of the plates.
         level: displacements over those of a road of class A.
-        engine: that made it.
-        slip: wheel to the share of the time in which its damper slips, |v| above the slip velocity.
+        engine: engine of the run.
+        slip: wheel to share of the time with |v| of its damper above the slip velocity.
         comfort: unfiltered RMS of the seat rail, 2 to 50 Hz, all axes [m/s2].
-        response: FRFs of `channels_of` to the common motion [m/s2 per m]; None where not asked for.
+        response: FRFs of `channels_of` to the common motion [m/s2 per m]; None if not estimated.
     """
 
     motion: str
@@ -70,15 +70,15 @@ class OneRun:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Matched:
-    """A peak of the FRF from matrices, the mode that it belongs to, and the peak of a run there.
+    """Peak of the FRF from the matrices with the matching mode and the matching peak of a run.
 
     Attributes:
         motion: name of the motion.
-        channel: its acceleration channel.
+        channel: acceleration channel of the FRF.
         state: of the dampers in the matrices.
         peak: of the matrices.
-        mode: the mode nearest in frequency; None where none is within `NEAR`.
-        found: peak of the run; None where there is none within `NEAR`.
+        mode: mode nearest in frequency; None if no mode is within `NEAR`.
+        found: peak of the run; None if no peak is within `NEAR`.
     """
 
     motion: str
@@ -90,14 +90,14 @@ class Matched:
 
     @property
     def deviation(self) -> float | None:
-        """Frequency of the run over that of the matrices, less 1."""
+        """Return the frequency of the run over that of the matrices, minus 1."""
         return None if self.found is None else self.found.frequency_hz / self.peak.frequency_hz - 1.0
 
 
 def channels_of(car: Car, motion: str) -> tuple[str, ...]:
-    """Body and wheel carriers in a motion: the seat rail along the axis in which the body answers it, one hub an axle.
+    """Return the channels of a motion: seat rail along the axis of the body response, and a hub of each axle.
 
-    Heave and pitch shake the seat rail vertically and along the car, roll and warp sideways.
+    Heave excites the seat rail vertically, pitch longitudinally, roll and warp laterally.
     """
     body = {
         "heave": "seat_rail_acc_z",
@@ -106,23 +106,25 @@ def channels_of(car: Car, motion: str) -> tuple[str, ...]:
         "warp": "seat_rail_acc_y",
     }
     hubs = [hub_channel(car.vehicle.composition, wheel) for wheel in ("fr", "rr")]
-    known = car.vehicle.acceleration_channels
-    return (body[motion], *(hub for hub in hubs if hub in known))
+    available = car.vehicle.acceleration_channels
+    return (body[motion], *(hub for hub in hubs if hub in available))
 
 
 def run_motion(car: Car, motion: str, level: float, *, duration: float, engine: str, response: bool = True) -> OneRun:
-    """Put a car on the rig.
+    """Run a car on the rig.
 
     Args:
-        car: with wheels at four corners.
-        motion: of `MOTIONS`.
+        car: car with wheels at four corners.
+        motion: name in `MOTIONS`.
         level: displacements over those of a road of class A.
-        duration: length [s].
-        engine: as of `Car.run`.
-        response: whether FRFs are estimated.
+        duration: duration of the run [s].
+        engine: engine, see `Car.run`.
+        response: True to estimate FRFs.
     """
     asked = channels_of(car, motion)
-    dampers = [one for one in MOTIONS[motion] if f"damper_{one}_velocity" in car.vehicle.channels]
+    dampers = [
+        damper_wheel for damper_wheel in MOTIONS[motion] if f"damper_{damper_wheel}_velocity" in car.vehicle.channels
+    ]
     recorded = {*asked, *(f"seat_rail_acc_{axis}" for axis in AXES)}
     recorded |= {f"plate_{wheel}_displacement" for wheel in MOTIONS[motion]}
     recorded |= {f"damper_{wheel}_velocity" for wheel in dampers}
@@ -139,42 +141,42 @@ def run_motion(car: Car, motion: str, level: float, *, duration: float, engine: 
 
 
 def matrix_response(car: Car, motion: str, state: str) -> npt.NDArray[np.complex128]:
-    """FRFs of `channels_of` to the common motion from the matrices, over `LINES`; (channels, lines)."""
+    """Return FRFs of `channels_of` to the common motion from the matrices, over `LINES`; (channels, lines)."""
     form = first_order(car.matrices.system, stuck=state == "stuck")
     driven = [MOTIONS[motion].get(wheel, 0.0) for wheel in car.vehicle.wheels]
     return frequency_response(form, LINES, channels_of(car, motion), "acceleration", driven=driven)
 
 
 def transmissibility(frequency: Vector, response: npt.NDArray[np.complex128]) -> Vector:
-    """|displacement of the place over that of the plates| = |H| / (2 pi f)^2 [-]."""
+    """Return |displacement of the point over that of the plates| = |H| / (2 pi f)^2 [-]."""
     return np.asarray(np.abs(response) / (2.0 * np.pi * frequency) ** 2)
 
 
 def distance_db(response: FrequencyResponse, exact: npt.NDArray[np.complex128]) -> float:
-    """RMS over lines and channels of 20 lg of |H| of a run over |H| of the matrices [dB]."""
+    """Return the RMS over lines and channels of 20 lg of |H| of a run over |H| of the matrices [dB]."""
     frequency = response.frequency
-    known = np.isfinite(response.response).all(axis=0) & (frequency <= HIGHEST_PEAK_HZ)
-    level = [np.interp(np.log(frequency[known]), np.log(LINES), np.log10(row)) for row in np.abs(exact)]
-    ratio = 20.0 * (np.log10(np.abs(response.response[:, known])) - np.array(level))
+    finite = np.isfinite(response.response).all(axis=0) & (frequency <= HIGHEST_PEAK_HZ)
+    level = [np.interp(np.log(frequency[finite]), np.log(LINES), np.log10(row)) for row in np.abs(exact)]
+    ratio = 20.0 * (np.log10(np.abs(response.response[:, finite])) - np.array(level))
     return float(np.sqrt(np.mean(ratio**2)))
 
 
 def matched_peaks(
     car: Car, one: OneRun, state: str, exact: npt.NDArray[np.complex128], modes: Sequence[Mode]
 ) -> list[Matched]:
-    """Peaks of the transmissibility from matrices beside those of a run and the modes, channel by channel.
+    """Match the peaks of the transmissibility from the matrices with peaks of a run and with modes, by channel.
 
     Args:
         car: the car.
-        one: the run, with its FRFs.
+        one: run with FRFs.
         state: of the dampers in the matrices.
-        exact: as of `matrix_response`.
-        modes: of the car in that state.
+        exact: FRFs of `matrix_response`.
+        modes: modes of the car in that state.
     """
     response = one.response
     assert response is not None
     size = (2.0 * np.pi * response.frequency) ** 2
-    found = []
+    peaks = []
     for row, channel in enumerate(channels_of(car, one.motion)):
         measured = resonance_peaks(
             response.frequency,
@@ -187,7 +189,7 @@ def matched_peaks(
                 at = peak.frequency_hz
                 near = _nearest(at, measured, [other.frequency_hz for other in measured])
                 mode = _nearest(at, modes, [other.frequency for other in modes])
-                found.append(
+                peaks.append(
                     Matched(
                         motion=one.motion,
                         channel=channel,
@@ -197,10 +199,10 @@ def matched_peaks(
                         found=near,
                     )
                 )
-    return found
+    return peaks
 
 
 def _nearest(at: float, those: Sequence[Thing], frequencies: Sequence[float]) -> Thing | None:
-    """The thing whose frequency is nearest; None where none is within `NEAR`."""
+    """Return the item nearest in frequency; None if no item is within `NEAR`."""
     offsets = np.abs(np.array(frequencies) / at - 1.0)
     return those[int(np.argmin(offsets))] if offsets.size and offsets.min() < NEAR else None

@@ -1,4 +1,4 @@
-"""Half car with seat and rider over a bump: figures 5 to 25 of the source and every printed statement beside ours.
+"""Half car with seat and rider over a bump: figures 5 to 25 of the paper, and its statements with our values.
 
 python -m scenarios.half_car_rider [--output DIR] [--parameters FILE.toml] [--quick] [--force]
 """
@@ -18,9 +18,13 @@ from scenarios.half_car_rider.claims import base_case_claims, dose_claims, matri
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.study import VERTICAL_TYRES, lumped_study
-from vehicle.engines.lumped.half_car_rider import ENDS
-from vehicle.model.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
-from vehicle.model.parameters.semi_active import LAWS, PASSIVE
+from vehicle.engines.lumped.half_car_rider_model import ENDS
+from vehicle.model.parameters.half_car_rider_parameters import (
+    PUBLISHED,
+    HalfCarRiderParameters,
+    half_car_rider_parameters,
+)
+from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 
 TITLE = "Half car with seat and rider (Parametric study of rider's comfort in a vehicle with semi-active suspension)"
 
@@ -48,9 +52,9 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
     outcomes = {PASSIVE: [outcome(car, passive(car, speed)) for speed in SPEEDS]}
     laws = ("skyhook", "hybrid") if options.quick else LAWS
     semi_active = {law: driven(car, SPEEDS, law, one_sided_tyres=False) for law in laws}
-    outcomes.update({law: [outcome(car, one) for one in histories] for law, histories in semi_active.items()})
+    outcomes.update({law: [outcome(car, solution) for solution in histories] for law, histories in semi_active.items()})
     free = driven(car, SPEEDS, PASSIVE, one_sided_tyres=True)
-    free_outcomes = [outcome(car, one) for one in free]
+    free_outcomes = [outcome(car, solution) for solution in free]
 
     claims = [
         *base_case_claims(car, history),
@@ -80,7 +84,7 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
 
 
 def _lift_off_note(glued: Sequence[Outcome], free: Sequence[Outcome]) -> str:
-    """Say where the linear model pulls on the road."""
+    """Return a note on runs in which the linear tyres pull on the road."""
     rows = [
         (f"{speed:.0f}", name, _intervals(a.lift_off[end]), f"{a.least_load[end]:.0f}", _intervals(b.lift_off[end]))
         for speed, a, b in zip(SPEEDS, glued, free, strict=True)
@@ -108,18 +112,18 @@ def _law_table(outcomes: Mapping[str, Sequence[Outcome]]) -> str:
     return f"{title}\n\n{markdown(heads, rows)}"
 
 
-def _row(one: Outcome) -> dict[str, Any]:
+def _row(outcome: Outcome) -> dict[str, Any]:
     return {
-        "upper_vdv": one.upper_vdv,
-        "lower_vdv": one.lower_vdv,
-        "travel_m": one.travel,
-        "lift_off_s": dict(zip(ENDS, map(list, one.lift_off), strict=True)),
-        "least_linear_tyre_load_n": list(one.least_load),
+        "upper_vdv": outcome.upper_vdv,
+        "lower_vdv": outcome.lower_vdv,
+        "travel_m": outcome.travel,
+        "lift_off_s": dict(zip(ENDS, map(list, outcome.lift_off), strict=True)),
+        "least_linear_tyre_load_n": list(outcome.least_load),
     }
 
 
 def load(options: argparse.Namespace) -> HalfCarRiderParameters:
-    """The parameters."""
+    """Return the parameters."""
     return half_car_rider_parameters(options.parameters or PUBLISHED)
 
 

@@ -1,4 +1,4 @@
-"""Printed statements about the half car with rider beside what the equations say."""
+"""Rows of printed statements about the half car with rider with the results of the equations."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from scenarios.half_car_rider.runs import (
     varied,
 )
 from scenarios.half_car_rider.settling_claims import settling_claims
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.engines.lumped.history import Array, History
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 Study = Mapping[str, list[list[Outcome]]]
 """Varied parameter -> speed -> factor -> outcome."""
 
 STIFF_SEAT = 50000.0
-"""Seat stiffness for the row on figure 10 [N/m]: the source does not print its own."""
+"""Seat stiffness for the row on figure 10 [N/m]: the paper prints no value."""
 
 RIGID_SEAT = 150000.0
 """Seat ten times as stiff as the assumed one, for the rows on the tyre stiffness [N/m]."""
@@ -61,21 +61,21 @@ CONCLUSIONS = {
     "tyre_damping": ("falls", PREDICTED),
     "suspension_damping": ("rises", PREDICTED),
 }
-"""Effect on the dose values in the conclusions, and whether the text says the same."""
+"""Effect on the dose values in the conclusions, and True if the text agrees."""
 
 TRAVEL_DIRECTIONS = {"suspension_stiffness": "rises", "suspension_damping": "falls", "tyre_stiffness": "falls"}
 """Printed effect on the suspension travel (figures 23 to 25)."""
 
 
 def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Claim]:
-    """Rows on figures 5 to 10: sizes and settling times of the base case."""
+    """Return the rows on figures 5 to 10: sizes and settling times of the base case."""
     rows = []
     shown: tuple[tuple[Motion, str, float, int], ...] = (
         ("displacement", "mm", 1e3, 5),
         ("acceleration", "m/s2", 1.0, 6),
     )
     for quantity, unit, factor, figure in shown:
-        upper, lower = (factor * peak(history.of(name, quantity)) for name in ("upper_limb", "lower_limb"))
+        upper, lower = (factor * peak(history.motion(name, quantity)) for name in ("upper_limb", "lower_limb"))
         rows.append(
             PREDICTED.statement(
                 f"peak {quantity} of the upper body above that of the lower body",
@@ -88,8 +88,8 @@ def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Clai
             )
         )
     (seat, body), stiffer, slower = (
-        [peak(one.acceleration(n)) for n in ("seat", "body")]
-        for one in (history, passive(_with_seat(car, STIFF_SEAT), SPEEDS[0]), passive(car, SLOWER[0]))
+        [peak(simulated.acceleration(n)) for n in ("seat", "body")]
+        for simulated in (history, passive(_with_seat(car, STIFF_SEAT), SPEEDS[0]), passive(car, SLOWER[0]))
     )
     rows.append(
         PREDICTED.statement(
@@ -108,7 +108,7 @@ def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Clai
 
 
 def _with_seat(car: HalfCarRiderParameters, stiffness: float) -> HalfCarRiderParameters:
-    """The car with another seat stiffness [N/m]."""
+    """Return the car with another seat stiffness [N/m]."""
     return replace(car, seat=replace(car.seat, stiffness=stiffness))
 
 
@@ -119,9 +119,9 @@ def _why_upper(car: HalfCarRiderParameters, quantity: str) -> str:
     pulse = SPEEDS[0] * KMH / (2.0 * car.bump.length)
     histories = {speed: passive(car, speed) for speed in SLOWER}
     slower = " and ".join(
-        " against ".join(f"{peak(one.acceleration(name)):.2f}" for name in ("upper_limb", "lower_limb"))
+        " against ".join(f"{peak(history.acceleration(name)):.2f}" for name in ("upper_limb", "lower_limb"))
         + f" m/s2 at {speed:.0f} km/h"
-        for speed, one in histories.items()
+        for speed, history in histories.items()
     )
     return (
         f"above sqrt(2) times its own frequency ({isolated:.1f} Hz) the upper limb is isolated from the seat, the "
@@ -131,7 +131,7 @@ def _why_upper(car: HalfCarRiderParameters, quantity: str) -> str:
 
 
 def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[float]) -> list[Claim]:
-    """Rows on figures 11 to 22: direction of the dose values over each parameter."""
+    """Return the rows on figures 11 to 22: direction of the dose values over each parameter."""
     change = {(name, limb): _changes(studied[name], f"{limb}_vdv") for name in VARIED for limb in ("upper", "lower")}
     reasons = _why_dose(car)
     rows = [
@@ -154,12 +154,12 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
             direction,
             change[parameter, limb],
             factors,
-            reasons[parameter] if kind is PREDICTED else "the text on the figures says the same",
-            kind=kind,
+            reasons[parameter] if row_maker is PREDICTED else "the text on the figures agrees",
+            row_maker=row_maker,
             place="section 4",
             picture=_picture(parameter),
         )
-        for parameter, (direction, kind) in CONCLUSIONS.items()
+        for parameter, (direction, row_maker) in CONCLUSIONS.items()
         for limb in ("upper", "lower")
     ]
     for limb in ("upper", "lower"):
@@ -181,7 +181,7 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
 
 
 def _first_figure(parameter: str) -> int:
-    """Number of the figure of the upper body; that of the lower body follows."""
+    """Return the number of the figure of the upper body; the next figure shows the lower body."""
     return 11 + 2 * list(VARIED).index(parameter)
 
 
@@ -191,7 +191,7 @@ def _picture(parameter: str) -> str:
 
 
 def travel_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[float]) -> list[Claim]:
-    """Rows on figures 23 to 25: direction of the suspension travel."""
+    """Return the rows on figures 23 to 25: direction of the suspension travel."""
     return [
         _direction(
             f"suspension travel with {VARIED[parameter]}",
@@ -214,17 +214,17 @@ def _direction(
     why: str,
     little: Array | float = 0.0,
     *,
-    kind: Kind = PREDICTED,
+    row_maker: Kind = PREDICTED,
     place: str,
     picture: str,
 ) -> Claim:
-    """Row on what a parameter does at every speed; "little" is below the effects given."""
+    """Return the row on the effect of a parameter at every speed; "little" is below given effects."""
     agrees = {"little": np.abs(change) < little, "rises": change > 0.0, "falls": change < 0.0}[direction]
     rule = f"less than {LITTLE:.0%} of the effect of the sprung mass" if direction == "little" else direction
     speeds = ", ".join(f"{speed:.0f}" for speed in SPEEDS)
     ours = f"{_percent(change)} % from {factors[0]:.0%} to {factors[-1]:.0%}, at {speeds} km/h"
     why = f"rule: {rule} at every speed; {why}"
-    return kind.statement(name, direction, ours, bool(np.all(agrees)), why, place=place, picture=picture)
+    return row_maker.statement(name, direction, ours, bool(np.all(agrees)), why, place=place, picture=picture)
 
 
 def _percent(change: Array) -> str:
@@ -232,23 +232,23 @@ def _percent(change: Array) -> str:
 
 
 def _changes(table: Sequence[Sequence[Outcome]], name: str) -> Array:
-    return relative_changes([[getattr(one, name) for one in row] for row in table])
+    return relative_changes([[getattr(outcome, name) for outcome in row] for row in table])
 
 
 def relative_changes(values: Sequence[Sequence[float]]) -> Array:
-    """Change from the first to the last factor over the middle of the range, one for each speed [-]."""
+    """Return the change from the first to the last factor over the middle of the range, one for each speed [-]."""
     table = np.asarray(values, dtype=float)
     return np.asarray((table[:, -1] - table[:, 0]) / table.mean(axis=1))
 
 
 def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
-    """What moves the dose value, with the car's own numbers."""
+    """Return parameter to a text on its effect on the dose value, with values of the car."""
     ratio = car.front.tyre_stiffness / car.front.suspension_stiffness
     hop = float(np.sqrt((car.front.tyre_stiffness + car.front.suspension_stiffness) / car.front.unsprung_mass))
     share = car.front.tyre_damping * hop / car.front.tyre_stiffness
     rigid = _with_seat(car, RIGID_SEAT)
     below = (
-        f"the limbs answer below 6 Hz, where a wheel on a tyre {ratio:.0f} times stiffer than its suspension follows "
+        f"the limbs respond below 6 Hz, where a wheel on a tyre {ratio:.0f} times stiffer than its suspension follows "
         f"the road; what happens near the wheel hop ({hop / (2.0 * np.pi):.1f} Hz) reaches them weakly"
     )
     return {
@@ -259,23 +259,31 @@ def _why_dose(car: HalfCarRiderParameters) -> dict[str, str]:
         f"one of {RIGID_SEAT:.0f} N/m the upper body has {_percent(_upper_changes(rigid, 'tyre_stiffness', SPEEDS))} %",
         "tyre_damping": f"at the wheel hop the tyre damper gives {share:.0%} of the force of the tyre spring",
         "suspension_damping": "the damper passes the quick motion of the wheel to the body; the text of the "
-        "source says little and its conclusions say that the discomfort rises. The damper helps only where the bump is "
-        f"a pulse of the body's own frequency: {_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
+        "paper states little effect and its conclusions state that the discomfort rises. The "
+        "damper helps only where the bump is a pulse of the body's own frequency: "
+        f"{_percent(_upper_changes(car, 'suspension_damping', (CRAWL,)))} % for "
         f"the upper body at {CRAWL:.0f} km/h",
     }
 
 
 def _upper_changes(car: HalfCarRiderParameters, parameter: str, speeds: Sequence[float]) -> Array:
-    """Change of the dose value of the upper body from 80 to 120 % of a parameter, one for each speed [km/h]."""
+    """Return the change of the dose value of the upper body from 80 to 120 % of a parameter at each speed [km/h]."""
     cars = [varied(car, parameter, factor) for factor in (0.8, 1.0, 1.2)]
-    return relative_changes([[outcome(one, passive(one, speed)).upper_vdv for one in cars] for speed in speeds])
+    return relative_changes(
+        [[outcome(car_variant, passive(car_variant, speed)).upper_vdv for car_variant in cars] for speed in speeds]
+    )
 
 
 def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[float]) -> str:
-    """Peaks of the parts of the travel, wheel minus body, at the base speed."""
+    """Return a text on the peaks of the parts of the travel, wheel minus body, at the base speed."""
     ends = [passive(varied(car, parameter, factor), SPEEDS[0]) for factor in (factors[0], factors[-1])]
-    wheel, body = ([1e3 * peak(one.displacement(f"front_{name}")) for one in ends] for name in ("wheel", "body"))
-    crawl = [outcome(one, passive(one, CRAWL)).travel for one in (varied(car, parameter, f) for f in factors)]
+    wheel, body = (
+        [1e3 * peak(car_variant.displacement(f"front_{name}")) for car_variant in ends] for name in ("wheel", "body")
+    )
+    crawl = [
+        outcome(car_variant, passive(car_variant, CRAWL)).travel
+        for car_variant in (varied(car, parameter, f) for f in factors)
+    ]
     return (
         f"the travel is body minus wheel; at the base speed the peak of the front wheel goes from {wheel[0]:.1f} to "
         f"{wheel[1]:.1f} mm, that of the body above it from {body[0]:.1f} to {body[1]:.1f} mm. At {CRAWL:.0f} km/h the "
@@ -286,7 +294,7 @@ def _why_travel(car: HalfCarRiderParameters, parameter: str, factors: Sequence[f
 def speed_claims(
     car: HalfCarRiderParameters, scan: Mapping[str, Sequence[float]], upper: Sequence[float], one_sided: Sequence[float]
 ) -> list[Claim]:
-    """Rows on the dose value over speed.
+    """Return the rows on the dose value over speed.
 
     Args:
         car: base case.
@@ -322,7 +330,7 @@ def speed_claims(
 
 
 def matrix_claim(car: HalfCarRiderParameters) -> Claim:
-    """Row on the printed matrices."""
+    """Return the row on the printed matrices."""
     printed, ours = growth_rate(printed_system(car)), growth_rate(half_car_rider(car))
     return COMPARED.statement(
         "matrices [C] and [K] below equation 16",

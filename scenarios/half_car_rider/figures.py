@@ -12,9 +12,9 @@ from scenarios.charts import chart, lines
 from scenarios.half_car_rider.claims import TRAVEL_DIRECTIONS, Study
 from scenarios.half_car_rider.runs import SPEEDS, VARIED, Motion, Outcome
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.lumped.half_car_rider import linear_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import linear_tyre_load
 from vehicle.engines.lumped.history import History
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 BUMP = "Half-sine bump 0.05 m high, 0.5 m long"
 
@@ -34,28 +34,35 @@ LINE_STYLES = {"passive": "-", "skyhook": "--", "hybrid": ":"}
 
 
 def time_figures(folder: Path, histories: Mapping[str, History], speed: float) -> None:
-    """Figures 5 to 10: the base case, passive against semi-active."""
+    """Draw figures 5 to 10: time histories of the base case, passive and semi-active."""
     caption = (
         f"{BUMP}, {speed:.0f} km/h, met by the front wheel at t = 0. Passive: exact linear response. Skyhook "
         "(continuous) and hybrid: dampers between cmin and cmax, set each control period. Tyres glued to the road."
     )
     for name, shown, quantity, factor, label in TIME_FIGURES:
         with chart(folder / f"{name}.png", caption, rows=len(shown), size=(9.0, 3.0 + 2.2 * len(shown))) as panels:
-            for panel, one in zip(panels, shown, strict=True):
+            for panel, shown_history in zip(panels, shown, strict=True):
                 for (law, history), color in zip(histories.items(), COLOURS, strict=False):
-                    curve = (law, factor * history.of(one, quantity), color, LINE_STYLES[law])
-                    lines(panel, history.time, [curve], xlabel="time [s]", ylabel=label, title=one.replace("_", " "))
+                    curve = (law, factor * history.motion(shown_history, quantity), color, LINE_STYLES[law])
+                    lines(
+                        panel,
+                        history.time,
+                        [curve],
+                        xlabel="time [s]",
+                        ylabel=label,
+                        title=shown_history.replace("_", " "),
+                    )
                 panel.set_xlim(0.0, 4.0)
 
 
 def study_figures(folder: Path, factors: Sequence[float], passive: Study, skyhook: Study | None) -> None:
-    """Figures 11 to 22 in pairs and 23 to 25: dose values and travel over each parameter."""
+    """Draw figures 11 to 22 in pairs and 23 to 25: dose values and travel over each parameter."""
     semi = "" if skyhook is None else "; dashed: continuous skyhook, whose limits do not follow the passive damper"
 
     def draw(panel: Any, parameter: str, measure: str, factor: float, ylabel: str) -> None:
         for study, style in ((passive, "-"), (skyhook, "--")):
             for speed, row, color in zip(SPEEDS, study[parameter] if study else (), COLOURS, strict=False):
-                values = [factor * getattr(one, measure) for one in row]
+                values = [factor * getattr(outcome, measure) for outcome in row]
                 curve = (f"{speed:.0f} km/h" if style == "-" else None, values, color, style)
                 xlabel = f"{VARIED[parameter]} [% of the base case]"
                 lines(panel, 100.0 * np.asarray(factors), [curve], xlabel=xlabel, ylabel=ylabel)
@@ -77,7 +84,7 @@ def study_figures(folder: Path, factors: Sequence[float], passive: Study, skyhoo
 def speed_figure(
     folder: Path, scan: Mapping[str, Sequence[float]], laws: Mapping[str, Sequence[Outcome]], speeds: Sequence[float]
 ) -> None:
-    """Dose value of the upper body over speed: exact passive response, and every law at the source's speeds."""
+    """Draw the dose value of the upper body over speed: exact passive response, and every law at printed speeds."""
     caption = (
         f"{BUMP}. Left: exact passive response from 1 to 60 km/h; the grey band is the range of the source. Right: "
         "passive and semi-active dampers at the source's speeds, tyres glued to the road."
@@ -95,7 +102,7 @@ def speed_figure(
 
 
 def lift_off_figure(folder: Path, car: HalfCarRiderParameters, glued: History, free: History, speed: float) -> None:
-    """Tyre loads of the base case: linear tyre that pulls, and one-sided tyre."""
+    """Draw the tyre loads of the base case: linear tyre that pulls, and one-sided tyre."""
     caption = (
         f"{BUMP}, {speed:.0f} km/h, passive dampers. The linear tyre pulls on the road where its load is below zero "
         "(shaded); the one-sided tyre leaves the road and lands again."

@@ -1,4 +1,4 @@
-"""The matrices of the half car with rider as the source prints them, typing errors included: to show what they do.
+"""Matrices of the half car with rider as printed, including typing errors, to show the effect of the errors.
 
 Source: "Parametric study of rider's comfort ...", matrices below equation 16.
 """
@@ -11,12 +11,12 @@ import numpy as np
 
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.lumped.half_car_rider import half_car_rider
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 
 def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:
-    """The derived system with [C] and [K] as printed; they differ in the entries named here, and are not symmetric.
+    """Return the derived system with the printed [C] and [K], which differ in the entries below and are asymmetric.
 
     Coordinates upper limb, lower limb, seat, heave, front wheel, rear wheel, pitch.
     """
@@ -33,5 +33,5 @@ def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:
 
 
 def growth_rate(system: LinearSystem) -> float:
-    """Largest real part of the poles of M x'' + C x' + K x = 0 [1/s]; above zero the motion grows for ever."""
+    """Return the largest real part of the poles of M x'' + C x' + K x = 0 [1/s]; positive for an unstable system."""
     return float(np.linalg.eigvals(first_order(system).state).real.max())

@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
+from vehicle.engines.lumped.half_car_rider_model import ENDS, half_car_rider, lift_off, linear_tyre_load, output_points
 from vehicle.engines.lumped.history import Array, History
-from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axle import Axle
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
-from vehicle.model.parameters.semi_active import PASSIVE
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
+from vehicle.model.parameters.semi_active_damper import PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
 
 Motion = Literal["displacement", "acceleration"]
@@ -52,7 +52,7 @@ DURATION = 5.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Outcome:
-    """What one passage over the bump costs."""
+    """Dose values, travel and lift-off of a passage over the bump."""
 
     upper_vdv: float
     """Vibration dose value of the upper limb [m/s^1.75]."""
@@ -67,13 +67,13 @@ class Outcome:
 
 
 def passive(car: HalfCarRiderParameters, speed: float) -> History:
-    """Exact passive response at a speed [km/h]."""
+    """Return the exact passive response at a speed [km/h]."""
     passage = bump_passage(car.bump, speed * KMH, car.body.front_arm + car.body.rear_arm)
     return bump_response(half_car_rider(car), passage, time_step=TIME_STEP, duration=DURATION)
 
 
 def outcome(car: HalfCarRiderParameters, history: History) -> Outcome:
-    """Dose values, travel and lift-off of a passage."""
+    """Return dose values, travel and lift-off of a passage over the bump."""
     step = float(history.time[1] - history.time[0])
     loads = linear_tyre_load(car, history)
     front, rear = (tuple(lift_off(history.time, load)) for load in loads)
@@ -87,9 +87,9 @@ def outcome(car: HalfCarRiderParameters, history: History) -> Outcome:
 
 
 def varied(car: HalfCarRiderParameters, parameter: str, factor: float) -> HalfCarRiderParameters:
-    """The car with one parameter of `VARIED` scaled, front and rear alike.
+    """Return the car with a parameter of `VARIED` scaled, at front and rear.
 
-    The sprung mass alone is varied, as in the source; the moment of inertia stays.
+    With the sprung mass the moment of inertia is constant, as in the paper.
     """
     if parameter == "sprung_mass":
         return replace(car, body=replace(car.body, mass=factor * car.body.mass))
@@ -103,7 +103,7 @@ def varied(car: HalfCarRiderParameters, parameter: str, factor: float) -> HalfCa
 def parameter_study(
     car: HalfCarRiderParameters, factors: Sequence[float], law: str = PASSIVE
 ) -> Mapping[str, list[list[Outcome]]]:
-    """Outcomes over every varied parameter, speed and factor.
+    """Return the outcomes over every varied parameter, speed and factor.
 
     Args:
         car: base case.
@@ -116,19 +116,21 @@ def parameter_study(
     cases = [(name, speed, factor) for name in VARIED for speed in SPEEDS for factor in factors]
     cars = [varied(car, name, factor) for name, _, factor in cases]
     if law == PASSIVE:
-        results = [outcome(one, passive(one, speed)) for one, (_, speed, _) in zip(cars, cases, strict=True)]
+        results = [
+            outcome(variant, passive(variant, speed)) for variant, (_, speed, _) in zip(cars, cases, strict=True)
+        ]
     else:
         results = []
         for start in range(0, len(cases), 90):  # bounds the memory: 90 runs hold 10^4 samples of 28 numbers each
             part = slice(start, start + 90)
             histories = simulate_bump(cars[part], [speed * KMH for _, speed, _ in cases[part]], law=law)
-            results += [outcome(one, history) for one, history in zip(cars[part], histories, strict=True)]
-    found = iter(results)
-    return {name: [[next(found) for _ in factors] for _ in SPEEDS] for name in VARIED}
+            results += [outcome(variant, history) for variant, history in zip(cars[part], histories, strict=True)]
+    outcomes = iter(results)
+    return {name: [[next(outcomes) for _ in factors] for _ in SPEEDS] for name in VARIED}
 
 
 def driven(car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, one_sided_tyres: bool) -> list[History]:
-    """Histories with a law at several speeds [km/h]."""
+    """Return the histories with a control law at several speeds [km/h]."""
     return simulate_bump(
         [car] * len(speeds),
         [speed * KMH for speed in speeds],
@@ -139,22 +141,22 @@ def driven(car: HalfCarRiderParameters, speeds: Sequence[float], law: str, *, on
 
 
 def peak(signal: Array) -> float:
-    """Largest magnitude."""
+    """Return the largest magnitude."""
     return float(np.abs(signal).max())
 
 
 def settling_time(time: npt.ArrayLike, signal: npt.ArrayLike, band: float) -> float | None:
-    """Last instant at which |y| exceeds a share of its largest magnitude.
+    """Return the last instant at which |y| exceeds a share of its maximum.
 
     t_s = max { t : |y(t)| > band max|y| }: from there on the motion stays inside the band around its final value 0.
 
     Args:
-        time: [s], shape (m,).
-        signal: y, shape (m,).
-        band: share of the peak [-], as 0.05.
+        time: times [s], (m,).
+        signal: signal y, (m,).
+        band: share of the maximum [-], as 0.05.
 
     Returns:
-        The time on the same clock [s]; None where the record ends outside the band. 0 for a signal that is zero.
+        Time on the clock of `time` [s]; None if the record ends outside the band, 0 for a zero signal.
 
     Raises:
         ConfigurationError: band not between 0 and 1.
@@ -171,11 +173,11 @@ def settling_time(time: npt.ArrayLike, signal: npt.ArrayLike, band: float) -> fl
 
 
 def base_case_table(car: HalfCarRiderParameters, history: History) -> dict[str, dict[str, Any]]:
-    """Peaks and settling times of every place.
+    """Return peaks and settling times of every output point.
 
     Args:
         car: base case.
-        history: its motion.
+        history: motion of the car.
 
     Returns:
         Place -> quantity -> peak magnitude [m, m/s2; rad, rad/s2 for pitch] and settling time [s] for each band.
@@ -186,4 +188,6 @@ def base_case_table(car: HalfCarRiderParameters, history: History) -> dict[str, 
         settling = {f"{band:g}": settling_time(history.time, signal, band) for band in BANDS}
         return {"peak": peak(signal), "settling_s": settling}
 
-    return {name: {quantity: row(history.of(name, quantity)) for quantity in quantities} for name in places(car)}
+    return {
+        name: {quantity: row(history.motion(name, quantity)) for quantity in quantities} for name in output_points(car)
+    }

@@ -7,7 +7,7 @@ import numpy as np
 from scenarios.claims import CHOSEN, PREDICTED, Claim
 from scenarios.half_car_rider.runs import BANDS, KMH, SETTLING_BAND, SPEEDS, Motion, settling_time
 from vehicle.engines.lumped.history import Array, History
-from vehicle.model.parameters.half_car_rider import HalfCarRiderParameters
+from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 READING = 0.3
 """The printed times are read from figures, most of them with the word "about" [s]."""
@@ -33,31 +33,31 @@ ORDER: tuple[tuple[str, str, Motion, int], ...] = (
     ("front_wheel", "rear_wheel", "displacement", 9),
     ("seat", "body", "acceleration", 10),
 )
-"""What settles later, what earlier, quantity, figure."""
+"""(point that settles later, point that settles earlier, quantity, figure)."""
 
 
 def settling_claims(car: HalfCarRiderParameters, history: History) -> list[Claim]:
-    """Rows on the settling times of the base case, and on which of two places settles later.
+    """Return the rows on the settling times of the base case, and on the later of two settling times.
 
     Args:
-        car: base case.
-        history: its passive motion.
+        car: car of the base case.
+        history: passive motion of the car.
     """
     delay = (car.body.front_arm + car.body.rear_arm) / (SPEEDS[0] * KMH)
     return [*(_time(history, *row) for row in SETTLING), *(_order(history, delay, *row) for row in ORDER)]
 
 
-def _time(history: History, place: str, quantity: Motion, printed: float, limit: bool, figure: int) -> Claim:
-    motion = history.of(place, quantity)
-    found = settling_time(history.time, motion, SETTLING_BAND)
-    ours = float(history.time[-1]) if found is None else found
+def _time(history: History, point: str, quantity: Motion, printed: float, limit: bool, figure: int) -> Claim:
+    motion = history.motion(point, quantity)
+    settling = settling_time(history.time, motion, SETTLING_BAND)
+    ours = float(history.time[-1]) if settling is None else settling
     others = ", ".join(f"{100.0 * b:g} %: {_seconds(settling_time(history.time, motion, b))}" for b in BANDS[1:])
     why = (
-        f"the band is not told: {100.0 * SETTLING_BAND:g} % of the peak is the one of {len(BANDS)} that comes nearest "
+        f"the band is not printed: {100.0 * SETTLING_BAND:g} % of the peak is the nearest of {len(BANDS)} bands "
         f"to all printed times; {others}. The printed time needs a band of {_needed(history.time, motion, printed)}; "
         f"t = 0 when the front wheel meets the bump; tolerance {READING} s, read from a figure"
     )
-    name, where = f"settling time of {place} {quantity} [s]", f"figure {figure}"
+    name, where = f"settling time of {point} {quantity} [s]", f"figure {figure}"
     picture = f"figure_{figure:02d}.png"
     if limit:
         holds = ours >= printed - READING
@@ -67,25 +67,25 @@ def _time(history: History, place: str, quantity: Motion, printed: float, limit:
 
 
 def _needed(time: Array, motion: Array, printed: float) -> str:
-    """Band in which the motion has settled at a time: the largest magnitude from then on over the peak."""
+    """Return the band in which the motion has settled at a time: largest later magnitude over the peak."""
     magnitude = np.abs(motion)
     return f"{100.0 * float(magnitude[time >= printed].max() / magnitude.max()):.2g} %"
 
 
 def _order(history: History, delay: float, late: str, early: str, quantity: Motion, figure: int) -> Claim:
     times = {
-        band: [settling_time(history.time, history.of(place, quantity), band) for place in (late, early)]
+        band: [settling_time(history.time, history.motion(point, quantity), band) for point in (late, early)]
         for band in BANDS
     }
     pairs = "; ".join(f"{100.0 * band:g} %: {_seconds(a)}, {_seconds(b)}" for band, (a, b) in times.items())
     holds = all(_later(a, b) for a, b in times.values())
     count = sum(_later(a, b) for a, b in times.values())
-    why = f"rule: at each of {len(BANDS)} bands, for the source tells none; it holds at {count} of them"
+    why = f"rule: at each of {len(BANDS)} bands, as the paper prints none; it holds at {count} of them"
     if "rear_wheel" in (late, early):
-        own = "; ".join(f"{100.0 * band:g} %: {_seconds(_less(b, delay))}" for band, (_, b) in times.items())
+        other_bands = "; ".join(f"{100.0 * band:g} %: {_seconds(_less(b, delay))}" for band, (_, b) in times.items())
         why += (
-            f"; the rear wheel meets the bump {delay:.2f} s later. From its own meeting it takes {own}, less than the "
-            "front wheel at every band"
+            f"; the rear wheel meets the bump {delay:.2f} s later. From its own meeting it takes {other_bands}, less "
+            "than the front wheel at every band"
         )
     name = f"settling of {late} {quantity} against {early}"
     return PREDICTED.statement(
@@ -94,7 +94,7 @@ def _order(history: History, delay: float, late: str, early: str, quantity: Moti
 
 
 def _later(late: float | None, early: float | None) -> bool:
-    """Whether the first time is the later one; None is beyond the record."""
+    """Return True if the first settling time is later; None is a time after the end of the record."""
     return early is not None and (late is None or late > early)
 
 

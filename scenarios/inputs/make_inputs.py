@@ -45,7 +45,7 @@ QUICK_DURATION = 5.0
 
 
 def level_signal(level: str, wheel: str, *, quick: bool) -> Signal:
-    """The shipped input of a level, or a short one of the same spectrum and level.
+    """Return the shipped input of a level, or a short input of the same spectrum and level.
 
     Args:
         level: of `LEVELS`.
@@ -65,14 +65,16 @@ def level_signal(level: str, wheel: str, *, quick: bool) -> Signal:
 
 
 def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
-    """Every shipped input: name -> signal and the comments of its file."""
+    """Return name to signal and comments of every shipped input file."""
     band = (
         f"{SHAKER_EDGE_HZ:g} to {UPPER_BAND_EDGE_HZ:g} Hz (lower edge Butterworth of order {SHAKER_ROLL_OFF_ORDER}, "
         f"lines from {LOWEST_FREQUENCY_HZ:g} Hz)"
     )
     inputs: dict[str, tuple[Signal, list[str]]] = {}
     for name, rms in LEVELS.items():
-        signal = random_road(rms=rms, seed=SEED, lower_band_edge=SHAKER_EDGE_HZ, roll_off_order=SHAKER_ROLL_OFF_ORDER)
+        signal = random_road(
+            rms=rms, seed=SEED, wheel="fl", lower_band_edge=SHAKER_EDGE_HZ, roll_off_order=SHAKER_ROLL_OFF_ORDER
+        )
         inputs[name] = (
             signal,
             [
@@ -84,7 +86,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
             ],
         )
     for name, height in HEIGHTS.items():
-        signal = bump(amplitude=height)
+        signal = bump(amplitude=height, wheel="fl")
         inputs[name] = (
             signal,
             [
@@ -111,7 +113,7 @@ def make_inputs() -> dict[str, tuple[Signal, list[str]]]:
 
 
 def main() -> None:
-    """Write all files and say what was written."""
+    """Write all files and print their names."""
     parser = argparse.ArgumentParser(
         prog="python -m scenarios.inputs.make_inputs", description="Write the shipped inputs."
     )
@@ -119,8 +121,8 @@ def main() -> None:
     folder: Path = parser.parse_args().output
     folder.mkdir(parents=True, exist_ok=True)
     for name, (signal, comments) in make_inputs().items():
-        write_signal(folder / f"{name}.csv", signal, comments)
-        print(f"{folder / name}.csv: RMS {signal.rms('fr'):.6e} m, {signal.duration:g} s")
+        write_signal(folder / f"{name}.csv", signal, comments, plain=True)
+        print(f"{folder / name}.csv: RMS {signal.rms(signal.wheels[0]):.6e} m, {signal.duration:g} s")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Kinematics and compliance of the axles of all cars beside each other, and of axles with one point moved.
+"""Kinematics and compliance of the axles of all cars, and of axles with a moved hardpoint.
 
 python -m scenarios.kinematics [--output DIR] [--quick] [--vehicle FILE]... [--point PATH] [--shift MM]
 """
@@ -26,7 +26,7 @@ REACH = 60
 
 
 def study(files: Sequence[Path], folder: Path, options: argparse.Namespace) -> Findings:
-    """Measure all axles, draw them into the folder, and say what was found."""
+    """Measure all axles, write their figures into the folder, and return the findings."""
     step = 20 if options.quick else 4
     travels = [1e-3 * z for z in range(-REACH, REACH + 1, step)]
     shift = 1e-3 * options.shift
@@ -38,16 +38,19 @@ def study(files: Sequence[Path], folder: Path, options: argparse.Namespace) -> F
     return Findings(
         title="Kinematics and compliance of axles",
         claims=claims(axles, moved),
-        notes=[axle_table(axles), *findings(axles), *(sentence(one, options.point) for one in moved)],
+        notes=[axle_table(axles), *findings(axles), *(sentence(moved_point, options.point) for moved_point in moved)],
         data={
             "axles": {axle.label: {"equal": axle.slopes, "opposite": axle.rolling} for axle in axles},
-            "moved": {one.label: {"gain_deg_per_m2": one.gain, "neutral_m": one.neutral} for one in moved},
+            "moved": {
+                moved_point.label: {"gain_deg_per_m2": moved_point.gain, "neutral_m": moved_point.neutral}
+                for moved_point in moved
+            },
         },
     )
 
 
 def findings(axles: Sequence[Axle]) -> list[str]:
-    """What the table says, in words."""
+    """Return sentences on the table of the axles."""
 
     def each(say: str, value: Callable[[Axle], float]) -> str:
         ranked = sorted((axle for axle in axles if math.isfinite(value(axle))), key=lambda axle: -abs(value(axle)))
@@ -72,42 +75,43 @@ def findings(axles: Sequence[Axle]) -> list[str]:
     ]
 
 
-def sentence(one: Moved, point: str) -> str:
-    """What moving the point does, in words."""
-    if not math.isfinite(one.neutral):
-        return f"{one.label}: {point} does not change toe."
-    middle = one.toe_slopes[len(one.shifts) // 2]
+def sentence(moved_point: Moved, point: str) -> str:
+    """Return a sentence on the effect of moving the point."""
+    if not math.isfinite(moved_point.neutral):
+        return f"{moved_point.label}: {point} does not change toe."
+    middle = moved_point.toe_slopes[len(moved_point.shifts) // 2]
     return (
-        f"{one.label}: {point} higher by 10 mm changes the slope of toe-in by {1e-3 * one.gain:+.2f} deg per 100 mm, "
+        f"{moved_point.label}: {point} higher by 10 mm changes the slope of toe-in by "
+        f"{1e-3 * moved_point.gain:+.2f} deg per 100 mm, "
         f"from {0.1 * middle:+.2f}; by this slope toe would not change over small travel with it moved by "
-        f"{1e3 * one.neutral:+.0f} mm."
+        f"{1e3 * moved_point.neutral:+.0f} mm."
     )
 
 
 def load(options: argparse.Namespace) -> list[Path]:
-    """The files of the cars; what is wrong with the options is refused before the folder is made."""
+    """Return the vehicle files; check the options before the folder is created."""
     if not 0.1 <= options.shift <= 100.0:
         raise ConfigurationError(f"--shift {options.shift:g}: allowed are 0.1 to 100 mm")
     return options.vehicle or [vehicle_file(name) for name in CARS]
 
 
 def parser() -> Parser:
-    """The options of the study."""
-    found = study_parser("kinematics", quick="few points on the curves", jobs="; this study is one process")
-    found.add_argument(
+    """Return the parser of the study."""
+    study_options = study_parser("kinematics", quick="few points on the curves", jobs="; this study is one process")
+    study_options.add_argument(
         "--vehicle",
         type=vehicle_file,
         action="append",
         metavar="FILE.toml",
         help=f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; all of these by default; may be repeated",
     )
-    found.add_argument(
+    study_options.add_argument(
         "--point", default=POINT, metavar="PATH", help="coordinate that is moved; %(default)s by default"
     )
-    found.add_argument(
+    study_options.add_argument(
         "--shift", type=float, default=10.0, metavar="MM", help="by how much [mm]; %(default)s by default"
     )
-    return found
+    return study_options
 
 
 main = Study(parser=parser(), load=load, study=study)

@@ -23,19 +23,19 @@ LEAST_GAIN = 1.0
 """Change of the toe slope that counts [deg/m2]: 0.001 deg per 100 mm for 10 mm."""
 
 POINT = "front.hardpoints.tie_inner.z"
-"""Coordinate that is moved where none is asked for."""
+"""Default coordinate that is moved."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Axle:
-    """An axle of a car as measured on the rig.
+    """Kinematics and compliance of an axle of a car, as measured on the rig.
 
     Attributes:
-        label: car and table.
-        template: what it is.
-        equal, opposite: poses of the right wheel over equal and opposite travel.
-        slopes, rolling: slopes in the design position for these.
-        from_spring: wheel rate of the spring alone, k i^2 + F di/dz with ideal joints [N/m]; nan for one on a slide.
+        label: name of the car and of the axle.
+        template: template of the axle.
+        equal, opposite: poses of the right wheel over equal and opposite travel of both wheels.
+        slopes, rolling: slopes in the design position over equal and opposite travel.
+        from_spring: wheel rate of the spring with ideal joints, k i^2 + F di/dz [N/m]; nan for a spring on a slide.
         across, along: pose under a force to the right and to the rear on both wheels.
     """
 
@@ -51,13 +51,13 @@ class Axle:
 
 
 def measured(car: Car, name: str, travels: Sequence[float]) -> Axle:
-    """All curves of an axle of a car; its table by name, travels of the right wheel [m]."""
+    """Measure all curves of an axle of a car, given by name, over travels of the right wheel [m]."""
     statics = axle_statics(car, name, ideal=False)
     pushed = [statics.solve([0.0, 0.0], np.array([force] * 2))[0] for force in FORCE * np.eye(6)[[1, 0]]]
     ideal, from_spring = axle_statics(car, name, ideal=True), math.nan
     if spring := next(iter(statics.parts.springs), None):
-        low, rest, high = (ideal.solve([z, z])[0].strut_length_m for z in (-SMALL, 0.0, SMALL))
-        ratio, bend = (high - low) / (2.0 * SMALL), (high - 2.0 * rest + low) / SMALL**2
+        low, design, high = (ideal.solve([z, z])[0].strut_length_m for z in (-SMALL, 0.0, SMALL))
+        ratio, bend = (high - low) / (2.0 * SMALL), (high - 2.0 * design + low) / SMALL**2
         # Virtual work: the load of the wheel is the pull of the spring times dL/dz.
         force, rate = spring.pull(0.0)
         from_spring = rate * ratio**2 - force * bend
@@ -75,14 +75,14 @@ def measured(car: Car, name: str, travels: Sequence[float]) -> Axle:
 
 
 def axles_of(cars: Sequence[Car], travels: Sequence[float]) -> list[Axle]:
-    """Every axle with wheels; one whose table another car has too is measured once."""
-    found, seen = [], []
+    """Measure every axle with wheels; an axle with the same table in several cars is measured once."""
+    axles, seen = [], []
     for car in cars:
         for name in dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels):
             if car.vehicle.table[name] not in seen:
                 seen.append(car.vehicle.table[name])
-                found.append(measured(car, name, travels))
-    return found
+                axles.append(measured(car, name, travels))
+    return axles
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -105,34 +105,36 @@ class Moved:
 
     @property
     def gain(self) -> float:
-        """Change of the toe slope with the shift [deg/m2]."""
+        """Return the change of the toe slope with the shift [deg/m2]."""
         return (self.toe_slopes[-1] - self.toe_slopes[0]) / (self.shifts[-1] - self.shifts[0])
 
     @property
     def neutral(self) -> float:
-        """Shift with which toe does not change over small travel [m]; nan where the point does not steer."""
+        """Return the shift for constant toe over small travel [m]; nan for a point without effect on toe."""
         steers = abs(self.gain) > LEAST_GAIN
         return -self.toe_slopes[len(self.shifts) // 2] / self.gain if steers else math.nan
 
 
 def bump_steer_gain(car: Car, axle: str, path: str) -> float:
-    """What a higher inner end of the tie rod does to the slope of toe [deg/m2].
+    """Return the change of the slope of toe per height of the inner end of the tie rod [deg/m2].
 
     The rod keeps its length: with the inner end higher by d, its outer end, which rises by dz, must give way by
     d dz / s, s = (O - I) . (k x (O - A)): the knuckle turns about its steering axis k through the lower ball A.
     """
-    own = {wheel.axle: wheel.name for wheel in car.vehicle.composition.wheels if wheel.side > 0.0}[axle]
+    wheel_names = {wheel.axle: wheel.name for wheel in car.vehicle.composition.wheels if wheel.side > 0.0}[axle]
     names = ("tie_outer", "tie_inner", "lower_ball", "strut_top")
-    if path != f"{axle}.hardpoints.tie_inner.z" or any(f"{name}_{own}" not in car.vehicle.points for name in names):
+    if path != f"{axle}.hardpoints.tie_inner.z" or any(
+        f"{name}_{wheel_names}" not in car.vehicle.points for name in names
+    ):
         return math.nan
-    outer, inner, ball, top = (np.array(car.vehicle.points[f"{name}_{own}"]) for name in names)
+    outer, inner, ball, top = (np.array(car.vehicle.points[f"{name}_{wheel_names}"]) for name in names)
     axis = (top - ball) / np.linalg.norm(top - ball)
     return float(np.degrees(axis[2] / ((outer - inner) @ np.cross(axis, outer - ball))))
 
 
 def moved_axles(files: Sequence[Path], path: str, shift: float, travels: Sequence[float]) -> list[Moved]:
-    """The axles of those cars that have a point, with its coordinate lower, as it is and higher."""
-    axle, found, seen = path.partition(".")[0], [], []
+    """Measure the axles of all cars with a point, with its coordinate lower, unchanged and higher."""
+    axle, labels, seen = path.partition(".")[0], [], []
     shifts = (-shift, 0.0, shift)
     for file in files:
         car = Car.load(file)
@@ -144,16 +146,16 @@ def moved_axles(files: Sequence[Path], path: str, shift: float, travels: Sequenc
         except ConfigurationError:
             continue
         cars = [car if not step else Car.load(file, [f"{path}={old + step!r}"]) for step in shifts]
-        statics = [axle_statics(one, axle, ideal=False) for one in cars]
-        found.append(
+        statics = [axle_statics(entry, axle, ideal=False) for entry in cars]
+        labels.append(
             Moved(
                 label=car.vehicle.name,
                 shifts=shifts,
-                curves=[travel_curve(one, travels) for one in statics],
-                toe_slopes=tuple(float(design_slopes(one)["toe_deg_per_m"] or 0.0) for one in statics),
+                curves=[travel_curve(entry, travels) for entry in statics],
+                toe_slopes=tuple(float(design_slopes(entry)["toe_deg_per_m"] or 0.0) for entry in statics),
                 closed_form=bump_steer_gain(car, axle, path),
             )
         )
-    if not found:
+    if not labels:
         raise ConfigurationError(f"--point {path}: no car has it; give the coordinate of a hardpoint, as {POINT}")
-    return found
+    return labels

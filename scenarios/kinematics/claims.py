@@ -1,4 +1,4 @@
-"""What theory says of axles, beside what the rig finds, and the table of their numbers."""
+"""Rows that compare axle theory with the rig, and the table of slopes and compliances."""
 
 from __future__ import annotations
 
@@ -20,19 +20,21 @@ TWISTED = 5e-3
 """Toe and camber [deg] of an axle that swings about its pivots: bushings of both sides yield alike."""
 
 LEVER_ERROR = 0.1
-"""What the closed form of bump steer leaves out, as a share: the steering axis tilts and the outer end rises less."""
+"""Relative error of the closed form of bump steer: the steering axis tilts and the outer end rises less."""
 
 
 def claims(axles: Sequence[Axle], moved: Sequence[Moved]) -> list[Claim]:
-    """What theory says of these axles, and what the rig finds."""
+    """Return the rows that compare axle theory with the rig."""
     rows = []
     for axle in axles:
         if axle.template == "twist_beam":
-            most = max(max(abs(pose.camber_deg), abs(pose.toe_deg)) for pose in axle.equal)
+            largest_angle = max(max(abs(pose.camber_deg), abs(pose.toe_deg)) for pose in axle.equal)
             why = f"it swings about the line through its pivots; {TWISTED:g} deg for the bushings"
             name = f"{axle.label}: camber and toe over equal travel"
-            rows.append(OWN_CHECK.statement(name, "none", f"at most {most:.1e} deg", most <= TWISTED, why))
-        equal, rolling = (1e-3 * float(one["wheel_rate_n_per_m"] or 0.0) for one in (axle.slopes, axle.rolling))
+            rows.append(
+                OWN_CHECK.statement(name, "none", f"at most {largest_angle:.1e} deg", largest_angle <= TWISTED, why)
+            )
+        equal, rolling = (1e-3 * float(entry["wheel_rate_n_per_m"] or 0.0) for entry in (axle.slopes, axle.rolling))
         rows.append(
             OWN_CHECK.statement(
                 f"{axle.label}: wheel rate over opposite travel",
@@ -42,16 +44,18 @@ def claims(axles: Sequence[Axle], moved: Sequence[Moved]) -> list[Claim]:
                 "an anti-roll bar or a beam twists over opposite travel alone; 0.1 % for axles that have neither",
             )
         )
-    for one in moved:
-        if math.isfinite(one.closed_form):
+    for entry in moved:
+        if math.isfinite(entry.closed_form):
             why = f"a rod of fixed length about the steering axis; {100 * LEVER_ERROR:g} % for what it leaves out"
-            name = f"{one.label}: toe slope for a higher inner end of the tie rod [deg/m2]"
-            rows.append(OWN_CHECK.number(name, one.closed_form, one.gain, LEVER_ERROR * abs(one.closed_form), why))
+            name = f"{entry.label}: toe slope for a higher inner end of the tie rod [deg/m2]"
+            rows.append(
+                OWN_CHECK.number(name, entry.closed_form, entry.gain, LEVER_ERROR * abs(entry.closed_form), why)
+            )
     return rows
 
 
 def axle_table(axles: Sequence[Axle]) -> str:
-    """Slopes and compliances of every axle."""
+    """Return the table of slopes and compliances of all axles."""
     heads = ("camber", "toe-in", "patch, lateral", "spring ratio", "wheel rate", "of it the spring", "opposite travel")
     units = ("[deg/100 mm]", "[deg/100 mm]", "[mm/100 mm]", "[-]", "[N/mm]", "[N/mm]", "[N/mm]")
     columns = ["axle", "template", *(f"{head} {unit}" for head, unit in zip(heads, units, strict=True))]
@@ -70,5 +74,5 @@ def axle_table(axles: Sequence[Axle]) -> str:
 
 
 def _cell(value: float) -> str:
-    """Three digits; a dash for what an axle does not have, no sign for nothing."""
+    """Return a number with three digits; a dash for NaN, no sign for zero."""
     return "-" if math.isnan(value) else f"{round(value, 6) + 0.0:.3g}"

@@ -28,7 +28,7 @@ TRAVEL = "wheel travel [mm], upwards +"
 
 
 def values(poses: Sequence[WheelPose], name: str) -> npt.NDArray[np.float64]:
-    """A quantity of poses, lengths in mm, forces in kN."""
+    """Return a quantity of poses, lengths in mm, forces in kN."""
     scale = {"m": 1e3, "n": 1e-3}.get(name.rpartition("_")[2], 1.0)
     return scale * np.array([getattr(pose, name) for pose in poses])
 
@@ -59,14 +59,14 @@ def travel_figure(path: Path, axles: Sequence[Axle]) -> None:
 
 
 def compliance_figure(path: Path, axles: Sequence[Axle]) -> None:
-    """Write the compliances of all axles as bars; arguments as of `travel_figure`."""
+    """Draw the compliances of all axles as bars; arguments as in `travel_figure`."""
     note = (
         "1 kN to the right (lateral) or to the rear (braking) on both wheels at the ground, design height; right wheel"
     )
     with figure_file(path, (11.0, 5.6), "Compliance of axles", note) as figure:
         for panel, (label, (way, name, scale)) in zip(figure.subplots(2, 2).ravel(), COMPLIANCES.items(), strict=True):
-            found = [scale * getattr(getattr(axle, way), name) for axle in axles]
-            panel.barh([axle.label for axle in axles], found, color=_colours(len(axles)))
+            values = [scale * getattr(getattr(axle, way), name) for axle in axles]
+            panel.barh([axle.label for axle in axles], values, color=_colours(len(axles)))
             panel.axvline(0.0, color="#888888", linewidth=0.6)
             panel.invert_yaxis()
             panel.set(xlabel=label)
@@ -82,18 +82,20 @@ def moved_figure(path: Path, moved: Sequence[Moved], point: str) -> None:
     """
     note = f"{point} of each car changed as in the legend; equal travel, wheel on the right, bushings as they are"
     with figure_file(path, (11.0, 4.2 * len(moved)), f"One point moved: {point}", note) as figure:
-        for row, one in zip(figure.subplots(len(moved), 2, sharey=True, squeeze=False), moved, strict=True):
+        for row, moved_point in zip(figure.subplots(len(moved), 2, sharey=True, squeeze=False), moved, strict=True):
             for panel, label in zip(row, list(PANELS)[:2], strict=True):
-                for poses, shift, colour, style in zip(one.curves, one.shifts, COLOURS, LINES, strict=False):
+                for poses, shift, colour, style in zip(
+                    moved_point.curves, moved_point.shifts, COLOURS, LINES, strict=False
+                ):
                     height = values(poses, "wheel_travel_m")
-                    words = f"{1e3 * shift:+g} mm" if shift else "as it is"
-                    panel.plot(values(poses, PANELS[label]), height, color=colour, linestyle=style, label=words)
+                    shift_label = f"{1e3 * shift:+g} mm" if shift else "as it is"
+                    panel.plot(values(poses, PANELS[label]), height, color=colour, linestyle=style, label=shift_label)
                 panel.axhline(0.0, color="#888888", linewidth=0.6)
-                panel.set(xlabel=label, title=one.label)
+                panel.set(xlabel=label, title=moved_point.label)
             row[0].set(ylabel=TRAVEL)
             row[1].legend(loc="best")
 
 
 def _colours(count: int) -> list[str]:
-    """A colour for each axle."""
+    """Return a colour for each axle."""
     return [COLOURS[index % len(COLOURS)] for index in range(count)]

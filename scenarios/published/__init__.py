@@ -1,1 +1,1 @@
-"""All published results of the three sources beside ours: one table, one page."""
+"""All published results of the thesis and the two papers with our values: one table, one page."""

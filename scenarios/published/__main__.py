@@ -1,4 +1,4 @@
-"""All published results beside ours: runs the studies, or reads finished ones, and writes one table and one page.
+"""Table and page of all published results with our values, from new or finished runs of the studies.
 
 python -m scenarios.published [--output DIR] [--quick] [--jobs N] [--reuse]
 """
@@ -43,7 +43,8 @@ STUDIES = tuple(study for source in SOURCES for study in source.studies)
 def parser() -> Parser:
     """Return the options of the command."""
     result = Parser(
-        prog="python -m scenarios.published", description="Every published result of the three sources beside ours."
+        prog="python -m scenarios.published",
+        description="Compare all results of the thesis and the two papers with ours.",
     )
     output_options(result, None, default=f"{HOME} with the page {PAGE}, or {QUICK_HOME} with --quick,")
     result.add_argument(
@@ -82,12 +83,12 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: Path) -> list[str]:
-    """Copy the pictures that rows name, smaller; report on standard error which ones are missing; remove old ones.
+    """Copy the pictures of the rows at reduced size, remove old copies, and report missing pictures on standard error.
 
     Args:
         results: study to the content of its `results.json`.
-        runs: folder of the studies' own results.
-        folder: where the copies go.
+        runs: folder of the results of the studies.
+        folder: folder of the copies.
 
     Returns:
         Names of the copies.
@@ -109,15 +110,15 @@ def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: 
 
 
 def study_results(name: str, options: argparse.Namespace) -> dict[str, Any]:
-    """Return the content of `results.json` of a study, run now unless a finished one may be read.
+    """Return the content of `results.json` of a study; run the study unless a finished run may be used.
 
     Args:
-        name: of the study.
-        options: as of `parser`.
+        name: name of the study.
+        options: options of `parser`.
 
     Raises:
-        SimulationError: the study failed; its own message is printed above.
-        DataError: its file cannot be read.
+        SimulationError: the study failed; its message is printed above.
+        DataError: the file of the study cannot be read.
     """
     folder = options.runs / name
     path = folder / "results.json"

@@ -1,4 +1,4 @@
-"""The page `published-results.md`: figure by figure, what a source says, our picture, our number, the verdict, why."""
+"""Page `published-results.md`: for each figure the published statement, our picture, our value, verdict and reason."""
 
 from __future__ import annotations
 
@@ -83,19 +83,19 @@ def page(
 
 
 def _index(rows: Sequence[Row]) -> Iterator[str]:
-    """Links to all places, with how many rows there disagree."""
+    """Yield links to all places, with the number of disagreeing rows."""
     yield "## Figures, tables and sections\n"
     for source in SOURCES:
         links = []
-        for _, place, found in _places(source, rows):
-            wrong = sum(row["within"] is False for row in found)
-            links.append(f"[{_heading(place)}](#{_anchor(source, place)})" + (f" ({wrong} NO)" if wrong else ""))
+        for _, location, group in _places(source, rows):
+            wrong = sum(row["within"] is False for row in group)
+            links.append(f"[{_heading(location)}](#{_anchor(source, location)})" + (f" ({wrong} NO)" if wrong else ""))
         if links:
             yield f"**{_upper(source.short)}:** {', '.join(links)}.\n"
 
 
 def _disagreements(rows: Sequence[Row]) -> Iterator[str]:
-    """All rows that disagree, predicted ones first."""
+    """Yield all disagreeing rows, predicted rows first."""
     yield "## Rows that do not agree\n"
     wrong = sorted((row for row in rows if row["within"] is False), key=lambda row: STATUSES.index(row["status"]))
     if not wrong:
@@ -103,8 +103,8 @@ def _disagreements(rows: Sequence[Row]) -> Iterator[str]:
         return
     table = []
     for row in wrong:
-        source, place = source_of(study_of(row)), place_of(row["place"])
-        link = f"[{_upper(source.short)}: {_lower(_heading(place))}](#{_anchor(source, place)})"
+        source, location = source_of(study_of(row)), place_of(row["place"])
+        link = f"[{_upper(source.short)}: {_lower(_heading(location))}](#{_anchor(source, location)})"
         table.append((link, *_cells(row, ("name", "published", "ours", "status", "why"))))
     yield markdown(("where", "statement", "published", "ours", "status", "why"), table) + "\n"
 
@@ -115,35 +115,35 @@ def _source(source: Source, rows: Sequence[Row], figures: str, pictures: frozens
     yield f"## {_upper(source.short)}\n"
     yield f"{source.title}. {headline(rows)}.\n"
     before: Section | None = None
-    for section, place, found in _places(source, rows):
+    for section, location, group in _places(source, rows):
         if section is not None and section != before:
             yield f"### {section.number} {section.title}\n"
         before = section
-        yield f'<a id="{_anchor(source, place)}"></a>\n'
-        yield f"#### {_heading(place)}\n"
-        yield f"{', '.join(f'`{name}`' for name in dict.fromkeys(study_of(row) for row in found))}\n"
-        for picture in dict.fromkeys(row["picture"] for row in found if row["picture"] in pictures):
-            yield f"![{_heading(place)}]({figures}/{picture})\n"
+        yield f'<a id="{_anchor(source, location)}"></a>\n'
+        yield f"#### {_heading(location)}\n"
+        yield f"{', '.join(f'`{name}`' for name in dict.fromkeys(study_of(row) for row in group))}\n"
+        for picture in dict.fromkeys(row["picture"] for row in group if row["picture"] in pictures):
+            yield f"![{_heading(location)}]({figures}/{picture})\n"
         yield markdown(
-            ROW_COLUMNS, [_cells(row, ("name", "published", "ours", "within", "status", "why")) for row in found]
+            ROW_COLUMNS, [_cells(row, ("name", "published", "ours", "within", "status", "why")) for row in group]
         )
         yield ""
 
 
 def _places(source: Source, rows: Sequence[Row]) -> Iterator[tuple[Section | None, Place, list[Row]]]:
-    """The places of a source in its order, with their rows; what has no place is last."""
-    own = [row for row in rows if source_of(study_of(row)) is source]
+    """Yield section, place and rows in the order of the source; rows without place come last."""
+    source_rows = [row for row in rows if source_of(study_of(row)) is source]
 
     def key(row: Row) -> tuple[object, ...]:
-        place = place_of(row["place"])
-        section = section_of(source, place)
+        location = place_of(row["place"])
+        section = section_of(source, location)
         order = source.sections.index(section) if section else len(source.sections)
-        return order, *place.sort_key
+        return order, *location.sort_key
 
-    for _, found in groupby(sorted(own, key=key), key=key):
-        group = list(found)
-        place = place_of(group[0]["place"])
-        yield section_of(source, place), place, group
+    for _, same_place in groupby(sorted(source_rows, key=key), key=key):
+        group = list(same_place)
+        location = place_of(group[0]["place"])
+        yield section_of(source, location), location, group
 
 
 def _cells(row: Row, names: Sequence[str]) -> list[str]:
@@ -151,13 +151,13 @@ def _cells(row: Row, names: Sequence[str]) -> list[str]:
     return [" ".join(text.split()).replace("|", "\\|") for text in texts]
 
 
-def _heading(place: Place) -> str:
-    """What no figure, table or section holds is mostly a check of our own."""
-    return place.text or "Elsewhere"
+def _heading(location: Place) -> str:
+    """Return the heading of a place; "Elsewhere" for rows without place, mostly own checks."""
+    return location.text or "Elsewhere"
 
 
-def _anchor(source: Source, place: Place) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", f"{source.key} {_heading(place)}".lower()).strip("-")
+def _anchor(source: Source, location: Place) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", f"{source.key} {_heading(location)}".lower()).strip("-")
 
 
 def _upper(text: str) -> str:

@@ -16,7 +16,7 @@ WIDTHS = (1000, 850, 700, 600, 500, 400)
 """Widths that are tried [pixel]; 1000 are the width of a page on a common screen."""
 
 COLOURS = 256
-"""Colours of a copy, by an octree: Pillow's median cut turns a thin red line blue beside longer blue ones."""
+"""Number of colours of a copy, quantised by an octree: the median cut of Pillow turns a thin red line blue."""
 
 
 def write_copy(figure: Path, copy: Path) -> None:

@@ -1,4 +1,4 @@
-"""The three sources: title, studies, sections, and where in them a row belongs."""
+"""The publications (thesis of Bommer and two papers): title, studies, sections, and the places of rows."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Number = tuple[str, ...]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Section:
-    """A section of a source.
+    """Section of a publication.
 
     Attributes:
-        number: as printed.
-        title: as printed.
-        first: number of its first figure; None where it has no figure.
+        number: printed number.
+        title: printed title.
+        first: number of the first figure; None for a section without figures.
     """
 
     number: str
@@ -27,15 +27,15 @@ class Section:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Source:
-    """A publication and the studies that compute its results.
+    """Publication, with the studies that compute its results.
 
     Attributes:
-        key: for anchors of the page.
+        key: prefix of the anchors of the page.
         short: name in tables.
         title: full reference.
         studies: names of the studies, in the order of the table.
-        sections: in the order of the source; empty where figures are numbered through.
-        tables: number of a table to the number of its section.
+        sections: sections in order; empty for a publication with figures numbered consecutively.
+        tables: number of a table to number of its section.
     """
 
     key: str
@@ -131,12 +131,12 @@ REFERENCE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where in a source a row belongs: a figure or table where the text names one, else a section.
+    """Place of a row in a publication: a figure or table if the text contains one, else a section.
 
     Attributes:
-        kind: as in `KINDS`; empty where the text refers to none.
-        number: of the first figure, table or section, "" without.
-        text: as a heading.
+        kind: type of the place, see `KINDS`; empty for a text without reference.
+        number: number of the first figure, table or section, or "".
+        text: text of the heading.
     """
 
     kind: str
@@ -145,43 +145,43 @@ class Place:
 
     @property
     def sort_key(self) -> tuple[object, ...]:
-        """Order within a section: text first, then tables, then figures, each by number."""
+        """Return the order within a section: text first, then tables, then figures, each by number."""
         parts = tuple((1, 0, part) if part.isalpha() else (0, int(part), "") for part in self.number.split(".") if part)
         return KINDS.index(self.kind), parts, self.text
 
 
 def place_of(text: str) -> Place:
     """Return the place that the text of a row names: "section 2.3.2.4, figure 2.13" is at figure 2.13."""
-    found = [(kind, numbers) for kind, numbers in REFERENCE.findall(text)]
-    if not found:
+    references = [(reference_type, numbers) for reference_type, numbers in REFERENCE.findall(text)]
+    if not references:
         return Place("", "", text.strip().capitalize())
-    kind, numbers = min(found, key=lambda pair: pair[0] not in {"figure", "table"})
+    reference_type, numbers = min(references, key=lambda pair: pair[0] not in {"figure", "table"})
     first = re.split(r", | and | to ", numbers)[0]
-    word = "appendix" if kind.startswith("appendi") else kind
+    word = "appendix" if reference_type.startswith("appendi") else reference_type
     several = {"appendix": "appendices"}.get(word, f"{word}s")
     heading = f"{word if numbers == first else several} {numbers}"
     return Place({"chapter": "section"}.get(word, word), first, heading[0].upper() + heading[1:])
 
 
-def section_of(source: Source, place: Place) -> Section | None:
-    """Return the section of a source that holds a place.
+def section_of(source: Source, location: Place) -> Section | None:
+    """Return the section of a publication that contains a place.
 
     Args:
         source: the publication.
-        place: of a row.
+        location: place of a row.
 
     Returns:
-        None where the source has no sections, or none of them holds the place.
+        The section; None if no section contains the place.
     """
-    if place.kind == "table":
-        return _named(source, source.tables.get(place.number, place.number))
-    if place.kind == "figure":
-        return _with_figure(source, place.number)
-    return _named(source, place.number) if place.kind else None
+    if location.kind == "table":
+        return _named(source, source.tables.get(location.number, location.number))
+    if location.kind == "figure":
+        return _with_figure(source, location.number)
+    return _named(source, location.number) if location.kind else None
 
 
 def _named(source: Source, number: str) -> Section | None:
-    """The section of that number, the one around it, else the first one of that chapter."""
+    """Return the section of a number, else the section around it, else the first section of its chapter."""
     around = [s for s in source.sections if f"{number}.".startswith(f"{s.number}.")]
     inside = [s for s in source.sections if s.number.startswith(f"{number}.")]
     chapter = [s for s in source.sections if s.number.split(".")[0] == number.split(".")[0]]

@@ -1,4 +1,4 @@
-"""Statements of the sources, and the rows that answer each; a statement without a row is named on the page."""
+"""Statements of the publications with their rows; the page lists statements without a row."""
 
 from __future__ import annotations
 
@@ -100,11 +100,11 @@ any study."""
 
 
 def unanswered(rows: Sequence[Mapping[str, Any]], left_open: Iterable[str] = ()) -> list[str]:
-    """Return the statements that no row answers.
+    """Return the statements without a row.
 
     Args:
-        rows: of all studies; see `scenarios.published.table`.
-        left_open: "study: name" of rows that short signals cannot judge; they answer a statement too.
+        rows: rows of all studies, see `scenarios.published.table`.
+        left_open: "study: name" of rows that short signals cannot judge; they also count as rows of a statement.
     """
     texts = {*left_open}
     for row in rows:

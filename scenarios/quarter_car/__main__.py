@@ -14,7 +14,7 @@ from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import Runs
 from scenarios.study import lumped_study
-from vehicle.model.parameters.quarter_car import PUBLISHED, load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import PUBLISHED, load_quarter_car
 
 
 def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | str:
@@ -25,13 +25,13 @@ def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | s
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of this study alone."""
+    """Add the options of this study."""
     names = f"one of {', '.join(FIGURES)}; no table"
     parser.add_argument("--figure", choices=list(FIGURES), metavar="NAME", help=names)
 
 
 def load(options: argparse.Namespace) -> Runs:
-    """The parameters and what was computed with them."""
+    """Return the runs of the parameters in a file."""
     return Runs(car=load_quarter_car(options.parameters or PUBLISHED), quick=options.quick)
 
 

@@ -1,4 +1,4 @@
-"""Published statements about the quarter-car family beside our numbers."""
+"""Findings of the quarter-car study: published statements with our values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from scenarios.study import VERTICAL_TYRES
 
 
 def findings(runs: Runs) -> Findings:
-    """The table of the whole study."""
+    """Return the findings of the whole study."""
     claims: list[Claim] = [*mode_claims(runs), *phase_claims(runs), swing_claim(), *mass_on_damper_claims(runs)]
     claims += [*sine_claims(runs), *level_claims(runs), *element_claims(runs), *engine_sine_claims(runs)]
     claims += [*engine_road_claims(runs), *steepness_claims(runs), *degressive_claims(runs), *strut_claims(runs)]

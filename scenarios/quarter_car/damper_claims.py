@@ -28,7 +28,7 @@ ROADS = (("low", LOW), ("high", HIGH))
 
 
 def degressive_claims(runs: Runs) -> list[Claim]:
-    """Degressive against constant damping, on elastomer and with eps 1e6 s/m."""
+    """Return the rows on degressive against constant damping, with elastomer and eps 1e6 s/m."""
     wheel, body = (
         [peak(*response(runs, *case, level), band) for case in ((*DEGRESSIVE,), (*CONSTANT,))]
         for level, band in ((LOW, (20.0, 30.0)), (HIGH, FIRST))
@@ -37,23 +37,24 @@ def degressive_claims(runs: Runs) -> list[Claim]:
         name: [runs.marched(case[0], level, case[1]).sliding_velocity for case in (DEGRESSIVE, CONSTANT)]
         for name, level in ROADS
     }
-    (bent, straight), reach = velocity["low"], runs.car.degressive.knee_velocity
-    largest = [np.abs(one).max(axis=1) for one in (bent, straight)]
+    (bent, straight), slow_share = velocity["low"], runs.car.degressive.knee_velocity
+    largest = [np.abs(velocities).max(axis=1) for velocities in (bent, straight)]
     share = {
-        limit: [100.0 * float(np.mean(np.abs(one) <= limit)) for one in (bent, straight)] for limit in (SLIPS, *SLOW)
+        limit: [100.0 * float(np.mean(np.abs(velocities) <= limit)) for velocities in (bent, straight)]
+        for limit in (SLIPS, *SLOW)
     }
     stuck = share[SLIPS]
     slow = ", ".join(
         f"{share[limit][0]:.1f} against {share[limit][1]:.1f} % below {1e3 * limit:g} mm/s" for limit in SLOW
     )
-    high = [np.abs(one).max(axis=1) for one in velocity["high"]]
+    high = [np.abs(velocities).max(axis=1) for velocities in velocity["high"]]
     influence = {name: _influence(runs, level, 0) for name, level in ROADS}
     less = {name: [_influence(runs, level, variant) for variant in (1, 2)] for name, level in ROADS}
     frequency, density = runs.spectrum(DEGRESSIVE[0], HIGH, DEGRESSIVE[1])
     _, constant = runs.spectrum(CONSTANT[0], HIGH, CONSTANT[1])
     above = frequency > 5.0
     ratio = float(np.sqrt(density[above].sum() / constant[above].sum()))
-    place, picture = "figure C.3", "figure_c_3.png"
+    figure, picture = "figure C.3", "figure_c_3.png"
     roads = f"{runs.roads} roads of {runs.duration:g} s"
     rows = [
         PREDICTED.statement(
@@ -70,7 +71,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             f"{1e3 * largest[1].max():.2g} mm/s",
             rms(bent) < rms(straight),
             roads,
-            place=place,
+            place=figure,
             picture=picture,
         ),
         PREDICTED.statement(
@@ -78,18 +79,18 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             "larger",
             f"{stuck[0]:.1f} against {stuck[1]:.1f} % of the time",
             stuck[0] > stuck[1],
-            f"sticks: below 100 / eps = {1e3 * SLIPS:g} mm/s; the source does not say what it counts: {slow}; {roads}",
-            place=place,
+            f"sticks: below 100 / eps = {1e3 * SLIPS:g} mm/s; the thesis does not define the count: {slow}; {roads}",
+            place=figure,
             picture=picture,
         ),
         PREDICTED.statement(
             "low road: relative velocity of the damper stays below the knee",
-            f"below {reach:g} m/s",
+            f"below {slow_share:g} m/s",
             f"largest {largest[1].max():.4f} m/s with constant damping",
-            bool(largest[1].max() < reach),
-            f"an assumption of the source; the level in 1 to 50 Hz hangs on the band of the road, which is not told: "
-            f"velocities go with the square root of its lower edge, here 1/30 Hz; {roads}",
-            place=place,
+            bool(largest[1].max() < slow_share),
+            f"an assumption of the source; the level in 1 to 50 Hz depends on the band of the road, which is not "
+            f"printed: velocities go with the square root of its lower edge, here 1/30 Hz; {roads}",
+            place=figure,
             picture=picture,
         ),
         spread_claim(
@@ -97,7 +98,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             (0.01, 0.02),
             np.maximum(*largest),
             f"axis from -0.02 to 0.02 m/s with labels 0.01 apart; larger of both dampers; {roads}",
-            place=place,
+            place=figure,
             picture=picture,
         ),
         spread_claim(
@@ -105,7 +106,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             (0.5, 1.0),
             np.maximum(*high),
             f"axis to -1 m/s with labels 0.5 apart; larger of both dampers; {roads}",
-            place=place,
+            place=figure,
             picture=picture,
         ),
         PREDICTED.statement(
@@ -145,20 +146,22 @@ def degressive_claims(runs: Runs) -> list[Claim]:
 
 
 def _influence(runs: Runs, level: float, variant: int) -> float:
-    """Mean change of the PSD from constant to degressive damping [dB]."""
+    """Return the mean change of the PSD from constant to degressive damping [dB]."""
     _, bent = runs.spectrum(DEGRESSIVE[0], level, variant)
     _, straight = runs.spectrum(CONSTANT[0], level, CONSTANT[1])
     return float(np.mean(np.abs(10.0 * np.log10(bent / straight))))
 
 
 def strut_claims(runs: Runs) -> list[Claim]:
-    """Strut at an angle, and the longitudinal damping of the wheel."""
+    """Return the rows on an inclined strut, and on the longitudinal damping of the wheel."""
     angle, damping = ({"place": f"figure D.{n}", "picture": f"figure_d_{n}.png"} for n in (4, 5))
     claims = []
     for name, level in ROADS:
         frequency, upright = runs.spectrum(DEGRESSIVE[0], level, DEGRESSIVE[1])
         at = [runs.spectrum("inclined", level, variant)[1] for variant in range(4)]
-        whole, near = ([_change(one, upright, frequency, band) for one in at] for band in ((1.0, 50.0), NEAR_20))
+        whole, near = (
+            [_change(inclined, upright, frequency, band) for inclined in at] for band in ((1.0, 50.0), NEAR_20)
+        )
         claims += [
             PREDICTED.statement(
                 f"angle of the strut, {name} road: body acceleration 1 to 50 Hz",
@@ -197,11 +200,11 @@ def strut_claims(runs: Runs) -> list[Claim]:
 
 
 def _change(density: Array, against: Array, frequency: Array, band: tuple[float, float]) -> float:
-    """Change of the RMS in a band [%]."""
+    """Return the change of the RMS in a band [%]."""
     inside = (frequency >= band[0]) & (frequency <= band[1])
     return 100.0 * (float(np.sqrt(density[inside].sum() / against[inside].sum())) - 1.0)
 
 
 def _longitudinal(runs: Runs) -> float:
-    """Frequency of the wheel on its longitudinal stiffness [Hz]."""
+    """Return the natural frequency of the wheel on its longitudinal stiffness [Hz]."""
     return float(np.sqrt(runs.car.strut.longitudinal_stiffness / runs.car.wheel.mass) / (2.0 * np.pi))

@@ -24,7 +24,7 @@ from scenarios.quarter_car.runs import (
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.lumped.history import History
-from vehicle.engines.lumped.quarter_car import elastomer
+from vehicle.engines.lumped.quarter_car_network import elastomer
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.signals.analysis.spectra import power_spectral_density
 
@@ -58,12 +58,12 @@ CONSTANT_AND_DEGRESSIVE = {"constant damping": CONSTANT, "degressive": DEGRESSIV
 def _curves(
     named: Mapping[str, Any], colours: Sequence[str] = COLOURS, styles: Sequence[str] = ("-", "--", ":")
 ) -> list[tuple[str | None, Any, str, str]]:
-    """Curves in the colours and line styles of their order."""
+    """Draw curves in the colours and line styles of their order."""
     return [(name, values, c, s) for (name, values), c, s in zip(named.items(), colours, styles, strict=False)]
 
 
 def _over_time(panel: Any, histories: Mapping[str, History], label: str, of: Quantity, *, title: str = "") -> None:
-    """One quantity of several histories over time."""
+    """Draw a quantity of several histories over time."""
     time = next(iter(histories.values())).time
     curves = _curves({name: of(history) for name, history in histories.items()})
     lines(panel, time, curves, xlabel="time [s]", ylabel=label, title=title)
@@ -72,7 +72,7 @@ def _over_time(panel: Any, histories: Mapping[str, History], label: str, of: Qua
 def _sines(
     runs: Runs, path: Path, *, caption: str, quantities: Mapping[str, Quantity], compared: Mapping[str, Run]
 ) -> None:
-    """Low and high sine side by side, from 3 to 5 s."""
+    """Draw low and high sine in two panels, from 3 to 5 s."""
     with chart(path, caption, rows=len(quantities), columns=2, size=(9, 3.4 * len(quantities) + 0.6)) as axes:
         for column, amplitude in enumerate((LOW, HIGH)):
             histories = {name: run(runs, amplitude).during(3.0) for name, run in compared.items()}
@@ -84,13 +84,13 @@ def _sines(
 def _roads(
     runs: Runs, path: Path, *, caption: str, compared: Mapping[str, tuple[str, int]], zoom: bool = False
 ) -> None:
-    """Body acceleration spectra on the low and the high road side by side; below, the neighbourhood of 20 Hz.
+    """Draw body acceleration spectra on the low and the high road in two panels; optionally with a zoom about 20 Hz.
 
     Args:
-        runs: where the spectra come from.
-        path: file to write.
-        caption: what is compared.
-        compared: label -> family and variant.
+        runs: runs with the spectra.
+        path: PNG file.
+        caption: caption of the comparison.
+        compared: label to family and variant.
         zoom: draw the second row.
     """
     caption += f" Mean over {runs.roads} random roads."
@@ -109,15 +109,15 @@ def _roads(
             panel.legend(fontsize=8)
 
 
-def _force_axes(panel: Any, reach: float, name: str) -> None:
-    """Axes of a friction force over a velocity up to `reach` [m/s]."""
-    panel.set(xlim=(-reach, reach), xlabel=f"{name} [m/s]", ylabel="friction force [N]")
+def _force_axes(panel: Any, limit: float, name: str) -> None:
+    """Set the axes of a friction force over velocity."""
+    panel.set(xlim=(-limit, limit), xlabel=f"{name} [m/s]", ylabel="friction force [N]")
     panel.legend(fontsize=8)
     panel.ticklabel_format(axis="x", style="sci", scilimits=(0, 0))
 
 
 def figure_2_5(runs: Runs, path: Path) -> None:
-    """FRFs of the linear models."""
+    """Draw the FRFs of the linear models."""
     frequency = np.geomspace(1.0, 50.0, 800)
     caption = (
         "Response to the road displacement: damper in slip (2.1) and in stick (2.2). Dotted: the frequencies of the "
@@ -131,18 +131,18 @@ def figure_2_5(runs: Runs, path: Path) -> None:
     with chart(path, caption, rows=2, columns=2, size=(9, 7)) as axes:
         for column, damper in enumerate(("slip", "stick")):
             model = runs.model(damper=damper)
-            found = {output: frequency_response(model, frequency, output) for output in ("body", "wheel")}
+            responses = {output: frequency_response(model, frequency, output) for output in ("body", "wheel")}
             for row, (label, part) in enumerate(parts.items()):
-                curves = _curves({output: part(response) for output, response in found.items()})
+                curves = _curves({output: part(response) for output, response in responses.items()})
                 lines(axes[2 * row + column], frequency, curves, xlabel="frequency [Hz]", ylabel=label, title=damper)
                 axes[2 * row + column].set_xscale("log")
-                for told in TOLD[damper]:
-                    axes[2 * row + column].axvline(told, color="#888888", linestyle=":", linewidth=0.9)
+                for width_label in TOLD[damper]:
+                    axes[2 * row + column].axvline(width_label, color="#888888", linestyle=":", linewidth=0.9)
             axes[column].set_yscale("log")
 
 
 def figure_2_6(runs: Runs, path: Path) -> None:
-    """Road displacement and its spectra."""
+    """Draw the road displacement and its spectra."""
     road = runs.road_profile(HIGH)
     shape = power_spectral_density(STEP, road)
     inside = (shape.frequency >= 1.0) & (shape.frequency <= 50.0)
@@ -158,7 +158,7 @@ def figure_2_6(runs: Runs, path: Path) -> None:
 
 
 def figure_2_9(runs: Runs, path: Path) -> None:
-    """Mass on a damper: both friction models over time."""
+    """Draw the mass on a damper over time, with both friction models."""
     caption = (
         "Mass on a damper with friction under a force of 110 N at 2 Hz: smooth law (eps 1e6 s/m) and switch model "
         "(eta 1e-6 m/s); right: at the start of a slip."
@@ -176,18 +176,18 @@ def figure_2_9(runs: Runs, path: Path) -> None:
 
 
 def figure_2_10(runs: Runs, path: Path) -> None:
-    """Friction force over velocity for both friction models."""
+    """Draw the friction force over velocity for both friction models."""
     histories = {name: runs.mass_on_damper(name) for name in ("smooth", "switch")}
     with chart(path, "Friction force over velocity, smooth law and switch model; right: near zero.", columns=2) as axes:
-        for panel, reach in zip(axes, (5e-3, 5e-5), strict=True):
+        for panel, limit in zip(axes, (5e-3, 5e-5), strict=True):
             for label, history, color, style in _curves(histories):
                 v, force = history.sliding_velocity(), history.sliding_force[:, 0]
                 panel.plot(v, force, color=color, linestyle=style, linewidth=1.2, label=label)
-            _force_axes(panel, reach, "velocity")
+            _force_axes(panel, limit, "velocity")
 
 
 def figure_2_14(runs: Runs, path: Path) -> None:
-    """Body acceleration spectra for growing roads."""
+    """Draw body acceleration spectra for increasing road levels."""
     caption = f"Body acceleration of the friction model (2.6), mean over {runs.roads} random roads, five levels."
     with chart(path, caption, size=(9, 6)) as axes:
         for level, color in zip(LEVELS, COLOURS, strict=True):
@@ -198,7 +198,7 @@ def figure_2_14(runs: Runs, path: Path) -> None:
 
 
 def figure_2_15(runs: Runs, path: Path) -> None:
-    """Body displacement on a low and a high road."""
+    """Draw the body displacement on a low and a high road."""
     caption = "Body displacement: undamped shaking on the low road, damped motion on the high one."
     with chart(path, caption, rows=2, size=(9, 6)) as axes:
         for panel, level in zip(axes, (LEVELS[0], LEVELS[-1]), strict=True):
@@ -217,7 +217,7 @@ def figure_2_15(runs: Runs, path: Path) -> None:
 
 
 def figure_2_18(runs: Runs, path: Path) -> None:
-    """Accelerations of engine and wheel relative to the body."""
+    """Draw the accelerations of engine and wheel relative to the body."""
     with chart(path, "Engine and wheel relative to the body, engine on its linear mount (2.7).", columns=2) as axes:
         for panel, amplitude in zip(axes, (LOW, HIGH), strict=True):
             history = runs.sine(amplitude, engine="linear").during(3.0)
@@ -228,7 +228,7 @@ def figure_2_18(runs: Runs, path: Path) -> None:
 
 
 def figure_2_20(runs: Runs, path: Path) -> None:
-    """Dynamic stiffness of the elastomer."""
+    """Draw the dynamic stiffness of the elastomer."""
     frequency = np.geomspace(0.1, 1000.0, 400)
     stiffness = elastomer(runs.car).complex_stiffness(2 * np.pi * frequency)
     parts = {"|K| [N/m]": np.abs(stiffness), "loss angle [deg]": np.degrees(np.angle(stiffness))}
@@ -239,32 +239,32 @@ def figure_2_20(runs: Runs, path: Path) -> None:
 
 
 def figure_b_1(runs: Runs, path: Path) -> None:
-    """The smooth law for three steepnesses, with the velocities met in the runs of table B.1."""
+    """Draw the smooth law for three steepnesses, with the velocities in the runs of table B.1."""
     caption = "Smooth friction law for three steepnesses eps; dots: samples of the runs of table B.1 (road RMS 0.5 mm)."
     velocity = np.linspace(-0.015, 0.015, 4001)
     with chart(path, caption, columns=2) as axes:
-        for panel, reach in zip(axes, (0.015, 5e-4), strict=True):
+        for panel, limit in zip(axes, (0.015, 5e-4), strict=True):
             for variant, (steepness, color) in enumerate(zip((1e6, 1e5, 1e4), COLOURS, strict=False)):
                 law = Coulomb(friction_limit=runs.car.friction.limit, smoothing=steepness)
-                v = velocity * reach / 0.015
+                v = velocity * limit / 0.015
                 panel.plot(v, law.force(v), color=color, linewidth=1.2, label=f"eps {steepness:.0e} s/m")
                 met = runs.marched("small mass", LEVELS[0], variant).sliding_velocity[0, ::50]
                 panel.plot(met, law.force(met), ".", color=color, markersize=3)
-            _force_axes(panel, reach, "damper velocity")
+            _force_axes(panel, limit, "damper velocity")
 
 
 def figure_c_3(runs: Runs, path: Path) -> None:
-    """Relative velocity of the damper with and without degressive damper."""
+    """Draw the relative velocity of the damper with a degressive and a constant damper."""
     with chart(
         path, "Velocity of the damper on one road, degressive and with constant damping (eps 1e6 s/m).", columns=2
     ) as axes:
         for panel, level in zip(axes, (LOW, HIGH), strict=True):
-            found = {
+            velocities = {
                 name: runs.marched(family, level, variant).sliding_velocity[0]
                 for name, (family, variant) in CONSTANT_AND_DEGRESSIVE.items()
             }
-            time, title = STEP * np.arange(found["degressive"].size), f"road RMS {1e3 * level:g} mm"
-            curves = _curves(found, COLOURS[1::-1], ("-", "-"))
+            time, title = STEP * np.arange(velocities["degressive"].size), f"road RMS {1e3 * level:g} mm"
+            curves = _curves(velocities, COLOURS[1::-1], ("-", "-"))
             lines(panel, time, curves, xlabel="time [s]", ylabel="damper velocity [m/s]", title=title)
 
 

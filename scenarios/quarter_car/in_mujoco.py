@@ -1,4 +1,4 @@
-"""The quarter car stepped by MuJoCo with the element rows of the complete car, beside the lumped model of the same."""
+"""Quarter car in MuJoCo with the element rows of the complete car, compared with the lumped model."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ import numpy.typing as npt
 from scenarios.claims import OWN_CHECK, Claim
 from scenarios.quarter_car.runs import STEP, Runs, rms
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.model.assembly.quarter_car import WHEEL, quarter_car_spec
+from vehicle.model.assembly.quarter_car_spec import WHEEL, quarter_car_spec
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.friction import Clamped
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.signal import Signal
 
@@ -52,20 +52,20 @@ def in_mujoco(
     timestep: float = DEFAULT_STEP,
     damper: Literal["slip", "stick", "friction"] = "friction",
 ) -> Motion:
-    """Step the quarter car on its plate from rest.
+    """Simulate the quarter car on its plate from rest in MuJoCo.
 
     Args:
-        car: the parameters.
+        car: parameters of the quarter car.
         signal: displacement of the front right plate.
         timestep: step [s].
-        damper: as of `quarter_car_spec`.
+        damper: damper model, see `quarter_car_spec`.
 
     Returns:
-        The motion from 0 to the end of the signal, every step.
+        Motion from 0 to the end of the signal, at every step.
 
     Raises:
         ConfigurationError: an unknown damper model or a bad step.
-        SimulationError: another simulation of this process holds the callbacks.
+        SimulationError: another simulation of this process uses the callbacks.
     """
     model = quarter_car_spec(car, timestep=timestep, damper=damper).compile()
     prepare_model(model)
@@ -95,7 +95,7 @@ def in_mujoco(
 
 
 def friction_of_the_rows(car: QuarterCar) -> FirstOrder:
-    """The friction model (2.6) with the law that a friction row answers: min(Fd, max(-Fd, c v)), c = (2/pi) Fd eps."""
+    """Return the friction model (2.6) with the law of a friction row: min(Fd, max(-Fd, c v)), c = (2/pi) Fd eps."""
     network = quarter_car(car, damper="friction")
     law = Clamped(law=Coulomb(friction_limit=car.friction.limit, smoothing=car.friction.steepness))
     return dataclasses.replace(network, slides=(dataclasses.replace(network.slides[0], friction=law),)).first_order()
@@ -106,31 +106,31 @@ MIDDLE = 0.005
 
 
 def in_mujoco_claims(runs: Runs) -> list[Claim]:
-    """The same physics twice: element rows of the complete car in MuJoCo against the stiff solver."""
+    """Return the rows that compare the element rows of the complete car in MuJoCo with the stiff solver."""
     motion = in_mujoco(runs.car, runs.road_signal(MIDDLE))
     every = round(STEP / DEFAULT_STEP)
     slipping = 100.0 / runs.car.friction.steepness
     share = 100.0 * slip_share(motion.sliding_velocity[::every], slipping)
     claims = []
-    for law, history, places in (
+    for law, history, names in (
         ("the law of the row", runs.road_of(friction_of_the_rows(runs.car), MIDDLE), ("body", "wheel", "damper")),
         ("the published atan law", runs.road(MIDDLE), ("body", "wheel")),
     ):
         gaps = {
-            place: 100.0 * (rms(value[::every]) / rms(history.acceleration(place)) - 1.0)
-            for place, value in motion.acceleration.items()
+            name: 100.0 * (rms(value[::every]) / rms(history.acceleration(name)) - 1.0)
+            for name, value in motion.acceleration.items()
         }
         expected = 100.0 * slip_share(history.sliding_velocity(), slipping)
-        ours = ", ".join(f"{place} {gap:+.2f} %" for place, gap in gaps.items())
+        ours = ", ".join(f"{name} {gap:+.2f} %" for name, gap in gaps.items())
         claims.append(
             OWN_CHECK.statement(
                 f"road 5 mm, quarter car in MuJoCo against the stiff solver with {law}",
                 "same physics",
                 f"acceleration RMS {ours}; slip {share:.1f} against {expected:.1f} % of the time",
-                all(abs(gaps[place]) < 1.0 for place in places) and abs(share - expected) < 0.5,
-                f"not printed, our own check at {1e3 * DEFAULT_STEP:g} ms: RMS of {', '.join(places)} within 1 %, slip "
+                all(abs(gaps[name]) < 1.0 for name in names) and abs(share - expected) < 0.5,
+                f"not printed, our own check at {1e3 * DEFAULT_STEP:g} ms: RMS of {', '.join(names)} within 1 %, slip "
                 "(100/eps) within 0.5 points"
-                + ("" if "damper" in places else "; the two laws differ below 1/eps, which the damper mass feels"),
+                + ("" if "damper" in names else "; the two laws differ below 1/eps, which the damper mass feels"),
                 place="section 2.3.2.4",
             )
         )

@@ -9,7 +9,7 @@ from scenarios.places import placed
 from scenarios.quarter_car.runs import Runs
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.quarter_car import elastomer
+from vehicle.engines.lumped.quarter_car_network import elastomer
 
 ABOUT = "printed with 'about', read from a figure: 5 %"
 
@@ -21,7 +21,7 @@ EQUAL = 0.1
 
 
 def mode_claims(runs: Runs) -> list[Claim]:
-    """Frequencies of the slip and the stick model."""
+    """Return the rows on the natural frequencies of the slip and the stick model."""
     claims = []
     for damper, published in (("slip", (2.0, 12.5)), ("stick", (4.8, 25.0))):
         modes = natural_modes(runs.model(damper=damper))
@@ -34,7 +34,7 @@ def mode_claims(runs: Runs) -> list[Claim]:
 
 
 def phase_claims(runs: Runs) -> list[Claim]:
-    """Phases and relative size of body and wheel at the four frequencies of the text."""
+    """Return the rows on phases and relative size of body and wheel at the four frequencies of the text."""
     reading = f"read from an axis with labels 100 deg apart: {PHASE_READING:g} deg"
     slow, hop = _pair(runs, "slip", 2.0), _pair(runs, "slip", 12.5)
     heave, wheel = _pair(runs, "stick", 4.8), _pair(runs, "stick", 25.0)
@@ -94,7 +94,7 @@ def phase_claims(runs: Runs) -> list[Claim]:
             "4.8 Hz, stick: phase of body and wheel",
             "equal, 180 deg from the road",
             f"body {abs(_degrees(heave[0])):.0f}, wheel {abs(_degrees(heave[1])):.0f} deg",
-            min(abs(_degrees(one)) for one in heave) > 180.0 - PHASE_READING,
+            min(abs(_degrees(phase)) for phase in heave) > 180.0 - PHASE_READING,
             "just above the undamped resonance of 4.785 Hz, below it both are in phase with the road",
         ),
         PREDICTED.statement(
@@ -120,7 +120,7 @@ def phase_claims(runs: Runs) -> list[Claim]:
 def _sharper(runs: Runs) -> Claim:
     lines = np.geomspace(1.0, 50.0, 800)
     height = {
-        damper: [float(np.abs(frequency_response(runs.model(damper=damper), lines, one)).max()) for one in _PLACES]
+        damper: [float(np.abs(frequency_response(runs.model(damper=damper), lines, mass)).max()) for mass in _PLACES]
         for damper in ("slip", "stick")
     }
     text = "; ".join(f"{damper}: body {b:.3g}, wheel {w:.3g} m/m" for damper, (b, w) in height.items())
@@ -137,9 +137,9 @@ _PLACES = ("body", "wheel")
 
 
 def _pair(runs: Runs, damper: str, frequency: float) -> tuple[complex, complex]:
-    """Response of body and wheel to the road at a frequency [Hz]."""
+    """Return the responses of body and wheel to the road at a frequency [Hz]."""
     model = runs.model(damper=damper)
-    body, wheel = (complex(frequency_response(model, np.array([frequency]), one)[0]) for one in _PLACES)
+    body, wheel = (complex(frequency_response(model, np.array([frequency]), mass)[0]) for mass in _PLACES)
     return body, wheel
 
 
@@ -148,13 +148,13 @@ def _degrees(value: complex) -> float:
 
 
 def _strut_frequency(runs: Runs) -> float:
-    """Frequency of the body on spring and mount side by side [Hz]."""
+    """Return the natural frequency of the body on spring and mount in parallel [Hz]."""
     car = runs.car
     return float(np.sqrt((car.spring.stiffness + car.mount.stiffness) / car.body.mass) / (2.0 * np.pi))
 
 
 def element_claims(runs: Runs) -> list[Claim]:
-    """Engine alone on its linear mount, and the elastomer."""
+    """Return the rows on the engine on its linear mount, and on the elastomer."""
     engine, mount, law, rubber = runs.car.engine, runs.car.engine_mount, elastomer(runs.car), runs.car.elastomer
     natural = np.sqrt(mount.stiffness / engine.mass)
     frequency, angle = law.loss_peak()
@@ -183,7 +183,7 @@ def element_claims(runs: Runs) -> list[Claim]:
 
 
 def mass_on_damper_claims(runs: Runs) -> list[Claim]:
-    """Both friction models on the mass of section 2.3.2.3."""
+    """Return the rows on both friction models with the mass of section 2.3.2.3."""
     p = runs.car.mass_on_damper
     smooth, switched = runs.mass_on_damper("smooth"), runs.mass_on_damper("switch")
     v, vs = smooth.sliding_velocity(), switched.sliding_velocity()

@@ -20,7 +20,7 @@ SWINGS = 100
 
 
 def swing_claim() -> Claim:
-    """Row on the road of figure 2.6."""
+    """Return the row on the road of figure 2.6."""
     swings = [float(np.ptp(rough_road(SEED + i))) for i in range(SWINGS)]
     return spread_claim(
         f"rough road, RMS {1e3 * HIGH:g} mm: swing in 30 s [m]",
@@ -33,10 +33,10 @@ def swing_claim() -> Claim:
 
 
 def level_claims(runs: Runs) -> list[Claim]:
-    """Resonances over the road level."""
-    found = [response(runs, "no engine", 0, level) for level in LEVELS]
-    first = [peak(f, s, FIRST) for f, s in found]
-    second = [peak(f, s, SECOND) for f, s in found]
+    """Return the rows on the resonances over the road level."""
+    responses = [response(runs, "no engine", 0, level) for level in LEVELS]
+    first = [peak(f, s, FIRST) for f, s in responses]
+    second = [peak(f, s, SECOND) for f, s in responses]
     text = ", ".join(
         f"{1e3 * level:g} mm: {a[0]:.1f} and {_inside(b[0])} Hz"
         for level, a, b in zip(LEVELS, first, second, strict=True)
@@ -66,17 +66,17 @@ def level_claims(runs: Runs) -> list[Claim]:
 
 
 def _inside(frequency: float) -> str:
-    """Frequency of the second resonance; a dash where the largest line is only the edge of the band."""
+    """Return the frequency of the second resonance as a text; a dash if the largest line is at an edge of the band."""
     return f"{frequency:.1f}" if SECOND[0] < frequency < SECOND[1] else "-"
 
 
 def response(runs: Runs, family: str, variant: int, level: float) -> tuple[Array, Array]:
-    """Spectrum per road velocity where resonances are looked for."""
+    """Return the spectrum per road velocity for the search of resonances."""
     return runs.spectrum(family, level, variant, resolution=runs.resolution, per_road=True)
 
 
 def _flat_top(runs: Runs) -> str:
-    """Why the second resonance of the body's spectrum is not the wheel mode."""
+    """Return a text on the difference between the second resonance of the body spectrum and the wheel mode."""
     frequency = np.arange(SECOND[0], SECOND[1], 0.05)
     linear = frequency_response(runs.model(damper="slip"), frequency, "body", "velocity")
     top, _ = peak(frequency, np.abs(linear), SECOND)
@@ -84,14 +84,14 @@ def _flat_top(runs: Runs) -> str:
 
 
 def engine_road_claims(runs: Runs) -> list[Claim]:
-    """Engine mass and the two mounts."""
+    """Return the rows on the engine mass and the two mounts."""
     claims = []
     for name, level, published in (("low", LOW, (4.5, 3.5)), ("high", HIGH, (2.0, 1.5))):
         families = {"no engine": "no engine", "engine": "linear mount"}
         for (label, family), value in zip(families.items(), published, strict=True):
-            found = peak(*response(runs, family, 0, level), FIRST)[0]
+            first_peak = peak(*response(runs, family, 0, level), FIRST)[0]
             why = "read from a figure with lines of 0.5 Hz"
-            claims.append(PREDICTED.number(f"{name} road, {label}: first resonance [Hz]", value, found, 0.5, why))
+            claims.append(PREDICTED.number(f"{name} road, {label}: first resonance [Hz]", value, first_peak, 0.5, why))
         frequency, linear = runs.spectrum("linear mount", level)
         _, bare = runs.spectrum("no engine", level)
         lower = linear < bare
@@ -122,7 +122,7 @@ def engine_road_claims(runs: Runs) -> list[Claim]:
 
 
 def steepness_claims(runs: Runs) -> list[Claim]:
-    """Table B.1: small mass on the body for three steepnesses; its input is not told, so that it cannot be tested."""
+    """Return the untestable rows on table B.1: small mass on the body, three steepnesses, with an unprinted input."""
     sines = {
         f"sine {1e3 * a:g} mm": rms(runs.sine(a, STEEP, small_mass=True).acceleration("small_mass"))
         for a in (LOW, HIGH)
@@ -133,7 +133,10 @@ def steepness_claims(runs: Runs) -> list[Claim]:
     }
     sizes = ", ".join(f"{name} {value:.3g}" for name, value in [*sines.items(), *((n, v[0]) for n, v in roads.items())])
     lost = [", ".join(f"{name} {100.0 * (1.0 - v[i] / v[0]):.1f}" for name, v in roads.items()) for i in range(3)]
-    why = "the input is not told, and none of four candidates gives the printed size: no row of the table can be tested"
+    why = (
+        "the input is not printed, and none of four candidates gives the printed size: no row of the table can be "
+        "tested"
+    )
     published = ((1e6, 0.0175, None), (1e5, 0.0169, 3.0), (1e4, 0.0165, 5.6))
     claims = []
     for index, (eps, size, error) in enumerate(published):

@@ -11,14 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.drive import Sampled, Sine
+from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
 from vehicle.engines.lumped.history import History
-from vehicle.engines.lumped.marched_solution import marched_solution
-from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
+from vehicle.engines.lumped.input_signals import Sampled, Sine
+from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
+from vehicle.model.assembly.quarter_car_spec import WHEEL
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.switch import Switch
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
@@ -53,18 +54,18 @@ STEEP: Mapping[str, float] = {"friction.steepness": 1e6}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Family:
-    """Models whose spectra are computed in one march: a composition, variants of its parameters, road levels."""
+    """Models simulated as a batch: a composition of parts, variants of its parameters, road levels."""
 
     parts: Mapping[str, Any]
     variants: tuple[Mapping[str, float], ...] = ({},)
     levels: tuple[float, ...] = (LOW, HIGH)
     output: str = "body"
-    """Whose motion is kept."""
+    """Parts whose motion is stored."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Marched:
-    """Motion on every road of one level with one variant, each of shape (roads, samples)."""
+    """Motion on every road of a level with a variant, (roads, samples) each."""
 
     displacement: Array
     """[m]."""
@@ -109,7 +110,7 @@ CONSTANT, DEGRESSIVE = ("elastomer", 1), ("degressive", 0)
 
 @dataclass(slots=True)
 class Runs:
-    """All simulations behind the figures and the table; a run asked for twice is computed once."""
+    """All simulations of the figures and the table; every run is computed once and cached."""
 
     car: QuarterCar
     quick: bool
@@ -119,20 +120,20 @@ class Runs:
 
     @property
     def duration(self) -> float:
-        """Length of a random road [s]; short roads have the velocity PSD of the whole one."""
+        """Return the duration of a random road [s]; short roads have the same velocity PSD."""
         return 10.0 if self.quick else WHOLE
 
     @property
     def resolution(self) -> float:
-        """Distance of the lines [Hz] where resonances are looked for: three windows fit the record."""
+        """Return the distance of the lines for the search of resonances: three windows per record [Hz]."""
         return 3.0 / self.duration
 
     def model(self, vary: Mapping[str, Any] | None = None, **parts: Any) -> FirstOrder:
-        """Equations of a composition of parts."""
+        """Return the equations of a composition of parts."""
         return quarter_car(self.car, vary=vary, **parts).first_order()
 
     def road_signal(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Signal:
-        """Random road at uniform steps [s] whose lowest line fits the record once.
+        """Return a random road at uniform steps [s], periodic in the record.
 
         Args:
             rms: of the displacement in 30 s [m]. A shorter road has the same velocity PSD, and so a smaller RMS: that
@@ -144,6 +145,7 @@ class Runs:
         return random_road(
             rms=rms * np.sqrt((self.duration - shortest) / (WHOLE - shortest)),
             seed=seed,
+            wheel=WHEEL,
             duration=self.duration,
             rate=1.0 / step,
             lower_band_edge=1.0 / self.duration,
@@ -151,24 +153,24 @@ class Runs:
         )
 
     def road_profile(self, rms: float, *, seed: int = SEED, step: float = STEP) -> Array:
-        """Displacement of that road [m]."""
-        return np.asarray(self.road_signal(rms, seed=seed, step=step).displacement["fr"])
+        """Return the displacement of the road of a level [m]."""
+        return np.asarray(self.road_signal(rms, seed=seed, step=step).displacement[WHEEL])
 
     def road(self, rms: float, vary: Mapping[str, Any] | None = None, **parts: Any) -> History:
-        """Friction model on a random road of an RMS displacement [m], from rest."""
+        """Run the friction model on a random road of an RMS displacement [m], from rest."""
         return self._once(
             f"road {rms} {vary} {sorted(parts.items())}",
             lambda: self.road_of(self.model(vary, damper="friction", **parts), rms),
         )
 
     def road_of(self, model: FirstOrder, rms: float) -> History:
-        """Any model on a random road of an RMS displacement [m], from rest."""
+        """Run a model on a random road of an RMS displacement [m], from rest."""
         profile = self.road_profile(rms)
         return stiff_solution(model, STEP * np.arange(profile.size), road=Sampled(profile, STEP))
 
     @property
     def march_step(self) -> float:
-        """Step of the vectorised integration [s].
+        """Return the step of the vectorised integration [s].
 
         With 0.5 ms it is within 5 % of the stiff solver at every instant on roads from 1.3 mm RMS on, within 6 % on
         roads of 0.26 mm.
@@ -177,20 +179,20 @@ class Runs:
 
     @property
     def roads(self) -> int:
-        """Number of random roads whose spectra are averaged."""
+        """Return the number of random roads of an averaged spectrum."""
         return 3 if self.quick else 8
 
     def spectrum(
         self, family: str, level: float, variant: int = 0, *, resolution: float = 0.25, per_road: bool = False
     ) -> tuple[Array, Array]:
-        """Mean PSD of the body acceleration over all roads, 1 to 50 Hz.
+        """Return the mean PSD of the body acceleration over all roads, 1 to 50 Hz.
 
         Args:
             family: name in `FAMILIES`.
             level: RMS of the road [m].
             variant: index of the variant.
             resolution: distance of the lines [Hz].
-            per_road: divide by the PSD of the road velocity; on roads of constant velocity PSD this is the same shape
+            per_road: divide by the PSD of the road velocity; on roads of constant velocity PSD the shape is the same
                 with less scatter.
 
         Returns:
@@ -207,12 +209,12 @@ class Runs:
         return frequency, density
 
     def marched(self, family: str, level: float, variant: int = 0) -> Marched:
-        """Motion on all roads; arguments as of `spectrum`."""
-        found: Marched = self._once(f"march {family}", lambda: self._march(FAMILIES[family]))[level, variant]
-        return found
+        """Return the motion on all roads; arguments as in `spectrum`."""
+        solution: Marched = self._once(f"march {family}", lambda: self._march(FAMILIES[family]))[level, variant]
+        return solution
 
     def _march(self, family: Family) -> dict[tuple[float, int], Marched]:
-        """Motion by level and variant."""
+        """Simulate a family as a batch; return (level, variant) to motion."""
         cases = [(level, index) for level in family.levels for index in range(len(family.variants))]
         vary = {
             path: np.repeat([family.variants[index][path] for _, index in cases], self.roads)
@@ -224,7 +226,7 @@ class Runs:
         }
         roads = np.concatenate([profiles[level] for level, _ in cases]).T
         vary["body.mass"] = np.full(roads.shape[1], self.car.body.mass)  # one model for each road
-        history = marched_solution(
+        history = fixed_step_solution(
             self.model(vary, damper="friction", **family.parts),
             self.march_step,
             roads,
@@ -244,7 +246,7 @@ class Runs:
     def sine(
         self, amplitude: float, vary: Mapping[str, Any] | None = None, *, phase: float = 0.0, **parts: Any
     ) -> History:
-        """Friction model on a sine of 1 Hz and an amplitude [m] for 5 s, from rest."""
+        """Run the friction model on a sine of 1 Hz and an amplitude [m] for 5 s, from rest."""
         drive = Sine(amplitude=amplitude, frequency=1.0, phase=phase)
         return self._once(
             f"sine {amplitude} {phase} {vary} {sorted(parts.items())}",
@@ -254,7 +256,7 @@ class Runs:
         )
 
     def mass_on_damper(self, kind: str) -> History:
-        """Mass on a damper of section 2.3.2.3 for 0.5 s, with the "smooth" or the "switch" law."""
+        """Run the mass on a damper of section 2.3.2.3 for 0.5 s, with the "smooth" or the "switch" law."""
         p = self.car.mass_on_damper
         friction = Coulomb(friction_limit=p.friction_limit, smoothing=p.steepness)
         model = single_mass(mass=p.mass, damping=p.damping, friction=friction).first_order()
@@ -268,7 +270,7 @@ class Runs:
         return self._once("mass switch", lambda: switch_solution(model, law, times, force=drive))
 
     def starts(self) -> tuple[Array, Array]:
-        """Sine of 1 mm from many starts: the road at eight phases, the body with eight velocities up to 0.1 m/s.
+        """Run a sine of 1 mm from 64 starts: eight phases of the road, eight body velocities up to 0.1 m/s.
 
         With the steep smoothing of appendix C: a damper that creeps below the limit of the friction is no stuck one.
 
@@ -278,41 +280,47 @@ class Runs:
 
         def solve() -> tuple[Array, Array]:
             time: Array = self.march_step * np.arange(round(5.0 / self.march_step) + 1, dtype=np.float64)
-            phase, speed = (one.ravel() for one in np.meshgrid(np.pi * np.arange(8) / 4.0, np.linspace(0.0, 0.1, 8)))
+            phase, speed = (grid.ravel() for grid in np.meshgrid(np.pi * np.arange(8) / 4.0, np.linspace(0.0, 0.1, 8)))
             model = self.model({**STEEP, "body.mass": np.full(phase.size, self.car.body.mass)}, damper="friction")
             initial = np.zeros((phase.size, model.state.shape[-1]))
             initial[:, model.velocities.start] = speed  # the body is the first coordinate
             road = LOW * np.sin(2.0 * np.pi * time[:, None] + phase)
-            history = marched_solution(model, self.march_step, road, initial=initial)
+            history = fixed_step_solution(model, self.march_step, road, initial=initial)
             return time, history.acceleration("body")
 
-        found: tuple[Array, Array] = self._once("starts", solve)
-        return found
+        motion: tuple[Array, Array] = self._once("starts", solve)
+        return motion
 
     def _once(self, key: str, solve: Callable[[], Found]) -> Found:
         if key not in self._done:
             start = clock.perf_counter()
             self._done[key] = solve()
             self.seconds += clock.perf_counter() - start
-        found: Found = self._done[key]
-        return found
+        result: Found = self._done[key]
+        return result
 
 
 def rough_road(seed: int) -> Array:
-    """Displacement [m] of the whole high road, as in figure 2.6."""
+    """Return the displacement [m] of the whole high road, as in figure 2.6."""
     road = random_road(
-        rms=HIGH, seed=seed, duration=WHOLE, rate=1.0 / STEP, lower_band_edge=1.0 / WHOLE, upper_band_edge=UPPER_EDGE_HZ
+        rms=HIGH,
+        seed=seed,
+        wheel=WHEEL,
+        duration=WHOLE,
+        rate=1.0 / STEP,
+        lower_band_edge=1.0 / WHOLE,
+        upper_band_edge=UPPER_EDGE_HZ,
     )
-    return np.asarray(road.displacement["fr"])
+    return np.asarray(road.displacement[WHEEL])
 
 
 def peak(frequency: Array, density: Array, band: tuple[float, float]) -> tuple[float, float]:
-    """Frequency [Hz] and height of the largest line in a band."""
+    """Return frequency [Hz] and height of the largest line in a band."""
     inside = (frequency >= band[0]) & (frequency <= band[1])
     index = int(np.argmax(np.where(inside, density, -np.inf)))
     return float(frequency[index]), float(density[index])
 
 
 def rms(values: Array) -> float:
-    """Root mean square about zero."""
+    """Return the root mean square about zero."""
     return float(np.sqrt(np.mean(values**2)))

@@ -9,7 +9,7 @@ from scenarios.places import placed
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Array, Runs, rms
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.lumped.history import History
-from vehicle.model.parameters.quarter_car import QuarterCar
+from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 
 NEARLY = 0.1
 """"Nearly equal" [-]."""
@@ -22,7 +22,7 @@ START = 3.0
 
 
 def stuck_bound(car: QuarterCar) -> float:
-    """Largest acceleration that a stuck strut can give the body in steady motion [m/s2].
+    """Return the maximum acceleration of the body by a stuck strut in steady motion [m/s2].
 
     With u = xb - xt and a stuck damper, Kd (u - s) is the force of the friction, at most Fd, and
     Mb xb'' = -Km u - Kd (u - s). A steady motion has no mean acceleration, so an offset s only uses up part of Fd: the
@@ -33,14 +33,14 @@ def stuck_bound(car: QuarterCar) -> float:
 
 
 def sine_claims(runs: Runs) -> list[Claim]:
-    """Sines with and without friction."""
+    """Return the rows on sines with and without friction."""
     return placed([*_low_claims(runs), *_high_claims(runs)], "figure 2.12", "figure_2_12.png")
 
 
 def _low_claims(runs: Runs) -> list[Claim]:
     histories = {True: runs.sine(LOW), False: runs.sine(LOW, NO_FRICTION)}
     peak, lead = (
-        {(place, friction): of(late(history, place)) for friction, history in histories.items() for place in _PLACES}
+        {(mass, friction): of(late(history, mass)) for friction, history in histories.items() for mass in _PLACES}
         for of in (_largest, _dominant)
     )
     ratio = peak["body", True] / peak["body", False]
@@ -96,16 +96,16 @@ def _low_claims(runs: Runs) -> list[Claim]:
 
 def _high_claims(runs: Runs) -> list[Claim]:
     braked, free = runs.sine(HIGH), runs.sine(HIGH, NO_FRICTION)
-    extra = {place: 100 * rms(late(braked, place) - late(free, place)) / rms(late(free, place)) for place in _PLACES}
+    extra = {mass: 100 * rms(late(braked, mass) - late(free, mass)) / rms(late(free, mass)) for mass in _PLACES}
     claims = [
         PREDICTED.number(
-            f"sine 50 mm: {place} acceleration RMS with / without friction",
+            f"sine 50 mm: {mass} acceleration RMS with / without friction",
             1.0,
-            rms(late(braked, place)) / rms(late(free, place)),
+            rms(late(braked, mass)) / rms(late(free, mass)),
             NEARLY,
             "'nearly equal': 10 %",
         )
-        for place in _PLACES
+        for mass in _PLACES
     ]
     velocity = braked.during(START).sliding_velocity()
     fast = float(np.mean(np.abs(velocity) > SLIPS))
@@ -131,16 +131,18 @@ def _high_claims(runs: Runs) -> list[Claim]:
 
 
 def engine_sine_claims(runs: Runs) -> list[Claim]:
-    """Sines with the engine on its linear mount against those without engine."""
-    alone = {a: runs.sine(a) for a in (LOW, HIGH)}
+    """Return the rows on sines with the engine on its linear mount against sines without engine."""
+    unloaded = {a: runs.sine(a) for a in (LOW, HIGH)}
     loaded = {a: runs.sine(a, engine="linear") for a in (LOW, HIGH)}
-    peaks = {a: [_largest(late(one[a])) for one in (alone, loaded)] for a in (LOW, HIGH)}
+    peaks = {a: [_largest(late(history[a])) for history in (unloaded, loaded)] for a in (LOW, HIGH)}
     low = loaded[LOW]
     body = late(low)
-    engine, wheel = (np.fft.rfft(one - one.mean()) for one in (late(low, "engine") - body, late(low, "wheel") - body))
+    engine, wheel = (
+        np.fft.rfft(history - history.mean()) for history in (late(low, "engine") - body, late(low, "wheel") - body)
+    )
     line = int(np.argmax(np.abs(wheel)))
     angle = abs(float(np.degrees(np.angle(engine[line] / wheel[line]))))
-    extra = [rms(_beside_the_sine(late(one[HIGH]))) for one in (alone, loaded)]
+    extra = [rms(_beside_the_sine(late(history[HIGH]))) for history in (unloaded, loaded)]
     rows = [
         PREDICTED.statement(
             "sine 1 mm: body acceleration without against with engine",
@@ -180,7 +182,7 @@ _PLACES = ("body", "wheel")
 
 
 def late(history: History, output: str = "body") -> Array:
-    """Acceleration from 3 s on [m/s2]."""
+    """Return the acceleration from 3 s to the end [m/s2]."""
     return history.during(START).acceleration(output)
 
 
@@ -189,17 +191,17 @@ def _largest(values: Array) -> float:
 
 
 def _hertz(line: int) -> float:
-    """Frequency of a line of the two seconds shown [Hz]."""
+    """Return the frequency of a line of the shown two seconds [Hz]."""
     return 0.5 * line
 
 
 def _dominant(values: Array) -> float:
-    """Frequency of the largest line [Hz]."""
+    """Return the frequency of the largest line [Hz]."""
     return _hertz(int(np.argmax(np.abs(np.fft.rfft(values - values.mean())))))
 
 
 def _beside_the_sine(values: Array) -> Array:
-    """Signal without its mean and its line of 1 Hz; sampled over whole periods, ends included."""
+    """Return a signal without its mean and its line of 1 Hz; sampled over whole periods, ends included."""
     spectrum = np.fft.rfft(values[:-1])
     spectrum[[0, 2]] = 0.0
     return np.asarray(np.fft.irfft(spectrum, values.size - 1))

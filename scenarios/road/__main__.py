@@ -19,7 +19,7 @@ from scenarios.road.figures import draw_classes, draw_friction
 from scenarios.road.findings import check_table, class_table, friction_claims, friction_table, scaling_claim, words
 from scenarios.road.runs import Ride, RideRuns
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import VEHICLES
 
@@ -39,10 +39,10 @@ QUICK_WHY = f"one record of {QUICK_DURATION_S:g} s tells it too coarsely"
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    """Run the cars on all roads, draw the figures into the folder, and say what is found."""
+    """Run the cars on all roads, write the figures into the folder, and return the findings."""
     quick, started = options.quick, clock.perf_counter()
     if options.records is not None and options.records < 1:
-        raise ConfigurationError(f"--records {options.records}: must be at least 1; a single one tells no error")
+        raise ConfigurationError(f"--records {options.records}: must be at least 1; an error needs at least 2")
     cars = {name: VEHICLES / car / "vehicle.toml" for name, car in CARS.items()}
     if runs.vehicle is not None:
         cars = {runs.car().vehicle.name: runs.vehicle}
@@ -59,13 +59,13 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     frictions = FRICTIONS[::4] if quick else FRICTIONS
     grid = [Ride(car=car, road=road, speed=speed) for car in cars for road in roads for speed in speeds]
     varied = [
-        Ride(car=car, road=road, speed=SPEED, friction=one) for car in cars for road in roads for one in frictions
+        Ride(car=car, road=road, speed=SPEED, friction=claim) for car in cars for road in roads for claim in frictions
     ]
     rides.compute([*grid, *varied])
     draw_classes(folder / "class_and_speed.png", rides, roads, speeds)
     draw_friction(folder / "friction.png", rides, roads, SPEED, frictions)
-    about = [(rides, car, roads, SPEED, frictions) for car in cars]
-    claims = [one for each in about for one in (*friction_claims(*each), *scaling_claim(*each))]
+    subjects = [(rides, car, roads, SPEED, frictions) for car in cars]
+    claims = [claim for each in subjects for claim in (*friction_claims(*each), *scaling_claim(*each))]
     notes = [
         f"{rides.text()}; the same roads under every car. Isotropic tracks, wheelbase delay, contact patch of 0.1 m. ± "
         "is one standard error over the records; that of a ratio is over the ratios of the single records.",
@@ -73,7 +73,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         class_table(rides, grid),
         f"Friction of every damper at {SPEED:g} km/h; % of the same car without friction on the same records:",
         friction_table(rides, varied),
-        *(words(*each) for each in about),
+        *(words(*each) for each in subjects),
     ]
     data: dict[str, Any] = {"rides": [{**asdict(ride), **asdict(rides(ride))} for ride in (*grid, *varied)]}
     if not quick and has_compiler():
@@ -83,7 +83,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         title="A car on four wheels on the road: class, speed, friction, occupant (beyond Bommer 2006)",
         claims=claims,
         tyres=rides.tyres(),
-        unjudged={one.name: QUICK_WHY for one in claims} if quick else {},
+        unjudged={claim.name: QUICK_WHY for claim in claims} if quick else {},
         notes=[*notes, f"{rides.computed} runs in {seconds:.0f} s.", *([QUICK_NOTE] if quick else [])],
         data={
             **data,
@@ -96,9 +96,9 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 
 def checks(rides: RideRuns, folder: Path, car: str, roads: tuple[str, ...]) -> list[str]:
-    """One record of the last car by both engines, and on the roughest road with tyres that cannot pull."""
+    """Return tables of the last car by both engines, and on the roughest road with tyres that can lift off."""
     rough, engine = roads[-1], "mujoco"
-    one = RideRuns(
+    compared = RideRuns(
         {car: rides.cars[car]},
         overrides=rides.overrides,
         engine="reduced",
@@ -118,18 +118,18 @@ def checks(rides: RideRuns, folder: Path, car: str, roads: tuple[str, ...]) -> l
         Ride(car=car, road=rough, speed=SPEED, engine=engine),
         Ride(car=car, road=rough, speed=SPEED, engine=engine, one_sided=True),
     )
-    one.compute([ride for pair in pairs.values() for ride in pair])
+    compared.compute([ride for pair in pairs.values() for ride in pair])
     return [
-        f"Checks, {car}, {one.text().partition(',')[0]}: differences of the second to the first:",
-        check_table(one, pairs),
+        f"Checks, {car}, {compared.text().partition(',')[0]}: differences of the second to the first:",
+        check_table(compared, pairs),
     ]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of this study: the reduced engine by default, the number of records."""
+    """Add the options of this study: the reduced engine by default, the number of records."""
     parser.set_defaults(engine="auto")
-    what = f"roads for every point, {DURATION_S:g} s each; {RECORDS} by default"
-    parser.add_argument("--records", type=int, metavar="N", help=what)
+    records_help = f"roads for every point, {DURATION_S:g} s each; {RECORDS} by default"
+    parser.add_argument("--records", type=int, metavar="N", help=records_help)
 
 
 main = car_study("road", study, add_options)

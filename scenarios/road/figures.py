@@ -18,7 +18,7 @@ STYLES = ("-", "--", ":")
 
 
 def draw_classes(path: Path, runs: RideRuns, roads: Sequence[str], speeds: Sequence[float]) -> None:
-    """Comfort at rail and seat and tyre load over the speed, a colour for each class, a style for each car."""
+    """Draw comfort at rail and seat and tyre load over speed, a colour for each class, a style for each car."""
     axles = [axle for axle, _ in runs.measure.by_axle]
     panels = [("rail_weighted", "seat rail, ISO 2631-1 [m/s²]", 1.0), ("seat_weighted", "seat, ISO 2631-1 [m/s²]", 1.0)]
     panels += [(f"load_{axle}", f"dynamic over static tyre load, {axle} [%]", 100.0) for axle in axles]
@@ -32,9 +32,9 @@ def draw_classes(path: Path, runs: RideRuns, roads: Sequence[str], speeds: Seque
         for axis, (name, label, scale) in zip(axes, panels, strict=False):
             for colour, road in zip(COLOURS, roads, strict=False):
                 for style, car in zip(STYLES, runs.cars, strict=False):
-                    found = [runs(Ride(car=car, road=road, speed=speed)) for speed in speeds]
-                    values = [scale * one.mean[name] for one in found]
-                    errors = [scale * one.error[name] for one in found]
+                    averages = [runs(Ride(car=car, road=road, speed=speed)) for speed in speeds]
+                    values = [scale * average.mean[name] for average in averages]
+                    errors = [scale * average.error[name] for average in averages]
                     _curve(axis, speeds, values, errors, colour, style, f"class {road}, {car}")
             axis.set(ylabel=label, ylim=(0.0, None))
             axis.set_xlabel("speed [km/h]")
@@ -48,7 +48,7 @@ def draw_classes(path: Path, runs: RideRuns, roads: Sequence[str], speeds: Seque
 
 
 def draw_friction(path: Path, runs: RideRuns, roads: Sequence[str], speed: float, frictions: Sequence[float]) -> None:
-    """Comfort at rail and seat and tyre load over the friction of all dampers, relative to none."""
+    """Draw comfort at rail and seat and tyre load over the friction of all dampers, relative to no friction."""
     load = f"load_{runs.measure.by_axle[0][0]}"
     panels = [
         ("rail", "seat rail, unweighted, 2 to 50 Hz [%]"),
@@ -66,9 +66,9 @@ def draw_friction(path: Path, runs: RideRuns, roads: Sequence[str], speed: float
         for axis, (name, label) in zip(axes, panels, strict=True):
             for colour, road in zip(COLOURS, roads, strict=False):
                 for style, car in zip(STYLES, runs.cars, strict=False):
-                    rides = [Ride(car=car, road=road, speed=speed, friction=one) for one in frictions]
+                    rides = [Ride(car=car, road=road, speed=speed, friction=value) for value in frictions]
                     values, errors = zip(*(ratio(runs, ride, name) for ride in rides), strict=True)
-                    scaled = [[100.0 * one for one in many] for many in (values, errors)]
+                    scaled = [[100.0 * value for value in shares] for shares in (values, errors)]
                     _curve(axis, frictions, scaled[0], scaled[1], colour, style, f"class {road}, {car}")
             axis.axhline(100.0, color="#777777", linewidth=0.8)
             axis.set_ylabel(label)

@@ -1,4 +1,4 @@
-"""What the rides say: tables, and rows that ask whether the finding of Bommer 2006 holds on four wheels."""
+"""Findings of the rides: tables, and rows that test the finding of Bommer 2006 on four wheels."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Griffin, Journal of Sound and Vibration 236 (2000), just noticeable differences 
 
 
 def class_table(runs: RideRuns, rides: Sequence[Ride]) -> str:
-    """Every ride of the grid of classes and speeds as a Markdown table."""
+    """Return every ride of the grid of classes and speeds as a Markdown table."""
     axles = [axle for axle, _ in runs.measure.by_axle]
     head = (
         "car",
@@ -34,25 +34,30 @@ def class_table(runs: RideRuns, rides: Sequence[Ride]) -> str:
         "seat, ISO 2631-1 [m/s²]",
     )
     loads = tuple(f"dynamic over static load, {axle} [%]" for axle in axles)
-    rest = ("SEAT value [-]", *loads, "lowest load over static [%] (time below 0)", "slip of the dampers [%]")
+    heads = ("SEAT value [-]", *loads, "lowest load over static [%] (time below 0)", "slip of the dampers [%]")
     rows = []
     for ride in rides:
-        found = runs(ride)
-        mean = found.mean
+        average = runs(ride)
+        mean = average.mean
         rows.append(
             (
-                *(ride.car, ride.road, f"{ride.speed:g}", *(_pair(found, name) for name in ("rail", "rail_weighted"))),
-                *(_pair(found, "seat_weighted"), _pair(found, "seat_value")),
+                *(
+                    ride.car,
+                    ride.road,
+                    f"{ride.speed:g}",
+                    *(_pair(average, name) for name in ("rail", "rail_weighted")),
+                ),
+                *(_pair(average, "seat_weighted"), _pair(average, "seat_value")),
                 *(f"{100.0 * mean[f'load_{axle}']:.1f}" for axle in axles),
                 f"{100.0 * mean['lowest_load']:.0f} ({100.0 * mean['pulling']:.2g} %)",
                 f"{100.0 * mean['slip']:.0f}",
             )
         )
-    return markdown((*head, *rest), rows)
+    return markdown((*head, *heads), rows)
 
 
 def friction_table(runs: RideRuns, rides: Sequence[Ride]) -> str:
-    """Every ride with its own friction, over the same car without friction on the same records."""
+    """Return a table of every friction limit, relative to the car without friction on the same records."""
     axles = [axle for axle, _ in runs.measure.by_axle]
     names = ("rail", "rail_weighted", "seat_weighted", *(f"load_{axle}" for axle in axles))
     head = (
@@ -82,11 +87,11 @@ def friction_table(runs: RideRuns, rides: Sequence[Ride]) -> str:
 
 
 def check_table(runs: RideRuns, pairs: Mapping[str, tuple[Ride, Ride]]) -> str:
-    """One ride by two models side by side, as a Markdown table."""
+    """Return a Markdown table that compares a ride by two models."""
     names = list(runs.measure.units)
     rows = []
-    for label, (one, other) in pairs.items():
-        first, second = (runs(ride).mean for ride in (one, other))
+    for label, (passage, other) in pairs.items():
+        first, second = (runs(ride).mean for ride in (passage, other))
         cells = [
             f"{100.0 * (second[name] / first[name] - 1.0):+.2f}"
             for name in names
@@ -98,9 +103,14 @@ def check_table(runs: RideRuns, pairs: Mapping[str, tuple[Ride, Ride]]) -> str:
 
 
 def ratio(runs: RideRuns, ride: Ride, name: str) -> tuple[float, float]:
-    """A number over that of the same car without friction: mean over the records, and its standard error."""
+    """Return the ratio of a value to that of the car without friction: mean over the records, and standard error."""
     base = Ride(car=ride.car, road=ride.road, speed=ride.speed, friction=0.0)
-    values = np.array([one[name] / other[name] for one, other in zip(runs(ride).each, runs(base).each, strict=True)])
+    values = np.array(
+        [
+            values_of_record[name] / other[name]
+            for values_of_record, other in zip(runs(ride).each, runs(base).each, strict=True)
+        ]
+    )
     error = float(np.std(values, ddof=1) / np.sqrt(values.size)) if values.size > 1 else float("nan")
     return float(np.mean(values)), error
 
@@ -108,7 +118,7 @@ def ratio(runs: RideRuns, ride: Ride, name: str) -> tuple[float, float]:
 def friction_claims(
     runs: RideRuns, car: str, roads: Sequence[str], speed: float, frictions: Sequence[float]
 ) -> list[Claim]:
-    """Whether friction makes a smooth road uncomfortable, a rough one less so, for a car on four wheels.
+    """Return the rows on friction: less comfort on a smooth road, less effect on a rough road, on four wheels.
 
     Args:
         runs: what is computed.
@@ -119,15 +129,17 @@ def friction_claims(
     """
 
     def grown(road: str, name: str) -> list[float]:
-        return [ratio(runs, Ride(car=car, road=road, speed=speed, friction=one), name)[0] for one in frictions]
+        return [
+            ratio(runs, Ride(car=car, road=road, speed=speed, friction=friction), name)[0] for friction in frictions
+        ]
 
     smooth, rough = grown(roads[0], "rail"), grown(roads[-1], "rail")
-    words = ", ".join(f"{100.0 * value:.0f} %" for value in smooth)
-    found = [
+    changes = ", ".join(f"{100.0 * value:.0f} %" for value in smooth)
+    rows = [
         COMPARED.statement(
             f"{car}: comfort of the rail on the smoothest road (class {roads[0]}) against friction",
             "friction makes a smooth road uncomfortable (chapter 4, one corner on the shaker)",
-            f"{words} of the value without friction at {_list(frictions)} N",
+            f"{changes} of the value without friction at {_list(frictions)} N",
             smooth[-1] > LARGE and all(b > a for a, b in itertools.pairwise(smooth[1:])),
             f"it must rise from step to step beyond the first, and by more than {100.0 * (LARGE - 1.0):.0f} % in all",
         ),
@@ -141,7 +153,7 @@ def friction_claims(
     ]
     if runs.vehicles[car].seated:
         seat = grown(roads[0], "seat_weighted")
-        found.append(
+        rows.append(
             OWN_CHECK.statement(
                 f"{car}: weighted vibration of the seat on class {roads[0]} against friction",
                 "what the rail shows reaches the person",
@@ -150,37 +162,40 @@ def friction_claims(
                 f"it must rise by more than {100.0 * (LARGE - 1.0):.0f} % in all",
             )
         )
-    return found
+    return rows
 
 
 def scaling_claim(
     runs: RideRuns, car: str, roads: Sequence[str], speed: float, frictions: Sequence[float]
 ) -> list[Claim]:
-    """Whether a road of twice the amplitude and dampers of twice the friction have the same relative comfort.
+    """Return the row on equal relative comfort for twice the road amplitude and twice the friction.
 
     A car that is linear but for Coulomb friction has u = a U(F / a) on a road of the amplitude a; each class has twice
     the amplitude of the one before.
     """
     rough, smooth, factor = roads[-1], roads[0], CLASSES[roads[-1]] / CLASSES[roads[0]]
     pairs = [
-        (one, other) for one in frictions for other in frictions if one > 0.0 and np.isclose(other, one * factor**0.5)
+        (limit, other)
+        for limit in frictions
+        for other in frictions
+        if limit > 0.0 and np.isclose(other, limit * factor**0.5)
     ]
     if not pairs:
         return []
     ratios = [
-        (ratio(runs, Ride(car=car, road=smooth, speed=speed, friction=one), "rail")[0],
+        (ratio(runs, Ride(car=car, road=smooth, speed=speed, friction=limit), "rail")[0],
          ratio(runs, Ride(car=car, road=rough, speed=speed, friction=other), "rail")[0])
-        for one, other in pairs
+        for limit, other in pairs
     ]  # fmt: skip
-    many = "; ".join(
-        f"{100.0 * a:.2f} % (class {smooth}, {one:g} N), {100.0 * b:.2f} % (class {rough}, {other:g} N)"
-        for (a, b), (one, other) in zip(ratios, pairs, strict=True)
+    pairs_text = "; ".join(
+        f"{100.0 * a:.2f} % (class {smooth}, {limit:g} N), {100.0 * b:.2f} % (class {rough}, {other:g} N)"
+        for (a, b), (limit, other) in zip(ratios, pairs, strict=True)
     )
     return [
         OWN_CHECK.statement(
             f"{car}: what counts is friction over the amplitude of the road",
             "a car that is linear but for Coulomb friction has the same relative comfort at twice both",
-            many,
+            pairs_text,
             all(abs(a / b - 1.0) < SCALED for a, b in ratios),
             f"within {100.0 * SCALED:g} %: exact in the reduced engine, in MuJoCo parts turn by finite angles",
         )
@@ -188,17 +203,19 @@ def scaling_claim(
 
 
 def words(runs: RideRuns, car: str, roads: Sequence[str], speed: float, frictions: Sequence[float]) -> str:
-    """What friction does to a car on each class, in a sentence for each."""
+    """Return a sentence for each class on the effect of friction on a car."""
     said = []
     for road in roads:
-        rides = [Ride(car=car, road=road, speed=speed, friction=one) for one in frictions]
+        rides = [Ride(car=car, road=road, speed=speed, friction=friction) for friction in frictions]
         best = min(rides, key=lambda ride: runs(ride).mean[LOAD.format(runs.measure.by_axle[0][0])])
         rail = ratio(runs, rides[-1], "rail")[0]
         part = f"class {road}: {frictions[-1]:g} N in every damper change the vibration of the rail by {_percent(rail)}"
         if runs.vehicles[car].seated:
             part += f", the weighted vibration of the seat by {_percent(ratio(runs, rides[-1], 'seat_weighted')[0])}"
         said.append(f"{part}; the front tyre load varies least at {best.friction:g} N")
-    return f"In words, {car}, {speed:g} km/h. " + ". ".join(one[0].upper() + one[1:] for one in said) + "."
+    return (
+        f"In words, {car}, {speed:g} km/h. " + ". ".join(friction[0].upper() + friction[1:] for friction in said) + "."
+    )
 
 
 def _percent(value: float) -> str:
@@ -209,6 +226,6 @@ def _list(values: Sequence[float]) -> str:
     return ", ".join(f"{value:g}" for value in values)
 
 
-def _pair(found: Found, name: str) -> str:
-    mean, error = found.mean[name], found.error[name]
+def _pair(average: Found, name: str) -> str:
+    mean, error = average.mean[name], average.error[name]
     return f"{mean:.3f} ± {number(error, 3)}" if np.isfinite(mean) else ""

@@ -1,4 +1,4 @@
-"""Runs of a car on roads of ISO 8608: which there are, what is read off each, means over the records."""
+"""Runs of cars on roads of ISO 8608: cases, measure, and means over the records."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.studies.sweeps.case import Case, all_tyre_words, overrides_of
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 from vehicle.studies.sweeps.sweep import sweep
 
 LEAD_S = 2.0
@@ -54,9 +54,9 @@ class RideMeasure:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels that are needed."""
-        places = ("seat_rail", "seat") if self.seat else ("seat_rail",)
-        motion = (f"{place}_acc_{axis}" for place in places for axis in AXES)
+        """Return the required channels."""
+        points = ("seat_rail", "seat") if self.seat else ("seat_rail",)
+        motion = (f"{point}_acc_{axis}" for point in points for axis in AXES)
         return (
             *motion,
             *(f"tyre_{wheel}_force_z" for wheel, _ in self.wheels),
@@ -65,7 +65,7 @@ class RideMeasure:
 
     @property
     def units(self) -> Mapping[str, str]:
-        """Name of each number to its unit."""
+        """Return name to unit of each value."""
         loads = [f"load_{axle}" for axle in dict(self.by_axle)]
         return dict.fromkeys(("rail", "rail_weighted", "seat_weighted"), "m/s2") | dict.fromkeys(
             ("seat_value", *loads, "lowest_load", "pulling", "slip"), "-"
@@ -73,55 +73,55 @@ class RideMeasure:
 
     @property
     def by_axle(self) -> tuple[tuple[str, tuple[str, ...]], ...]:
-        """Wheels of each axle."""
+        """Return the wheels of each axle."""
         axles = dict.fromkeys(axle for _, axle in self.wheels)
         return tuple((axle, tuple(wheel for wheel, its in self.wheels if its == axle)) for axle in axles)
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """The numbers of a run."""
+        """Return the values of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """The numbers of several runs."""
+        """Return the values of r runs; (r,) each."""
         step = runs.timestep
         kept = slice(round(LEAD_S / step), None)
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
-        found = {
+        values = {
             "rail": comfort_values(step, rail[:, :, kept]).overall,
-            "rail_weighted": np.array([weighted_rms_of(step, one, skip=LEAD_S)[3] for one in rail]),
+            "rail_weighted": np.array([weighted_rms_of(step, xyz, skip=LEAD_S)[3] for xyz in rail]),
             "seat_weighted": np.full(len(rail), np.nan),
             "seat_value": np.full(len(rail), np.nan),
         }
         for row, vehicle in enumerate(runs.vehicles):
             if vehicle.seated:
                 seat = np.array([runs[f"seat_acc_{axis}"][row] for axis in AXES])
-                found["seat_weighted"][row] = weighted_rms_of(step, seat, skip=LEAD_S)[3]
-                found["seat_value"][row] = seat_value(step, seat[2], rail[row, 2], skip=LEAD_S).rms
+                values["seat_weighted"][row] = weighted_rms_of(step, seat, skip=LEAD_S)[3]
+                values["seat_value"][row] = seat_value(step, seat[2], rail[row, 2], skip=LEAD_S).rms
         loads = {
             wheel: runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel, _ in self.wheels
         }
         for axle, wheels in self.by_axle:
-            found[f"load_{axle}"] = np.sqrt(
-                np.mean([np.mean((loads[one] - 1.0) ** 2, axis=1) for one in wheels], axis=0)
+            values[f"load_{axle}"] = np.sqrt(
+                np.mean([np.mean((loads[wheel] - 1.0) ** 2, axis=1) for wheel in wheels], axis=0)
             )
-        found["lowest_load"] = np.min([np.min(load, axis=1) for load in loads.values()], axis=0)
-        found["pulling"] = np.max([np.mean(load < 0.0, axis=1) for load in loads.values()], axis=0)
-        shares = [slip_shares(runs[f"{one}_velocity"][:, kept], runs.slip_velocity) for one in self.dampers]
-        found["slip"] = np.mean(shares, axis=0)
-        return found
+        values["lowest_load"] = np.min([np.min(load, axis=1) for load in loads.values()], axis=0)
+        values["pulling"] = np.max([np.mean(load < 0.0, axis=1) for load in loads.values()], axis=0)
+        shares = [slip_shares(runs[f"{damper}_velocity"][:, kept], runs.slip_velocity) for damper in self.dampers]
+        values["slip"] = np.mean(shares, axis=0)
+        return values
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ride:
-    """A car on a road.
+    """Ride of a car on a road.
 
     Attributes:
         car: name of the car in tables, one of `RideRuns.cars`.
         road: class of ISO 8608.
-        speed: [km/h].
-        friction: of every damper [N]; None for those of the vehicle file.
-        engine: another one than that of the study.
-        one_sided: whether the tyres let go where they would pull.
+        speed: speed [km/h].
+        friction: friction limit of every damper [N]; None for the limits of the vehicle file.
+        engine: engine, by default that of the study.
+        one_sided: True for tyres that lift off and never pull.
     """
 
     car: str
@@ -142,16 +142,16 @@ class Found:
 
 
 class RideRuns:
-    """Rides, each computed once, all that are missing together.
+    """Cache of rides; missing rides run as a batch.
 
     Args:
-        cars: vehicle files by the names of tables; all with the same wheels.
-        overrides: of every car.
+        cars: name in tables to vehicle file; all cars have the same wheels.
+        overrides: overrides of every car.
         engine: "mujoco", "reduced" or "auto".
         jobs: worker processes.
         records: number of roads with the seeds 1, 2, ...
-        duration: of each, without the lead [s].
-        folder: for the rows of an unfinished study.
+        duration: duration of each road, without the lead [s].
+        folder: folder for the rows of an unfinished study.
     """
 
     def __init__(
@@ -178,25 +178,25 @@ class RideRuns:
 
     @property
     def computed(self) -> int:
-        """Number of runs so far."""
+        """Return the number of finished runs."""
         return self.records * len(self._done)
 
     def tyres(self, speed: float | None = None) -> str:
-        """What the tyres of the rides so far do, at one speed [km/h] or all."""
+        """Return the state of the tyres of the finished rides, at one speed [km/h] or at all speeds."""
         rides = [ride for ride in self._done if speed in (None, ride.speed)]
         return all_tyre_words([case for ride in rides for case in self.cases(ride)[:1]])
 
     def text(self, speed: float | None = None) -> str:
-        """Return records, tyres and engine of the rides so far, for captions.
+        """Return a text on records, tyres and engine of the finished rides for captions.
 
         Args:
-            speed: of the rides that are meant [km/h]; None for all.
+            speed: speed of the rides [km/h]; None for all speeds.
         """
-        many = f"{self.records} records" if self.records > 1 else "1 record"
+        records = f"{self.records} records" if self.records > 1 else "1 record"
         seeds = f"seeds 1 to {self.records}" if self.records > 1 else "seed 1"
         return (
-            f"{many} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, tyres {self.tyres(speed)}, engine "
-            f"{self.engine}"
+            f"{records} of {self.duration:g} s ({seeds}) after {LEAD_S:g} s left out, tyres {self.tyres(speed)}, "
+            f"engine {self.engine}"
         )
 
     def compute(self, rides: Sequence[Ride]) -> None:
@@ -219,8 +219,8 @@ class RideRuns:
         for case, reason in table.failed[:1]:
             raise SimulationError(f"{case.label}: {reason}; {len(table.failed)} of {len(cases)} runs failed")
         for number, ride in enumerate(missing):
-            each = [one.values for one in table.results[number * self.records : (number + 1) * self.records]]
-            columns = {name: np.array([one[name] for one in each]) for name in each[0]}
+            each = [record.values for record in table.results[number * self.records : (number + 1) * self.records]]
+            columns = {name: np.array([record[name] for record in each]) for name in each[0]}
             self._done[ride] = Found(
                 mean={name: float(np.mean(values)) for name, values in columns.items()},
                 error={name: standard_error(values) for name, values in columns.items()},
@@ -230,39 +230,43 @@ class RideRuns:
         (self.folder / "rows.jsonl").unlink()
 
     def __call__(self, ride: Ride) -> Found:
-        """What was found of a ride."""
+        """Return the result of a finished ride."""
         self.compute([ride])
         return self._done[ride]
 
     def cases(self, ride: Ride) -> list[Case]:
-        """The runs of a ride, one for each record."""
+        """Return the cases of a ride, a case for each record."""
         vehicle = self.vehicles[ride.car]
         changes = () if ride.friction is None else all_friction(vehicle, ride.friction)
         changes = (*changes, *one_sided_tyres(vehicle)) if ride.one_sided else changes
         numbers = {**dict.fromkeys(ROAD_NUMBERS), "speed": ride.speed, "duration": self.duration + LEAD_S}
         numbers["overrides"] = self.overrides
-        drives = [
+        roads = [
             road_drive(ride.road, argparse.Namespace(**{**numbers, "seed": seed}), vehicle)
             for seed in range(1, self.records + 1)
         ]
         engine, file = ride.engine or self.engine, self.cars[ride.car]
-        found = []
-        for drive in drives:
+        cases_of_rides = []
+        for drive in roads:
             shared = (*self.overrides, *overrides_of(drive))
-            found.append(
+            cases_of_rides.append(
                 Case(source=drive, overrides=(*shared, *changes), engine=engine, vehicle=file, shared=len(shared))
             )
-        return found
+        return cases_of_rides
 
 
 def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:
-    """Overrides that give every damper of a car this Coulomb friction [N]."""
+    """Return the overrides that set the Coulomb friction [N] of every damper of a car."""
     paths = dict.fromkeys(damper.path for damper in vehicle.composition.dampers)
     return tuple(f"{path}.coulomb_friction={friction!r}" for path in paths)
 
 
 def one_sided_tyres(vehicle: Vehicle) -> tuple[str, ...]:
-    """Overrides with which no tyre of a car pulls."""
+    """Return the overrides that let all tyres of a car lift off."""
     rolling = {wheel.part for wheel in vehicle.composition.wheels}
-    paths = dict.fromkeys(one.path for one in vehicle.composition.connections if one.ground and one.moving in rolling)
+    paths = dict.fromkeys(
+        connection.path
+        for connection in vehicle.composition.connections
+        if connection.ground and connection.moving in rolling
+    )
     return tuple(f"{path}.one_sided=true" for path in paths)

@@ -55,12 +55,12 @@ POINTS = 0.10
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Judged:
-    """All candidates with one plan of inputs.
+    """Log-likelihoods of all candidates with one plan of inputs.
 
     Attributes:
         plan: the inputs.
-        found: rig with the roof point at -y to its readings, which hold both points.
-        used, held: rig to log-likelihoods of the half that chooses and of the other one, axes as `NUMBERS`.
+        found: rig with the roof point at -y to its readings, which contain both roof points.
+        used, held: rig to log-likelihoods of the half used for the choice and of the held-out half, axes as `NUMBERS`.
     """
 
     plan: Plan
@@ -68,53 +68,61 @@ class Judged:
     used: Mapping[Rig, Vector]
     held: Mapping[Rig, Vector]
 
-    def of(self, one: Candidate) -> Readings:
-        """Readings of a candidate."""
-        return self.found[replace(one.rig, roof="-y")]
+    def of(self, candidate: Candidate) -> Readings:
+        """Return the readings of a candidate."""
+        return self.found[replace(candidate.rig, roof="-y")]
 
-    def numbers(self, one: Candidate) -> tuple[float, float, float, float]:
-        """Log-likelihoods of both halves, and the shares of their rows that agree."""
-        at = tuple(getattr(one, name) for name in NUMBERS)
-        given = probabilities(self.of(one), one, self.plan)
-        first, second = (float(half[one.rig][at]) for half in (self.used, self.held))
-        return first, second, agreement(given, sorted(USED)), agreement(given, sorted(HELD))
+    def numbers(self, candidate: Candidate) -> tuple[float, float, float, float]:
+        """Return the log-likelihoods of both halves, and the shares of agreeing rows of both halves."""
+        at = tuple(getattr(candidate, name) for name in NUMBERS)
+        by_row = probabilities(self.of(candidate), candidate, self.plan)
+        first, second = (float(half[candidate.rig][at]) for half in (self.used, self.held))
+        return first, second, agreement(by_row, sorted(USED)), agreement(by_row, sorted(HELD))
 
 
 def rigs(quick: bool) -> list[list[Rig]]:
-    """All sides with the body as designed, those with the plate on one side together; the roof point is in each."""
+    """Return the rigs of the designed body, grouped by the side of the plate; readings contain both roof points."""
     groups = [[rig for rig in all_sides(TODAY) if rig.plate == plate and rig.roof == "-y"] for plate in PLATES]
     return [group[:1] for group in groups] if quick else groups
 
 
 def bodies(rig: Rig) -> list[Rig]:
-    """The same sides with the body's numbers changed one by one."""
+    """Return the rig with one parameter of the body modified at a time."""
     same = replace(rig, roof="-y")
-    found = [replace(same, ixx=value) for value in IXX]
-    found += [replace(same, damping=value) for value in DAMPING] + [replace(same, brackets=name) for name in BRACKETS]
-    return [one for one in found if one != same]
+    candidates = [replace(same, ixx=value) for value in IXX]
+    candidates += [replace(same, damping=value) for value in DAMPING] + [
+        replace(same, brackets=name) for name in BRACKETS
+    ]
+    return [candidate for candidate in candidates if candidate != same]
 
 
 def judged(plan: Plan, groups: Sequence[Sequence[Rig]], folder: Path, jobs: int) -> Judged:
-    """Run rigs and judge all candidates with them.
+    """Run rigs and compute the log-likelihoods of all candidates.
 
     Args:
         plan: the inputs.
-        groups: rigs with the plate on one side, each.
-        folder: for the vehicle files.
-        jobs: worker processes.
+        groups: groups of rigs with the plate on the same side.
+        folder: folder of the vehicle files.
+        jobs: number of worker processes.
     """
     folder.mkdir(exist_ok=True)
     pool = process_pool(min(jobs, len(groups))) if jobs > 1 and len(groups) > 1 else ThreadPoolExecutor(1)
     with pool as workers:
         done = list(workers.map(readings, groups, [plan] * len(groups), [folder] * len(groups)))
-    found = {rig: one for group, some in zip(groups, done, strict=True) for rig, one in zip(group, some, strict=True)}
-    both = {replace(rig, roof=roof): one for rig, one in found.items() for roof in ("-y", "+y")}
-    used, held = ({rig: table(one, rig, plan, keys) for rig, one in both.items()} for keys in (USED, HELD))
-    return Judged(plan=plan, found=found, used=used, held=held)
+    by_rig = {
+        rig: rig_readings
+        for group, group_readings in zip(groups, done, strict=True)
+        for rig, rig_readings in zip(group, group_readings, strict=True)
+    }
+    both = {replace(rig, roof=roof): rig_readings for rig, rig_readings in by_rig.items() for roof in ("-y", "+y")}
+    used, held = (
+        {rig: table(rig_readings, rig, plan, keys) for rig, rig_readings in both.items()} for keys in (USED, HELD)
+    )
+    return Judged(plan=plan, found=by_rig, used=used, held=held)
 
 
 def joined(first: Judged, second: Judged) -> Judged:
-    """Candidates of two runs together."""
+    """Join the candidates of two runs."""
     return Judged(
         plan=first.plan,
         found={**first.found, **second.found},
@@ -124,7 +132,7 @@ def joined(first: Judged, second: Judged) -> Judged:
 
 
 def before(plan: Plan) -> Candidate:
-    """What was shipped before the choice."""
+    """Return the candidate that was shipped before the choice."""
     edges = {"shaker": plan.shaker_edges, "road": plan.road_edges}
     return Candidate(
         rig=TODAY,
@@ -136,19 +144,19 @@ def before(plan: Plan) -> Candidate:
 
 
 def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
-    """Judge all candidates, draw the likelihoods by side into the folder, and compare the winner with what was."""
+    """Compute the likelihoods of all candidates, draw them by side, and compare the winner with the car before."""
     plan = QUICK if options.quick else FULL
-    found = judged(plan, rigs(options.quick), folder / "cars", options.jobs)
+    judgement = judged(plan, rigs(options.quick), folder / "cars", options.jobs)
     if not options.quick:
-        more = bodies(best(found.used)[0][1].rig)
+        more = bodies(best(judgement.used)[0][1].rig)
         # Two halves: a worker for each.
-        found = joined(found, judged(plan, [more[::2], more[1::2]], folder / "cars", options.jobs))
-    ranking = best(found.used)
+        judgement = joined(judgement, judged(plan, [more[::2], more[1::2]], folder / "cars", options.jobs))
+    ranking = best(judgement.used)
     winner = chosen(ranking)
-    winner = shipped_numbers(found.of(winner), winner.rig, plan, found.used[winner.rig])
-    other = {name: best(half)[0] for name, half in (("held-out", found.held), ("all", _sum(found)))}
-    side_figure(folder / "sides.png", found.used, found.held, winner)
-    claims = [*half_claims(found, winner), *side_claims(winner, other)]
+    winner = shipped_numbers(judgement.of(winner), winner.rig, plan, judgement.used[winner.rig])
+    other = {name: best(half)[0] for name, half in (("held-out", judgement.held), ("all", _sum(judgement)))}
+    side_figure(folder / "sides.png", judgement.used, judgement.held, winner)
+    claims = [*half_claims(judgement, winner), *side_claims(winner, other)]
     return Findings(
         title="Joint choice of what Bommer 2006 does not print",
         claims=claims,
@@ -163,34 +171,40 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
             "mention: Kass and Raftery 1995); of these the one with the fewest changes is the winner. Its numbers are, "
             f"of the sets within {BARE_MENTION:g} of its best ones, those with the median slip velocity, and of these "
             "the one whose eight slip shares deviate least from the printed ones.",
-            side_table(found),
-            rank_table(found, ranking[:SHOWN], f"The {SHOWN} most likely rigs, each with its best numbers:"),
-            margin_table(found, ranking),
-            own_noise(found, ranking),
-            velocity_table(found, winner.rig),
-            rank_table(found, [other["held-out"], other["all"]], "Chosen on the held-out half, and on all rows:"),
-            row_table(found, before(plan), winner),
+            side_table(judgement),
+            rank_table(judgement, ranking[:SHOWN], f"The {SHOWN} most likely rigs, each with its best numbers:"),
+            margin_table(judgement, ranking),
+            own_noise(judgement, ranking),
+            velocity_table(judgement, winner.rig),
+            rank_table(judgement, [other["held-out"], other["all"]], "Chosen on the held-out half, and on all rows:"),
+            row_table(judgement, before(plan), winner),
             *([QUICK_NOTE] if options.quick else []),
         ],
         data={
             "winner": {"sides": winner.rig.sides(), "body": winner.rig.body(), "numbers": winner.text(plan)},
-            "before": found.numbers(before(plan)),
-            "ranking": [(one.rig.sides(), one.rig.body(), one.text(plan), *found.numbers(one)) for _, one in ranking],
+            "before": judgement.numbers(before(plan)),
+            "ranking": [
+                (candidate.rig.sides(), candidate.rig.body(), candidate.text(plan), *judgement.numbers(candidate))
+                for _, candidate in ranking
+            ],
         },
     )
 
 
 def chosen(ranking: Sequence[tuple[float, Candidate]]) -> Candidate:
-    """The candidate to ship: of those that are not worth more than a bare mention apart, that with the fewest changes.
+    """Return the candidate to ship: of candidates with nearly the best likelihood the one with the fewest changes.
 
     Args:
         ranking: the best of every rig, the most likely first.
 
     Source: Kass and Raftery, Bayes factors, J. Am. Stat. Assoc. 90 (1995), section 3.2.
     """
-    tied = [one for value, one in ranking if value > ranking[0][0] - BARE_MENTION]
+    tied = [candidate for value, candidate in ranking if value > ranking[0][0] - BARE_MENTION]
     return min(
-        tied, key=lambda one: sum(ours != was for ours, was in zip(_fields(one.rig), _fields(TODAY), strict=True))
+        tied,
+        key=lambda candidate: sum(
+            ours != was for ours, was in zip(_fields(candidate.rig), _fields(TODAY), strict=True)
+        ),
     )
 
 
@@ -198,22 +212,22 @@ def _fields(rig: Rig) -> tuple[object, ...]:
     return tuple(asdict(rig).values())
 
 
-def _sum(found: Judged) -> dict[Rig, Vector]:
-    return {rig: found.used[rig] + found.held[rig] for rig in found.used}
+def _sum(judgement: Judged) -> dict[Rig, Vector]:
+    return {rig: judgement.used[rig] + judgement.held[rig] for rig in judgement.used}
 
 
-def _words(one: Candidate, plan: Plan) -> str:
-    velocity, shaker, noise, road, level = one.text(plan)
+def _words(candidate: Candidate, plan: Plan) -> str:
+    velocity, shaker, noise, road, level = candidate.text(plan)
     return (
         f"slip above {velocity} mm/s, lower edges {shaker} Hz (shaker), {noise} Hz (noise of the bump), {road} Hz "
         f"(road); noise {level}"
     )
 
 
-def half_claims(found: Judged, winner: Candidate) -> list[Claim]:
-    """Whether the half that did not choose agrees as the other does."""
-    _, _, used, held = found.numbers(winner)
-    _, _, was_used, was_held = found.numbers(before(found.plan))
+def half_claims(judgement: Judged, winner: Candidate) -> list[Claim]:
+    """Return the row that compares the agreement of the held-out half with that of the used half."""
+    _, _, used, held = judgement.numbers(winner)
+    _, _, was_used, was_held = judgement.numbers(before(judgement.plan))
     return [
         OWN_CHECK.statement(
             "rows that agree, held-out half against the half that chose",
@@ -228,23 +242,23 @@ def half_claims(found: Judged, winner: Candidate) -> list[Claim]:
 
 
 def side_claims(winner: Candidate, other: Mapping[str, tuple[float, Candidate]]) -> list[Claim]:
-    """Whether other rows choose the same side of the plate."""
+    """Return the rows on the side of the plate by other rows."""
     return [
         OWN_CHECK.statement(
             f"side of the plate chosen on {name} rows",
             f"plate {winner.rig.plate}",
-            f"plate {one.rig.plate}",
-            one.rig.plate == winner.rig.plate,
+            f"plate {candidate.rig.plate}",
+            candidate.rig.plate == winner.rig.plate,
             "the seat is at -y by definition",
         )
-        for name, (_, one) in other.items()
+        for name, (_, candidate) in other.items()
     ]
 
 
-def side_table(found: Judged) -> str:
-    """Best candidate of every combination of sides, with the body as designed."""
-    plain = {rig: one for rig, one in found.used.items() if rig.body() == TODAY.body()}
-    return rank_table(found, best(plain), "Evidence by side (seat at -y), body as designed, best numbers of each:")
+def side_table(judgement: Judged) -> str:
+    """Return a table of the best candidate of every combination of sides, with the designed body."""
+    plain = {rig: candidate for rig, candidate in judgement.used.items() if rig.body() == TODAY.body()}
+    return rank_table(judgement, best(plain), "Evidence by side (seat at -y), body as designed, best numbers of each:")
 
 
 COLUMNS = (
@@ -253,78 +267,80 @@ COLUMNS = (
 )
 
 
-def rank_table(found: Judged, ranking: Sequence[tuple[float, Candidate]], head: str) -> str:
-    """Candidates with their likelihoods as a table.
+def rank_table(judgement: Judged, ranking: Sequence[tuple[float, Candidate]], head: str) -> str:
+    """Return a table of candidates with their likelihoods.
 
     Args:
         found: all of them.
-        ranking: those of the table.
-        head: what stands above it.
+        ranking: log-likelihoods and candidates of the table.
+        head: text above the table.
     """
     rows = []
-    for _, one in ranking:
-        used, held, *shares = found.numbers(one)
+    for _, candidate in ranking:
+        used, held, *shares = judgement.numbers(candidate)
         ends = (f"{used:.1f}", f"{held:.1f}", *(f"{100 * share:.0f} %" for share in shares))
-        rows.append((one.rig.sides(), one.rig.body(), *one.text(found.plan), *ends))
+        rows.append((candidate.rig.sides(), candidate.rig.body(), *candidate.text(judgement.plan), *ends))
     return f"{head}\n\n{markdown(COLUMNS, rows)}"
 
 
-def velocity_table(found: Judged, rig: Rig) -> str:
-    """Best edges at every slip velocity, and how much less likely they are.
+def velocity_table(judgement: Judged, rig: Rig) -> str:
+    """Return a table of the best band edges at every slip velocity with their log-likelihoods.
 
     Args:
-        found: all candidates.
-        rig: that of the winner.
+        judgement: log-likelihoods of all candidates.
+        rig: rig of the most likely candidate.
     """
-    rows, whole = [], found.used[rig]
-    for place, velocity in enumerate(SLIP_VELOCITIES):
+    rows, whole = [], judgement.used[rig]
+    for position, velocity in enumerate(SLIP_VELOCITIES):
         only = np.full_like(whole, -np.inf)
-        only[place] = whole[place]
-        value, one = best({rig: only})[0]
-        _, shaker, _, road, level = one.text(found.plan)
-        rows.append((f"{1e3 * velocity:g}", shaker, road, level, f"{value:.2f}", f"{found.numbers(one)[1]:.2f}"))
+        only[position] = whole[position]
+        value, table_of_rig = best({rig: only})[0]
+        _, shaker, _, road, level = table_of_rig.text(judgement.plan)
+        rows.append(
+            (f"{1e3 * velocity:g}", shaker, road, level, f"{value:.2f}", f"{judgement.numbers(table_of_rig)[1]:.2f}")
+        )
     columns = ("slip [mm/s]", "shaker [Hz]", "road [Hz]", "noise, 1.5 mm bump", "ln L, chose", "ln L, held out")
     return f"Slip velocity and the edges that go with it, sides and body of the winner:\n\n{markdown(columns, rows)}"
 
 
-def margin_table(found: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
-    """Differences to the most likely rig, with their standard errors over the seeds.
+def margin_table(judgement: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
+    """Return a table of the differences to the most likely rig, with standard errors over the seeds.
 
     Args:
         found: all of them.
-        ranking: the most likely first.
+        ranking: log-likelihoods and candidates, the most likely first.
     """
     winner = ranking[0][1]
     rows = []
-    for value, one in ranking[1:SHOWN]:
-        error = jackknife([(found.of(which), which) for which in (winner, one)], found.plan)
-        rows.append((one.rig.sides(), one.rig.body(), f"{ranking[0][0] - value:.2f} ± {error:.2f}"))
+    for value, candidate in ranking[1:SHOWN]:
+        error = jackknife([(judgement.of(which), which) for which in (winner, candidate)], judgement.plan)
+        rows.append((candidate.rig.sides(), candidate.rig.body(), f"{ranking[0][0] - value:.2f} ± {error:.2f}"))
     columns = ("sides", "body", "less likely by [ln], standard error over the seeds")
     return f"Differences to the most likely rig:\n\n{markdown(columns, rows)}"
 
 
-def own_noise(found: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
-    """What an edge of its own for the noise of the bump would gain."""
-    value, one = best(found.used, own_noise=True)[0]
+def own_noise(judgement: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
+    """Return a text on the gain in likelihood by a separate band edge for the noise of the bump."""
+    value, candidate = best(judgement.used, own_noise=True)[0]
     cost = 0.5 * np.log(len(USED))
     return (
         f"One shaker makes the random inputs and the noise of the bump, so both have one edge. Two edges would gain "
-        f"{value - ranking[0][0]:.2f} ({_words(one, found.plan)}); a further number has to gain more than "
+        f"{value - ranking[0][0]:.2f} ({_words(candidate, judgement.plan)}); a further number has to gain more than "
         f"1/2 ln {len(USED)} = {cost:.2f} (Schwarz, Annals of Statistics 6, 1978)."
     )
 
 
-def row_table(found: Judged, was: Candidate, winner: Candidate) -> str:
-    """Every row of the evidence: printed, before and now, with probabilities."""
-    values = [values_of(found.of(one), one, found.plan) for one in (was, winner)]
-    given = [probabilities(found.of(one), one, found.plan) for one in (was, winner)]
+def row_table(judgement: Judged, was: Candidate, winner: Candidate) -> str:
+    """Return a table of all rows of the evidence: printed, before and now, with probabilities."""
+    values = [values_of(judgement.of(candidate), candidate, judgement.plan) for candidate in (was, winner)]
+    by_candidate = [probabilities(judgement.of(candidate), candidate, judgement.plan) for candidate in (was, winner)]
     rows = []
     for row in EVIDENCE:
         low, high = (f"{end:g}" if np.isfinite(end) else "" for end in row.interval)
         cells = []
-        for ours, chance in zip(values, given, strict=True):
+        for ours, chance in zip(values, by_candidate, strict=True):
             cells += [f"{np.mean(ours[row.key]):.3g}", f"{chance[row.key]:.3f}"]
-        first, second = (one[row.key] for one in given)
+        first, second = (candidate[row.key] for candidate in by_candidate)
         change = "worse" if second < first - 0.1 else "better" if second > first + 0.1 else ""
         half = "chose" if row.key in USED else "held out"
         rows.append((row.name, row.place, half, f"{low} to {high} {row.unit}", *cells, change))

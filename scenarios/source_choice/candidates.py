@@ -18,7 +18,7 @@ PLATES = {"+y": "fr", "-y": "fl"}
 """Side of the plate to its wheel: +y is the driver's right."""
 
 IXX = (1000.0, 1080.0, 1200.0)
-"""About the origin [kg m2]: printed (and repaired), the one with 5.8 Hz of roll, and that of section 3.4."""
+"""Ixx about the origin [kg m2]: printed (and repaired), value for a roll mode of 5.8 Hz, and value of section 3.4."""
 
 DAMPING = (0.02, 0.03, 0.04)
 """Damping ratio of the body's modes."""
@@ -41,13 +41,13 @@ NOISE_LEVELS = {"0.05 mm with both bumps": 1.0, "in proportion to the bump": 0.2
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rig:
-    """Sides of all that the source leaves open, and what the body is built with.
+    """Sides of unprinted positions, and parameters of the body.
 
     Attributes:
         plate, hydromount, roof: side, "+y" or "-y"; the seat is at -y.
         products: sign of Ixy and Iyz.
-        ixx: about the origin [kg m2].
-        damping: ratio of the body's modes.
+        ixx: moment of inertia about the origin [kg m2].
+        damping: damping ratio of the body modes [-].
         brackets: a key of `BRACKETS`.
     """
 
@@ -60,16 +60,16 @@ class Rig:
     brackets: str = "as designed"
 
     def sides(self) -> str:
-        """Sides in one line."""
+        """Return the sides as a text."""
         sign = "+" if self.products > 0 else "-"
         return f"plate {self.plate}, hydromount {self.hydromount}, roof point {self.roof}, Ixy {sign}"
 
     def body(self) -> str:
-        """Numbers of the body in one line."""
+        """Return the parameters of the body as a text."""
         return f"Ixx {self.ixx:g}, damping {100 * self.damping:g} %, brackets {self.brackets}"
 
     def overrides(self) -> tuple[str, ...]:
-        """Changes of the car of `vehicle_file`."""
+        """Return the overrides of the car of `vehicle_file`."""
         return (
             f"body.inertia.ixx={self.ixx!r}",
             f"body.inertia.ixy={self.products * 82.03!r}",
@@ -79,11 +79,11 @@ class Rig:
 
 
 TODAY = Rig()
-"""What was shipped before the choice."""
+"""Rig and values shipped before the choice."""
 
 
 def all_sides(rig: Rig) -> Iterator[Rig]:
-    """The 16 rigs with the body of one."""
+    """Return the 16 rigs of all sides with the body of a rig."""
     for plate, mount, roof, products in itertools.product(("+y", "-y"), ("+y", "-y"), ("-y", "+y"), (1, -1)):
         yield replace(rig, plate=plate, hydromount=mount, roof=roof, products=products)
 
@@ -116,25 +116,27 @@ def vehicle_file(folder: Path, hydromount: str, brackets: str) -> Path:
 
 
 def _with_mounts(text: str, hydromount: str) -> str:
-    """A body design whose members lead from the mounts to the side on which they are."""
+    """Return a body design whose members connect the mounts to their side."""
     if hydromount == "+y":
         return text
     lines = []
     for line in text.split("\n"):
-        words = line.strip().strip('",').split("-", 1)
-        if words[0] in ("hydromount", "linear_mount") and len(words) == 2 and line.startswith('  "'):
-            stem, side = words[1].rsplit("_", 1)
-            line = line.replace(words[1], f"{stem}_{SWAPPED[side]}")
+        parts = line.strip().strip('",').split("-", 1)
+        if parts[0] in ("hydromount", "linear_mount") and len(parts) == 2 and line.startswith('  "'):
+            stem, side = parts[1].rsplit("_", 1)
+            line = line.replace(parts[1], f"{stem}_{SWAPPED[side]}")
         lines.append(line)
     return "\n".join(lines)
 
 
 def _with_brackets(text: str, factor: float) -> str:
-    """A body design with other stiffnesses of attachment where they are assumed."""
+    """Return a body design with other assumed stiffnesses of attachment."""
     lines = []
     for line in text.split("\n"):
         if line.startswith("attachment = [") and "fitted" not in line:
-            values, rest = line[len("attachment = [") :].split("]", 1)
-            line = f"attachment = [{', '.join(repr(factor * float(one)) for one in values.split(','))}]{rest}"
+            values, remainder = line[len("attachment = [") :].split("]", 1)
+            line = (
+                f"attachment = [{', '.join(repr(factor * float(number)) for number in values.split(','))}]{remainder}"
+            )
         lines.append(line)
     return "\n".join(lines)

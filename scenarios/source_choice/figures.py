@@ -17,16 +17,18 @@ Vector = npt.NDArray[np.float64]
 
 
 def side_figure(path: Path, used: Mapping[Rig, Vector], held: Mapping[Rig, Vector], winner: Candidate) -> None:
-    """Write the best log-likelihood of every combination of sides, and that of the half held out beside it.
+    """Draw the best log-likelihood of every combination of sides, for the used and the held-out half.
 
     Args:
         path: PNG file.
-        used, held: rig to log-likelihoods of the half that chose and of the other one.
-        winner: its body is that of all rigs shown.
+        used, held: rig to log-likelihoods of the used and of the held-out half.
+        winner: most likely candidate, whose body all shown rigs have.
     """
     body = (winner.rig.ixx, winner.rig.damping, winner.rig.brackets)
-    shown = best({rig: one for rig, one in used.items() if (rig.ixx, rig.damping, rig.brackets) == body})[::-1]
-    outside = [float(held[one.rig][tuple(_numbers(one))]) for _, one in shown]
+    shown = best({rig: candidate for rig, candidate in used.items() if (rig.ixx, rig.damping, rig.brackets) == body})[
+        ::-1
+    ]
+    outside = [float(held[candidate.rig][tuple(_numbers(candidate))]) for _, candidate in shown]
     caption = (
         "Sum over rows of weight times ln of the probability of the printed interval, each combination of sides with "
         f"its own best slip velocity, band edges and noise; seat at -y, {winner.rig.body()}. The held-out half chose "
@@ -34,16 +36,16 @@ def side_figure(path: Path, used: Mapping[Rig, Vector], held: Mapping[Rig, Vecto
     )
     with figure_file(path, (10.5, 1.6 + 0.36 * len(shown)), "Evidence by side", caption) as figure:
         axis = figure.subplots()
-        place = np.arange(len(shown))
+        position = np.arange(len(shown))
         for shift, label, values, colour in (
             (0.2, "half that chose", [value for value, _ in shown], COLOURS[0]),
             (-0.2, "half held out", outside, COLOURS[3]),
         ):
-            axis.barh(place + shift, values, 0.38, label=label, color=colour)
-        axis.set_yticks(place, [one.rig.sides() for _, one in shown], fontsize=8)
+            axis.barh(position + shift, values, 0.38, label=label, color=colour)
+        axis.set_yticks(position, [candidate.rig.sides() for _, candidate in shown], fontsize=8)
         axis.set_xlabel("log-likelihood")
         axis.legend(loc="lower left")
 
 
-def _numbers(one: Candidate) -> tuple[int, ...]:
-    return one.velocity, one.shaker, one.noise, one.level, one.road
+def _numbers(candidate: Candidate) -> tuple[int, ...]:
+    return candidate.velocity, candidate.shaker, candidate.noise, candidate.level, candidate.road

@@ -1,4 +1,4 @@
-"""How probable each statement of the source is for a candidate, and the candidate that makes one half most probable."""
+"""Likelihood of candidates: probability of each statement of the thesis, and the most likely candidate of a half."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from vehicle.signals.excitation.exact_road import ROAD_RMS
 Vector = npt.NDArray[np.float64]
 
 MISREADING = 0.01
-"""Chance that a row is not what we read: labels come from a damaged scan, and an axis can be set by hand. It bounds
-what one row can say against a candidate, ln(100)."""
+"""Probability that a row is misread: labels come from a damaged scan, and an axis may be set by hand. It bounds
+the evidence of a row against a candidate, ln(100)."""
 
 LEVEL_NAMES = ("low", "mid", "high")
 
@@ -28,11 +28,11 @@ MODES = ("wheel_mode", "roll_mode", "rigid_modes", "engine_lowest", "engine_high
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Candidate:
-    """A rig and what drives it; edges as numbers of the plan.
+    """Candidate: a rig with inputs and slip velocity; edges are indices in the plan.
 
     Attributes:
-        rig: sides and body.
-        velocity, shaker, noise, level, road: places in `SLIP_VELOCITIES`, in the edges of the plan (shaker, noise of
+        rig: sides and body of the rig.
+        velocity, shaker, noise, level, road: indices in `SLIP_VELOCITIES`, in the edges of the plan (shaker, noise of
             the bump, roads) and in `NOISE_LEVELS`.
     """
 
@@ -44,7 +44,7 @@ class Candidate:
     road: int
 
     def text(self, plan: Plan) -> tuple[str, ...]:
-        """Slip velocity, edges of shaker, bump and road, noise of the low bump, as cells."""
+        """Return slip velocity, edges of shaker, bump and road, and noise of the low bump as cells of a table."""
         return (
             f"{1e3 * SLIP_VELOCITIES[self.velocity]:g}",
             f"{plan.shaker_edges[self.shaker]:g}",
@@ -55,76 +55,78 @@ class Candidate:
 
 
 def probability(row: Evidence, values: npt.ArrayLike) -> float:
-    """Probability of the interval of a row, over the seeds of the input and the error of the model.
+    """Return the probability of the interval of a row, over the seeds of the input and the error of the model.
 
     Args:
-        row: what is printed.
-        values: ours, one for each seed or stretch, (n,).
+        row: evidence with the published interval.
+        values: our values for each seed or window, (n,).
     """
     return interval_probability(values, row.interval, error=row.error)
 
 
 def log_likelihood(row: Evidence, values: npt.ArrayLike) -> float:
-    """Weighted ln(m + (1 - m) P) of a row, m the chance of a misreading."""
+    """Return the weighted ln(m + (1 - m) P) of a row, m the probability of a misreading."""
     return row.weight * float(np.log(MISREADING + (1.0 - MISREADING) * probability(row, values)))
 
 
-def values_of(found: Readings, one: Candidate, plan: Plan) -> dict[str, Vector]:
-    """Our values of every row of the evidence."""
-    return {row.key: _VALUES[row.key](found, one, plan) for row in EVIDENCE}
+def values_of(readings: Readings, candidate: Candidate, plan: Plan) -> dict[str, Vector]:
+    """Return key to our values of every row of the evidence."""
+    return {row.key: _VALUES[row.key](readings, candidate, plan) for row in EVIDENCE}
 
 
 Reader = Callable[[Readings, Candidate, Plan], Vector]
 
 
 def _readers() -> Iterator[tuple[str, Reader]]:
-    for place, level in enumerate(LEVEL_NAMES):
+    for index, level in enumerate(LEVEL_NAMES):
         for side, word in enumerate(("right", "left")):
-            yield f"slip_{word}_{level}", partial(_shaker_share, place, side)
-    for place, name in enumerate(ROAD_RMS):
-        yield f"slip_{name}", partial(_road_share, place)
-    yield "bump_7p5_end_of_stick", lambda found, one, _: np.minimum(found.stick_end[one.noise], 6.0)
+            yield f"slip_{word}_{level}", partial(_shaker_share, index, side)
+    for index, name in enumerate(ROAD_RMS):
+        yield f"slip_{name}", partial(_road_share, index)
+    yield "bump_7p5_end_of_stick", lambda readers, entry, _: np.minimum(readers.stick_end[entry.noise], 6.0)
     yield "bump_1p5_no_slip", _fastest
     for size in ("7p5", "1p5"):
         for point in (*(name for name in POINTS if not name.startswith("roof")), "roof_z"):
             for end, word in enumerate(("lowest", "highest")):
                 yield f"bump_{size}_{point}_{word}", partial(_extreme, size, point, end)
     keys = [row.key for row in EVIDENCE if row.topic == "comfort"]
-    for key, (name, _, kind, _, value, _) in zip(keys, COMFORT_ENDS, strict=True):
-        yield key, partial(_comfort, list(ROAD_RMS).index(kind), ENDS.index((name, value)))
-    for place, (figure, *_) in enumerate(LEVELS):
-        yield f"level_{figure.replace('.', '_')}", partial(_level, place)
-    yield "swing_2_6", lambda _, one, plan: _swings(plan, one.road)
-    for place, name in enumerate(MODES):
-        yield name, partial(_mode, place)
+    for key, (name, _, source_kind, _, value, _) in zip(keys, COMFORT_ENDS, strict=True):
+        yield key, partial(_comfort, list(ROAD_RMS).index(source_kind), ENDS.index((name, value)))
+    for index, (figure, *_) in enumerate(LEVELS):
+        yield f"level_{figure.replace('.', '_')}", partial(_level, index)
+    yield "swing_2_6", lambda _, entry, plan: _swings(plan, entry.road)
+    for index, name in enumerate(MODES):
+        yield name, partial(_mode, index)
 
 
-def _shaker_share(level: int, side: int, found: Readings, one: Candidate, _: Plan) -> Vector:
-    return np.asarray(100.0 * found.shaker[one.shaker, level, :, side, one.velocity])
+def _shaker_share(level: int, side: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(100.0 * readings.shaker[candidate.shaker, level, :, side, candidate.velocity])
 
 
-def _road_share(road: int, found: Readings, one: Candidate, _: Plan) -> Vector:
-    return np.asarray(100.0 * found.road[one.road, road, :, one.velocity])
+def _road_share(road: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(100.0 * readings.road[candidate.road, road, :, candidate.velocity])
 
 
-def _fastest(found: Readings, one: Candidate, _: Plan) -> Vector:
-    return np.asarray(found.fastest[one.noise, :, _bump("1p5", one)] / SLIP_VELOCITIES[one.velocity])
+def _fastest(readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(
+        readings.fastest[candidate.noise, :, _bump("1p5", candidate)] / SLIP_VELOCITIES[candidate.velocity]
+    )
 
 
-def _extreme(size: str, point: str, end: int, found: Readings, one: Candidate, _: Plan) -> Vector:
-    return np.asarray(found.extremes[one.noise, :, _bump(size, one), _point(point, one), end])
+def _extreme(size: str, point: str, end: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(readings.extremes[candidate.noise, :, _bump(size, candidate), _point(point, candidate), end])
 
 
-def _comfort(road: int, end: int, found: Readings, one: Candidate, _: Plan) -> Vector:
-    return np.asarray(100.0 * found.comfort[one.road, road, :, end])
+def _comfort(road: int, end: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(100.0 * readings.comfort[candidate.road, road, :, end])
 
 
-def _level(figure: int, found: Readings, one: Candidate, _: Plan) -> Vector:
-    return np.asarray(found.levels[one.road, figure])
+def _level(figure: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return np.asarray(readings.levels[candidate.road, figure])
 
 
-def _mode(place: int, found: Readings, one: Candidate, _: Plan) -> Vector:
-    return found.modes[place : place + 1]
+def _mode(index: int, readings: Readings, candidate: Candidate, _: Plan) -> Vector:
+    return readings.modes[index : index + 1]
 
 
 @lru_cache(maxsize=32)
@@ -132,13 +134,13 @@ def _swings(plan: Plan, road: int) -> Vector:
     return swings(plan.road_edges[road], plan)
 
 
-def _bump(size: str, one: Candidate) -> int:
-    scaled = size == "1p5" and one.level == 1
+def _bump(size: str, candidate: Candidate) -> int:
+    scaled = size == "1p5" and candidate.level == 1
     return list(BUMPS).index(f"{size} scaled" if scaled else size)
 
 
-def _point(name: str, one: Candidate) -> int:
-    side = "roof_left_z" if one.rig.roof == "-y" else "roof_right_z"
+def _point(name: str, candidate: Candidate) -> int:
+    side = "roof_left_z" if candidate.rig.roof == "-y" else "roof_right_z"
     return POINTS.index(side if name == "roof_z" else name)
 
 
@@ -159,8 +161,8 @@ AXES: Mapping[str, tuple[str, ...]] = {
 NUMBERS = ("velocity", "shaker", "noise", "level", "road")
 
 
-def table(found: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) -> Vector:
-    """Log-likelihood of every candidate with a rig, axes as `NUMBERS`.
+def table(readings: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) -> Vector:
+    """Return the log-likelihood of every candidate with a rig, axes as `NUMBERS`.
 
     Args:
         found: what was read off the runs of the rig.
@@ -192,26 +194,30 @@ def table(found: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) ->
             axes = tuple(name for name in axes if name != "shaker")
         part = np.empty([sizes[name] if name in axes else 1 for name in NUMBERS])
         for at in np.ndindex(part.shape):
-            one = Candidate(rig=rig, **dict(zip(NUMBERS, at, strict=True)))
-            part[at] = log_likelihood(row, _VALUES[row.key](found, one, plan))
+            candidate = Candidate(rig=rig, **dict(zip(NUMBERS, at, strict=True)))
+            part[at] = log_likelihood(row, _VALUES[row.key](readings, candidate, plan))
         total += part
     return total
 
 
 def best(tables: Mapping[Rig, Vector], *, own_noise: bool = False) -> list[tuple[float, Candidate]]:
-    """The best candidate of each rig, the most likely first.
+    """Return the best candidate of each rig, the most likely first.
 
     Args:
         tables: rig to log-likelihoods, axes as `NUMBERS`.
         own_noise: whether the noise of the bump may have another edge than the random inputs of the same shaker.
     """
-    found = []
-    for rig, one in tables.items():
-        free = np.ones(one.shape, dtype=bool) if own_noise else np.eye(one.shape[1], dtype=bool)[None, :, :, None, None]
-        at = np.unravel_index(int(np.argmax(np.where(free, one, -np.inf))), one.shape)
-        numbers = dict(zip(NUMBERS, (int(place) for place in at), strict=True))
-        found.append((float(one[at]), Candidate(rig=rig, **numbers)))
-    return sorted(found, key=lambda pair: -pair[0])
+    candidates = []
+    for rig, rig_table in tables.items():
+        free = (
+            np.ones(rig_table.shape, dtype=bool)
+            if own_noise
+            else np.eye(rig_table.shape[1], dtype=bool)[None, :, :, None, None]
+        )
+        at = np.unravel_index(int(np.argmax(np.where(free, rig_table, -np.inf))), rig_table.shape)
+        numbers = dict(zip(NUMBERS, (int(index) for index in at), strict=True))
+        candidates.append((float(rig_table[at]), Candidate(rig=rig, **numbers)))
+    return sorted(candidates, key=lambda pair: -pair[0])
 
 
 BARE_MENTION = 1.0
@@ -223,57 +229,59 @@ PRINTED_SHARES = {"slip_right_low": 0.0, "slip_right_mid": 3.9, "slip_right_high
 """Slip shares [%] of table 3.2, section 3.3.1 and chapter 4."""
 
 
-def shipped_numbers(found: Readings, rig: Rig, plan: Plan, whole: Vector) -> Candidate:
-    """The numbers of a rig to ship among those that are tied with its best ones.
+def shipped_numbers(readings: Readings, rig: Rig, plan: Plan, whole: Vector) -> Candidate:
+    """Return the candidate of a rig to be shipped, among the candidates with nearly the best likelihood.
 
-    Slip velocity and edges are tied along a line. Of the tied sets those with the median slip velocity are taken, and
-    of these that whose eight slip shares deviate least (RMS) from the printed ones.
+    Slip velocity and edges have nearly equal likelihoods along a line. Of these candidates those with the median slip
+    velocity are selected, and of these the candidate with the smallest RMS deviation of the eight slip shares.
 
     Args:
         found: what was read off the runs of the rig.
         rig: its sides and body.
         plan: the inputs.
-        whole: its log-likelihoods, axes as `NUMBERS`.
+        whole: log-likelihoods of the rig, axes as `NUMBERS`.
     """
     tied = np.eye(whole.shape[1], dtype=bool)[None, :, :, None, None] & (
         whole > best({rig: whole})[0][0] - BARE_MENTION
     )
-    places = np.argwhere(tied)
-    velocity = sorted(set(places[:, 0]))[(len(set(places[:, 0])) - 1) // 2]
-    sets = [Candidate(rig=rig, **dict(zip(NUMBERS, map(int, at), strict=True))) for at in places if at[0] == velocity]
+    candidates_at = np.argwhere(tied)
+    velocity = sorted(set(candidates_at[:, 0]))[(len(set(candidates_at[:, 0])) - 1) // 2]
+    sets = [
+        Candidate(rig=rig, **dict(zip(NUMBERS, map(int, at), strict=True))) for at in candidates_at if at[0] == velocity
+    ]
 
-    def deviation(one: Candidate) -> float:
-        values = values_of(found, one, plan)
+    def deviation(candidate: Candidate) -> float:
+        values = values_of(readings, candidate, plan)
         return float(np.sqrt(np.mean([(np.mean(values[key]) - share) ** 2 for key, share in PRINTED_SHARES.items()])))
 
     return min(sets, key=deviation)
 
 
-def probabilities(found: Readings, one: Candidate, plan: Plan) -> dict[str, float]:
-    """Probability of every row."""
-    values = values_of(found, one, plan)
+def probabilities(readings: Readings, candidate: Candidate, plan: Plan) -> dict[str, float]:
+    """Return key to probability of every row."""
+    values = values_of(readings, candidate, plan)
     return {row.key: probability(row, values[row.key]) for row in EVIDENCE}
 
 
-def agreement(given: Mapping[str, float], keys: Sequence[str]) -> float:
-    """Share of rows that agree [-]."""
-    return float(np.mean([given[key] >= AGREES_ABOVE for key in keys]))
+def agreement(by_row: Mapping[str, float], keys: Sequence[str]) -> float:
+    """Return the share of agreeing rows [-]."""
+    return float(np.mean([by_row[key] >= AGREES_ABOVE for key in keys]))
 
 
-def jackknife(found: Sequence[tuple[Readings, Candidate]], plan: Plan) -> float:
-    """Standard error of the difference of the log-likelihoods of two candidates over the seeds of the inputs.
+def jackknife(judged: Sequence[tuple[Readings, Candidate]], plan: Plan) -> float:
+    """Return the standard error of the difference of two log-likelihoods over the seeds of the inputs.
 
-    Both meet the same seeds; each is left out once: e^2 = (n - 1) / n sum over i of (d_i - mean of d)^2.
+    Both candidates have the same seeds; jackknife over the seeds: e^2 = (n - 1) / n sum over i of (d_i - mean of d)^2.
 
     Args:
-        found: both candidates with their readings.
+        judged: two candidates with their readings.
         plan: the inputs.
     """
     differences = []
     for seed in range(plan.seeds):
         sums = []
-        for readings, one in found:
-            values = values_of(readings.without(seed), one, plan)
+        for readings, without_seed in judged:
+            values = values_of(readings.without(seed), without_seed, plan)
             sums.append(sum(log_likelihood(row, values[row.key]) for row in EVIDENCE if row.key in USED))
         differences.append(sums[0] - sums[1])
     return float(np.sqrt((plan.seeds - 1) * np.var(differences)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from scenarios.source_choice.candidates import (
     Rig,
     vehicle_file,
 )
-from vehicle.engines.reduced.many import COARSE_STEP, simulate_many
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.comfort import comfort_values
@@ -54,12 +54,12 @@ SWING_RMS = 0.05
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Plan:
-    """Inputs that all candidates meet.
+    """Plan of the inputs of all candidates.
 
     Attributes:
-        seeds: records of each input.
-        shaker_edges, road_edges: of `candidates`, or some of them [Hz].
-        shaker_s, road_s: length of the records [s].
+        seeds: number of records of each input.
+        shaker_edges, road_edges: band edges of `candidates`, or a subset [Hz].
+        shaker_s, road_s: duration of the records [s].
     """
 
     seeds: int = 8
@@ -95,18 +95,18 @@ PATHS = {
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Readings:
-    """Numbers of one rig, both points of the roof among them.
+    """Values of one rig, including both roof points.
 
     Attributes:
         shaker: slip shares, (edges, levels, seeds, [plate, other side], slip velocities).
         extremes: lowest and highest of `POINTS` [m/s2], (edges of the noise, seeds, bumps, points, 2).
-        stick_end: of the 7.5 mm bump as if it began at 5 s [s], (edges, seeds); infinite where it never slips.
-        fastest: damper over the plate [m/s], (edges, seeds, bumps).
-        comfort: relative comfort value of `ENDS`, (edges of the road, roads, seeds, ends).
+        stick_end: end of sticking for a 7.5 mm bump that begins at 5 s [s], (edges, seeds); infinite without slip.
+        fastest: largest velocity of the damper over the plate [m/s], (edges, seeds, bumps).
+        comfort: relative comfort value of `ENDS`, (road edges, roads, seeds, ends).
         road: slip shares of the damper over the plate, (edges, roads, seeds, slip velocities).
         levels: largest |seat rail, vertical| over the cars of `evidence.LEVELS` in every half second [m/s2],
             (edges, figures, seeds * windows).
-        modes: Hz, wheel, roll, highest rigid, lowest and highest engine.
+        modes: frequencies [Hz] of wheel, roll, highest rigid body mode, lowest and highest engine mode.
     """
 
     shaker: Vector
@@ -119,7 +119,7 @@ class Readings:
     modes: Vector
 
     def without(self, seed: int) -> Readings:
-        """The numbers without those of one seed."""
+        """Return the readings without one seed."""
         seeds = self.stick_end.shape[1]
         windows = self.levels.reshape(*self.levels.shape[:2], seeds, -1)
         return Readings(
@@ -135,21 +135,23 @@ class Readings:
 
 
 def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
-    """Numbers of rigs, those of eight at once taking little more time than those of one.
+    """Run rigs and return their readings; a batch of eight takes little more time than a single rig.
 
     Args:
-        rigs: all with the plate on one side.
+        rigs: rigs with the plate on the same side.
         plan: the inputs.
-        folder: for their vehicle files.
+        folder: folder of the vehicle files.
     """
     wheel = PLATES[rigs[0].plate]
-    every = [one for rig in rigs for one in _cars(folder, rig.hydromount, rig.brackets, rig.overrides())]
+    every = [entry for rig in rigs for entry in _cars(folder, rig.hydromount, rig.brackets, rig.overrides())]
     cars = every[:: 1 + len(ENDS)]
-    shaker = np.array([[[_shares(cars, s, wheel) for s in row] for row in rows] for rows in _shaker_signals(plan)])
-    found = [_bumps(cars, signals, wheel) for signals in _bump_signals(plan)]
-    extremes, stick_end, fastest = (np.array([one[part] for one in found]) for part in range(3))
+    shaker = np.array(
+        [[[_shares(cars, s, wheel) for s in row] for row in rows] for rows in _shaker_signals(plan, wheel)]
+    )
+    per_plan = [_bumps(cars, signals, wheel) for signals in _bump_signals(plan, wheel)]
+    extremes, stick_end, fastest = (np.array([entry[part] for entry in per_plan]) for part in range(3))
     on_road = [_roads(every, plan, edge, wheel) for edge in plan.road_edges]
-    comfort, road_shares, levels = (np.array([one[part] for one in on_road]) for part in range(3))
+    comfort, road_shares, levels = (np.array([entry[part] for entry in on_road]) for part in range(3))
     return [
         Readings(
             shaker=shaker[:, :, :, number],
@@ -168,39 +170,38 @@ def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
 # The plate and the roof point are no part of the car; building one costs as much as minutes on the road.
 @lru_cache(maxsize=64)
 def _cars(folder: Path, hydromount: str, brackets: str, changes: tuple[str, ...]) -> tuple[Car, ...]:
-    """A car, and those at the ends of its comfort curves."""
+    """Return a car, and the cars at the ends of its comfort curves."""
     car = Car.load(vehicle_file(folder, hydromount, brackets), changes)
     return car, *(car.varied([f"{PATHS[name]}={value!r}"]) for name, value in ENDS)
 
 
 def _march(
-    cars: Sequence[Car], signal: Signal, wheel: str, channels: Sequence[str], step: float = COARSE_STEP
+    cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float = COARSE_STEP
 ) -> Iterator[tuple[slice, Mapping[str, Vector]]]:
-    """Some cars after others on a signal under a wheel: which ones, and channels (cars, n)."""
-    (plate,) = signal.displacement.values()
-    signal = replace(signal, displacement={wheel: plate})
+    """Simulate cars in batches on a signal; yield the slice of each batch and its channels (cars, n)."""
     for first in range(0, len(cars), TOGETHER):
-        some = cars[first : first + TOGETHER]
-        many = simulate_many(
-            [car.poles for car in some],
+        batch = cars[first : first + TOGETHER]
+        simulated = simulate_batch(
+            [car.poles for car in batch],
             signal,
-            dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in some],
+            dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in batch],
             record_rate=RATE_HZ,
-            tyre_load=[car.static.tyre_load for car in some],
+            tyre_load=[car.static.tyre_load for car in batch],
             channels=channels,
             step=step,
         )
-        yield slice(first, first + len(some)), many.channels
+        yield slice(first, first + len(batch)), simulated.channels
 
 
-def _shaker_signals(plan: Plan) -> list[list[list[Signal]]]:
-    """(edges, levels, seeds)."""
+def _shaker_signals(plan: Plan, wheel: str) -> list[list[list[Signal]]]:
+    """Return the shaker signals, (edges, levels, seeds)."""
     return [
         [
             [
                 random_road(
                     rms=rms,
                     seed=seed,
+                    wheel=wheel,
                     duration=plan.shaker_s,
                     lower_band_edge=edge,
                     roll_off_order=SHAKER_ROLL_OFF_ORDER,
@@ -218,31 +219,32 @@ def _velocities(wheel: str) -> tuple[str, str]:
 
 
 def _above(velocity: Vector) -> Vector:
-    """Share of the samples above each slip velocity, (..., velocities)."""
+    """Return the share of the samples above each slip velocity, (..., velocities)."""
     speed = np.sort(np.abs(velocity), axis=-1)
     below = [np.searchsorted(row, SLIP_VELOCITIES, side="right") for row in speed.reshape(-1, speed.shape[-1])]
     return np.asarray(1.0 - np.array(below).reshape(*speed.shape[:-1], -1) / speed.shape[-1])
 
 
 def _shares(cars: Sequence[Car], signal: Signal, wheel: str) -> Vector:
-    """Slip shares (cars, [plate, other], velocities)."""
+    """Return slip shares, (cars, [plate, other], velocities)."""
     channels = _velocities(wheel)
     return np.concatenate(
         [
-            _above(np.stack([found[name] for name in channels], axis=1))
-            for _, found in _march(cars, signal, wheel, channels)
+            _above(np.stack([recordings[name] for name in channels], axis=1))
+            for _, recordings in _march(cars, signal, channels)
         ]
     )
 
 
-def _bump_signals(plan: Plan) -> list[list[list[Signal]]]:
-    """(edges, seeds, bumps)."""
+def _bump_signals(plan: Plan, wheel: str) -> list[list[list[Signal]]]:
+    """Return the bump signals, (edges, seeds, bumps)."""
     duration = BUMP_LEAD_S + SHOWN_S + BUMP_TAIL_S
     return [
         [
             [
                 bump(
                     amplitude=size,
+                    wheel=wheel,
                     duration=duration,
                     start=BUMP_LEAD_S,
                     noise_rms=NOISE_RMS * NOISE_LEVELS[level],
@@ -258,10 +260,10 @@ def _bump_signals(plan: Plan) -> list[list[list[Signal]]]:
 
 
 def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str) -> tuple[Vector, Vector, Vector]:
-    """Extremes (seeds, bumps, cars, points, 2), end of sticking and largest velocity (seeds, bumps, cars)."""
-    strut = [f"{place}_{wheel}_acc_{axis}" for place in ("damper_top", "knuckle") for axis in AXES]
+    """Return extremes (seeds, bumps, cars, points, 2), end of sticking and largest velocity (seeds, bumps, cars)."""
+    strut = [f"{point}_{wheel}_acc_{axis}" for point in ("damper_top", "knuckle") for axis in AXES]
     body = ["seat_rail_acc_x", "seat_rail_acc_y", "seat_rail_acc_z", "seat_acc_z"]
-    rest = ["engine_acc_z", "roof_left_rear_acc_z", "roof_right_rear_acc_z"]
+    others = ["engine_acc_z", "roof_left_rear_acc_z", "roof_right_rear_acc_z"]
     speed, _ = _velocities(wheel)
     shape = (len(signals), len(signals[0]), len(cars))
     extremes, stick_end, fastest = np.empty((*shape, len(POINTS), 2)), np.empty(shape), np.empty(shape)
@@ -271,8 +273,8 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
     axis /= np.linalg.norm(axis)
     for i, row in enumerate(signals):
         for j, signal in enumerate(row):
-            for cut, found in _march(cars, signal, wheel, [*strut, *body, *rest, speed], FINE_STEP):
-                shown = {name: values[:, first : last + 1] for name, values in found.items()}
+            for cut, recordings in _march(cars, signal, [*strut, *body, *others, speed], FINE_STEP):
+                shown = {name: values[:, first : last + 1] for name, values in recordings.items()}
                 top, knuckle = (
                     sum(axis[n] * shown[name] for n, name in enumerate(part)) for part in (strut[:3], strut[3:])
                 )
@@ -280,7 +282,7 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
                     *(shown[name] for name in body),
                     shown[strut[5]],
                     top - knuckle,
-                    *(shown[name] for name in rest),
+                    *(shown[name] for name in others),
                 ]
                 extremes[i, j, cut, :, 0] = np.min(rows, axis=2).T
                 extremes[i, j, cut, :, 1] = np.max(rows, axis=2).T
@@ -293,7 +295,7 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
 
 
 def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[Vector, Vector, Vector]:
-    """Comfort (roads, seeds, cars, ends), slip (roads, seeds, cars, velocities), levels (figures, cars, windows).
+    """Return comfort (roads, seeds, cars, ends), slip (.., velocities) and levels (figures, cars, windows).
 
     Args:
         every: each car followed by those at the ends of its comfort curves.
@@ -307,38 +309,39 @@ def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[V
     largest = np.empty((*shape, round(plan.road_s * RATE_HZ) // WINDOW))
     for i, rms in enumerate(ROAD_RMS.values()):
         for seed in range(plan.seeds):
-            signal = road(rms=rms, seed=seed, duration=plan.road_s, lower_band_edge=edge)
-            for cut, found in _march(every, signal, wheel, [*rail, speed]):
-                kept = np.stack([found[name][:, record] for name in rail], axis=1)
+            signal = road(rms=rms, seed=seed, wheel=wheel, duration=plan.road_s, lower_band_edge=edge)
+            for cut, recordings in _march(every, signal, [*rail, speed]):
+                kept = np.stack([recordings[name][:, record] for name in rail], axis=1)
                 comfort[i, seed, cut] = comfort_values(1.0 / RATE_HZ, kept).overall
                 vertical = np.abs(kept[:, 2, : largest.shape[-1] * WINDOW])
                 largest[i, seed, cut] = np.max(vertical.reshape(len(kept), -1, WINDOW), axis=2)
-                shares[i, seed, cut] = _above(found[speed][:, record])
+                shares[i, seed, cut] = _above(recordings[speed][:, record])
     number = len(every) // count
     by_car = comfort.reshape(*shape[:2], number, count)
     largest = largest.reshape(*shape[:2], number, count, -1)
     figures = []
-    for _, name, kind, _, _ in LEVELS:
+    for _, name, road_name, _, _ in LEVELS:
         members = [0, *(1 + n for n, (parameter, _) in enumerate(ENDS) if parameter == name)]
-        one = np.max(largest[list(ROAD_RMS).index(kind)][:, :, members], axis=2)
-        figures.append(np.swapaxes(one, 0, 1).reshape(number, -1))
+        entry = np.max(largest[list(ROAD_RMS).index(road_name)][:, :, members], axis=2)
+        figures.append(np.swapaxes(entry, 0, 1).reshape(number, -1))
     ratios = by_car[..., 1:] / by_car[..., :1]
     return ratios, shares.reshape(*shape[:2], number, count, -1)[..., 0, :], np.array(figures)
 
 
 def swings(edge: float, plan: Plan) -> Vector:
-    """Highest less lowest displacement of 30 s of a road of 50 mm RMS [m], for each seed and stretch."""
+    """Return highest minus lowest displacement of 30 s of a road of 50 mm RMS [m], for each seed and window."""
     record = slice(round(LEAD_S * RATE_HZ) + 1, None)
-    found = []
+    largest = []
     for seed in range(plan.seeds):
-        plate = road(rms=SWING_RMS, seed=seed, duration=plan.road_s, lower_band_edge=edge).displacement["fr"][record]
+        signal = road(rms=SWING_RMS, seed=seed, wheel="fl", duration=plan.road_s, lower_band_edge=edge)
+        plate = signal.displacement["fl"][record]
         samples = min(round(SWING_S * RATE_HZ), plate.size)
-        found.append(np.ptp(plate[: plate.size // samples * samples].reshape(-1, samples), axis=1))
-    return np.concatenate(found)
+        largest.append(np.ptp(plate[: plate.size // samples * samples].reshape(-1, samples), axis=1))
+    return np.concatenate(largest)
 
 
 def _modes(car: Car, wheel: str) -> Vector:
-    """Vertical wheel mode, roll, highest rigid body mode, lowest and highest engine mode [Hz], dampers stuck."""
+    """Return wheel, roll, highest rigid body, lowest and highest engine mode [Hz], dampers stuck."""
     lines = np.arange(WHEEL_BAND[0], WHEEL_BAND[1], 0.05)
     (knuckle,) = car.matrix_frf([f"knuckle_{wheel}_acc_z"], lines, wheel=wheel)
     modes = car.modes("stuck")

@@ -1,4 +1,4 @@
-"""What Bommer (2006) did by hand, automatic: parameters fitted to FRFs and bump records (section 3.2).
+"""Automatic fit of parameters to FRFs and bump records, which Bommer (2006) tuned by hand (section 3.2).
 
 python -m scenarios.tuning [--output DIR] [--quick] [--jobs N] [--vehicle FILE.toml] [--force]
 python -m scenarios.tuning --frf measured_low.uff --level low --frf measured_high.csv --level my_signal.csv
@@ -50,12 +50,12 @@ from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.studies.tuning.car_fit import require_fittable
-from vehicle.studies.tuning.fit import Target, fit
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
+from vehicle.studies.tuning.least_squares import Target, fit
 from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.result import TuningResult
 
 
 class Tuning:
@@ -70,7 +70,7 @@ class Tuning:
         self.vehicle = runs.car().vehicle
 
     def build(self, values: Mapping[str, float]) -> Car:
-        """The car with some values; not kept."""
+        """Return the car with given values; not cached."""
         return self.runs.car().varied(overrides_of(self.vehicle, values))
 
     def fit(
@@ -80,7 +80,7 @@ class Tuning:
         targets: Sequence[Target],
         frozen: Mapping[str, float] = MappingProxyType({}),
     ) -> TuningResult:
-        """Fit with the fast models, others frozen at some values; a line tells how many cars were computed."""
+        """Fit parameters with the fast models, with frozen values of others; show the progress."""
         line = ProgressLine(name)
         result = fit(
             parameters,
@@ -92,7 +92,7 @@ class Tuning:
         return result
 
     def finish(self, result: TuningResult, measurements: Sequence[MeasuredTarget], engine: str | None) -> FullSteps:
-        """The last steps with the full simulation."""
+        """Continue a fit with the full simulation."""
 
         def simulate(values: Mapping[str, float]) -> list[Run]:
             changes = overrides_of(self.vehicle, values)
@@ -102,17 +102,17 @@ class Tuning:
                 engine=engine or self.runs.engine,
                 jobs=self.runs.jobs,
             )
-            return again([again.case(one.signal, changes) for one in measurements])
+            return again([again.case(measurement.signal, changes) for measurement in measurements])
 
-        return full_steps(result, [one.target for one in measurements], simulate)
+        return full_steps(result, [measurement.target for measurement in measurements], simulate)
 
 
 def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     """Find the hidden car from its data, draw the figures into the folder, and compare."""
     tuning = Tuning(runs)
     engine = "reduced" if quick else None
-    parameters = [one for one in AUTHORS if not quick or one.path in QUICK]
-    true = {one.path: HIDDEN[one.path] for one in parameters}
+    parameters = [entry for entry in AUTHORS if not quick or entry.path in QUICK]
+    true = {entry.path: HIDDEN[entry.path] for entry in parameters}
     measurements = make_measurements(
         runs,
         folder,
@@ -123,11 +123,11 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
         spacing=1.0 if quick else SPACING,
         engine=engine,
     )
-    result = tuning.fit("all in one", parameters, [one.target for one in measurements])
+    result = tuning.fit("all in one", parameters, [entry.target for entry in measurements])
     final = tuning.finish(result, measurements, engine)
     source = f"hidden car, engine {engine or runs.engine}, {100 * NOISE:g} % noise"
     _draw(folder, tuning, final.result, measurements, source)
-    found, alone = {"all levels in one fit": final.result}, None
+    results, from_records = {"all levels in one fit": final.result}, None
     notes = [
         data_note(measurements, engine or runs.engine, quick),
         *fit_notes("All levels and bumps in one fit", final.result, final),
@@ -135,24 +135,30 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     data: dict[str, Any] = {"true": true, "all": fit_numbers(final.result), "all_fast": fit_numbers(result)}
     if not quick:
         # The authors' order: the low level, which comes first, then the damper from the bumps, the rest frozen.
-        bumps = [one for one in measurements if isinstance(one.target, RecordTarget)]
-        records = [one.target for one in bumps]
-        rest, damper_only = ([one for one in parameters if (one.path in SLIDING) is slides] for slides in (False, True))
-        stuck = tuning.fit("low level", rest, [measurements[0].target])
+        bumps = [entry for entry in measurements if isinstance(entry.target, RecordTarget)]
+        records = [entry.target for entry in bumps]
+        others, damper_only = (
+            [entry for entry in parameters if (entry.path in SLIDING) is slides] for slides in (False, True)
+        )
+        stuck = tuning.fit("low level", others, [measurements[0].target])
         damper = tuning.fit("damper", damper_only, records, stuck.values)
-        alone = tuning.finish(tuning.fit("bump records", parameters, records), bumps, None)
-        found["bump records alone"] = alone.result
+        from_records = tuning.finish(tuning.fit("bump records", parameters, records), bumps, None)
+        results["bump records alone"] = from_records.result
         notes += [
-            *fit_notes("Bump records alone (time-domain step)", alone.result, alone),
+            *fit_notes("Bump records alone (time-domain step)", from_records.result, from_records),
             *fit_notes("As the authors: low level alone, dampers stuck", stuck, None),
             *fit_notes("Then the damper alone from the bump records, the rest frozen", damper, None),
             frozen_note(damper, true),
         ]
-        data |= {"bumps": fit_numbers(alone.result), "low": fit_numbers(stuck), "damper_frozen": fit_numbers(damper)}
-    parameter_figure(folder / "parameters.png", found, true)
+        data |= {
+            "bumps": fit_numbers(from_records.result),
+            "low": fit_numbers(stuck),
+            "damper_frozen": fit_numbers(damper),
+        }
+    parameter_figure(folder / "parameters.png", results, true)
     return Findings(
         title="Parameters fitted to FRFs and bump records (Bommer 2006, section 3.2, automatic)",
-        claims=demonstration_claims(final, alone, true),
+        claims=demonstration_claims(final, from_records, true),
         tyres=tuning.vehicle.driving.words,
         unjudged={"bump records alone, and the authors' own order": "left out with --quick"} if quick else {},
         notes=notes,
@@ -167,13 +173,13 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
     parameters: Sequence[Range] = parse_parameters(options.fit, tuning.vehicle)
     require_fittable(parameters, tuning.vehicle)
     measurements = own_measurements(options, runs.car())
-    notices = [f"- {text}" for one in measurements for text in one.notices]
+    notices = [f"- {text}" for entry in measurements for text in entry.notices]
     for text in notices:
         print(f"notice: {text.removeprefix('- ')}", file=sys.stderr, flush=True)
     if not options.fit:
-        stuck = all(isinstance(one.target, FrfTarget) and one.target.signal is None for one in measurements)
-        parameters = [one for one in AUTHORS if not stuck or one.path not in SLIDING]
-    result = tuning.fit("fit", parameters, [one.target for one in measurements])
+        stuck = all(isinstance(entry.target, FrfTarget) and entry.target.signal is None for entry in measurements)
+        parameters = [entry for entry in AUTHORS if not stuck or entry.path not in SLIDING]
+    result = tuning.fit("fit", parameters, [entry.target for entry in measurements])
     final = None if options.quick else tuning.finish(result, measurements, None)
     result = result if final is None else final.result
     files = [path.name for path in (*options.frf, *options.record)]
@@ -193,29 +199,31 @@ def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findi
 def _draw(
     folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequence[MeasuredTarget], source: str
 ) -> None:
-    """Data, start and fit of every target, and the correlations."""
-    start = tuning.build({one.path: one.start for one in result.parameters})
+    """Draw data, start and fit of every target, and the correlations."""
+    start = tuning.build({measurement.path: measurement.start for measurement in result.parameters})
     end = tuning.build(result.values)
-    for index, one in enumerate(measurements):
-        if isinstance(one.target, FrfTarget):
-            level_figure(folder / f"frf_{index + 1}_{one.target.name}.png", one.target, start, end, source)
-    records = [one.target for one in measurements if isinstance(one.target, RecordTarget)]
+    for index, measurement in enumerate(measurements):
+        if isinstance(measurement.target, FrfTarget):
+            level_figure(
+                folder / f"frf_{index + 1}_{measurement.target.name}.png", measurement.target, start, end, source
+            )
+    records = [measurement.target for measurement in measurements if isinstance(measurement.target, RecordTarget)]
     if records:
         record_figure(folder / "records.png", records, start, end, source)
     correlation_figure(folder / "correlation.png", result)
 
 
-def add_options(found: Parser) -> None:
-    """Options of this study alone."""
-    found.add_argument(
+def add_options(study_options: Parser) -> None:
+    """Add the options of this study."""
+    study_options.add_argument(
         "--frf",
         type=Path,
         action="append",
         default=[],
         metavar="FILE",
-        help="own FRFs, or accelerations beside the plate, in any format of `inspect`; repeatable",
+        help="measured FRFs, or accelerations with the plate, in any format of `inspect`; repeatable",
     )
-    found.add_argument(
+    study_options.add_argument(
         "--record",
         type=Path,
         action="append",
@@ -223,11 +231,13 @@ def add_options(found: Parser) -> None:
         metavar="FILE",
         help="own time histories, of a bump or of anything else, in any format of `inspect`; repeatable",
     )
-    own = found.scoped_group(
+    own_group = study_options.scoped_group(
         "own data", needs="--frf or --record", active=lambda options: bool(options.frf or options.record)
     )
-    responses = found.scoped_group("own FRFs", needs="--frf", active=lambda options: bool(options.frf))
-    records = found.scoped_group("own time histories", needs="--record", active=lambda options: bool(options.record))
+    responses = study_options.scoped_group("own FRFs", needs="--frf", active=lambda options: bool(options.frf))
+    records = study_options.scoped_group(
+        "own time histories", needs="--record", active=lambda options: bool(options.record)
+    )
     responses.add_argument(
         "--level",
         action="append",
@@ -251,16 +261,16 @@ def add_options(found: Parser) -> None:
     records.add_argument(
         "--lowpass", type=float, default=100.0, metavar="HZ", help="records are compared below it; %(default)g Hz"
     )
-    mapping_options(own)
-    record_options(own, "", channel=False)
-    own.add_argument(
+    mapping_options(own_group)
+    record_options(own_group, "", channel=False)
+    own_group.add_argument(
         "--fit",
         action="append",
         default=[],
         metavar=TEXT,
         help="parameter, its bounds and where the fit begins; those of Bommer 2006 by default; may be repeated",
     )
-    own.add_argument(
+    own_group.add_argument(
         "--channel",
         action="append",
         default=[],

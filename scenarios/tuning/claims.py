@@ -1,4 +1,4 @@
-"""Fitted values beside the hidden ones, and the paragraphs that say how far a fit is to be trusted."""
+"""Rows of fitted against hidden values, and paragraphs on the reliability of a fit."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from scenarios.claims import OWN_CHECK, Claim, markdown
 from scenarios.tuning.data import NOISE, SLIDING
 from vehicle.model.parameters.paths import unit_of
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.full_steps import SMALL, FullSteps
 from vehicle.studies.tuning.identifiability import WIDEST
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
-from vehicle.studies.tuning.result import TuningResult
 
 WITHIN = 3.0
 """Standard errors: 99.7 % of the values of a normal distribution; one of nine is beyond in one fit of forty."""
 
 
-def demonstration_claims(final: FullSteps, alone: FullSteps | None, true: Mapping[str, float]) -> list[Claim]:
-    """Rows: every hidden value, the damper from the bump records, the final check."""
+def demonstration_claims(final: FullSteps, from_records: FullSteps | None, true: Mapping[str, float]) -> list[Claim]:
+    """Return the rows on every hidden value, on the damper from the bump records, and on the final check."""
     claims = [_recovered(f"{path}, all levels in one fit", final.result, path, value) for path, value in true.items()]
     claims.append(_checked("all levels in one fit", final))
-    if alone is not None:
-        claims += [_recovered(f"{path}, bump records alone", alone.result, path, true[path]) for path in SLIDING]
-        claims.append(_checked("bump records alone", alone))
+    if from_records is not None:
+        claims += [_recovered(f"{path}, bump records alone", from_records.result, path, true[path]) for path in SLIDING]
+        claims.append(_checked("bump records alone", from_records))
     return claims
 
 
 def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
-    """Rows: whether the fit ended at a minimum inside its bounds, the final check."""
+    """Return the rows on a minimum inside the bounds, and on the final check."""
     claims = [
         OWN_CHECK.statement(
             "the fit ends at a minimum within its bounds",
@@ -45,14 +45,14 @@ def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
 
 
 def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim:
-    """Row of one hidden value."""
-    held = next((one for one in result.unidentified if one.path == path), None)
+    """Return the row of a hidden value."""
+    held = next((parameter for parameter in result.unidentified if parameter.path == path), None)
     if held is not None:
         return OWN_CHECK.statement(
-            name, f"hidden {true:g}", f"not told by the data, held at {held.held_at:g}", True, held.sentence()
+            name, f"hidden {true:g}", f"not identified by the data, held at {held.held_at:g}", True, held.message()
         )
     away = result.deviation(path, true)
-    start = next(one.start for one in result.parameters if one.path == path)
+    start = next(parameter.start for parameter in result.parameters if parameter.path == path)
     allowed = WITHIN * result.standard_errors[path]
     why = (
         f"hidden value, not printed: {away:+.2f} standard errors of {result.standard_errors[path]:.3g} away, "
@@ -81,21 +81,24 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
         result: of a fit.
         vehicle: the car, for the units.
     """
-    width = max((len(one.path) for one in result.parameters), default=0)
+    width = max((len(parameter.path) for parameter in result.parameters), default=0)
     lines = []
-    for one in result.parameters:
-        error, start = result.standard_errors.get(one.path, math.nan), f"started at {one.start:g}"
-        spread = f"+- {error:.2g}" if math.isfinite(error) else "not told by the data, held"
+    for parameter in result.parameters:
+        error, start = result.standard_errors.get(parameter.path, math.nan), f"started at {parameter.start:g}"
+        spread = f"+- {error:.2g}" if math.isfinite(error) else "not identified by the data, held"
         lines.append(
-            f"{one.path:<{width}}  {result.values[one.path]:.6g} {spread} {unit_of(vehicle, one.path)}, {start}"
+            f"{parameter.path:<{width}}  {result.values[parameter.path]:.6g} {spread} "
+            f"{unit_of(vehicle, parameter.path)}, {start}"
         )
-    words = " ".join(f"--set {one.path}={result.values[one.path]:.8g}" for one in result.parameters)
-    return [*lines, words]
+    settings = " ".join(
+        f"--set {parameter.path}={result.values[parameter.path]:.8g}" for parameter in result.parameters
+    )
+    return [*lines, settings]
 
 
 def data_note(measurements: Sequence[MeasuredTarget], engine: str, quick: bool) -> str:
-    """What the data are, and where errors of the models enter."""
-    names = ", ".join(one.target.name for one in measurements)
+    """Return a note on the data, and on the effect of model errors."""
+    names = ", ".join(measurement.target.name for measurement in measurements)
     short = (
         " --quick: fewer parameters, levels, channels and frequencies, and the reduced engine in place of MuJoCo."
         if quick
@@ -112,7 +115,7 @@ def data_note(measurements: Sequence[MeasuredTarget], engine: str, quick: bool) 
 
 
 def frozen_note(damper: TuningResult, true: Mapping[str, float]) -> str:
-    """What freezing the rest does to the damper."""
+    """Return a note on the damper fitted with all other parameters frozen."""
     parts = [
         f"{path} {damper.values[path]:.4g}, {damper.deviation(path, true[path]):+.1f} standard errors from the hidden "
         "value"
@@ -126,7 +129,7 @@ def frozen_note(damper: TuningResult, true: Mapping[str, float]) -> str:
 
 
 def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list[str]:
-    """Paragraphs: how it ended, the table of values, what the data cannot tell, the sizes of the residuals."""
+    """Return paragraphs on the end of the fit, the values, unidentified parameters and residuals."""
     notes = [
         f"## {title}\n\n{result.evaluations} cars computed; {result.message} Root of the mean square of the weighted "
         f"residuals {result.before:.3g} before, {result.after:.3g} after. Condition of the weighted Jacobian (columns "
@@ -134,7 +137,7 @@ def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list
         _values(result, final),
     ]
     if result.unidentified:
-        sentences = "\n".join(f"- {one.sentence()}" for one in result.unidentified)
+        sentences = "\n".join(f"- {held.message()}" for held in result.unidentified)
         notes.append(
             "Not identified (a direction of the weighted Jacobian with a standard error above "
             f"{WIDEST:.2g} half widths of the bounds, half of what the bounds alone say):\n\n{sentences}"
@@ -148,13 +151,13 @@ def fit_notes(title: str, result: TuningResult, final: FullSteps | None) -> list
 def _values(result: TuningResult, final: FullSteps | None) -> str:
     moved = {} if final is None else final.moved
     rows = []
-    for one in result.parameters:
-        value, error = result.values[one.path], result.standard_errors[one.path]
-        known = not math.isnan(error)
-        shift = f"{moved[one.path]:+.2f}" if one.path in moved else ""
-        errors = (f"{error:.2g}", f"{100 * error / value:.2g} %") if known else ("none", "")
-        fit = (one.path, f"{one.low:g} to {one.high:g}", f"{one.start:g}", f"{value:.4g}")
-        rows.append((*fit, *errors, _strongest(result, one.path), shift))
+    for parameter in result.parameters:
+        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
+        finite = not math.isnan(error)
+        shift = f"{moved[parameter.path]:+.2f}" if parameter.path in moved else ""
+        errors = (f"{error:.2g}", f"{100 * error / value:.2g} %") if finite else ("none", "")
+        fit = (parameter.path, f"{parameter.low:g} to {parameter.high:g}", f"{parameter.start:g}", f"{value:.4g}")
+        rows.append((*fit, *errors, _strongest(result, parameter.path), shift))
     columns = ("parameter", "bounds", "start", "fitted", "standard error", "relative", "strongest correlation")
     return markdown((*columns, "moved by the full simulation [standard errors]"), rows)
 
@@ -185,12 +188,12 @@ def _rows(result: TuningResult) -> str:
 
 
 def fit_numbers(result: TuningResult) -> dict[str, Any]:
-    """A fit for `results.json`."""
+    """Return a fit as plain data for `results.json`."""
     plain = ("values", "standard_errors", "free", "at_bound", "condition", "evaluations", "converged")
     return {
         **{name: getattr(result, name) for name in plain},
-        "start": {one.path: one.start for one in result.parameters},
+        "start": {parameter.path: parameter.start for parameter in result.parameters},
         "correlation": result.correlation.tolist(),
-        "unidentified": [asdict(one) for one in result.unidentified],
+        "unidentified": [asdict(parameter) for parameter in result.unidentified],
         "weighted_residual": {"before": result.before, "after": result.after},
     }

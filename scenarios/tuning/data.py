@@ -21,7 +21,7 @@ from vehicle.runs.output.run_files import FRAME
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.records.frf import read_frf, write_frf
+from vehicle.signals.records.frf_file import read_frf, write_frf
 from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.car_fit import ranges_of
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -38,7 +38,7 @@ NOISE = 0.03
 """Standard deviation of the noise on ln|H| and on the phase [rad], and of that on a record over its RMS."""
 
 SEED = 2006
-"""Of all noise, with the place of the input in `INPUTS`: a level has the same noise whatever is fitted beside it."""
+"""Seed of all noise, with the index of the input in `INPUTS`: the noise of a level does not depend on other levels."""
 
 INPUTS = ("low", "mid", "high", "bump_1p5mm", "bump_7p5mm")
 BUMP_WINDOW = (4.9, 6.5)
@@ -56,31 +56,31 @@ def make_measurements(
     spacing: float = SPACING,
     engine: str | None = None,
 ) -> list[MeasuredTarget]:
-    """Measurements of the hidden car.
+    """Return synthetic measurements of the hidden car.
 
     Args:
-        runs: of cars.
-        folder: the FRFs are written into it as `<level>_frf.csv`, and read back.
-        fitted: paths that take their hidden values; the others keep those of the vehicle.
-        levels: inputs with a FRF; "low" is compared with the stuck linear car.
+        runs: runs of cars.
+        folder: folder in which the FRFs are written as `<level>_frf.csv` and read back.
+        fitted: paths with hidden values; other parameters have the values of the vehicle.
+        levels: inputs with FRFs; "low" is compared with the stuck linear car.
         bumps: inputs with time histories.
-        channels: of the FRFs; `{wheel}` stands for the wheel on the shaker.
-        spacing: of the frequencies [Hz].
-        engine: that makes the data; that of the command line by default.
+        channels: channels of the FRFs; `{wheel}` is replaced by the wheel on the shaker.
+        spacing: distance of the frequencies [Hz].
+        engine: engine of the data; by default that of the command line.
 
     Returns:
-        One for each level and bump.
+        A measurement for each level and bump.
     """
     vehicle = runs.car().vehicle
     changes = overrides_of(vehicle, {path: HIDDEN[path] for path in fitted})
     channels = driven_channels(channels, vehicle.shaker_wheel)
     signals = [read_signal(find_input(f"{name}.csv"), wheel=vehicle.shaker_wheel) for name in (*levels, *bumps)]
     done = runs([runs.case(signal, changes, engine=engine) for signal in signals])
-    found = []
+    measurements = []
     for name, signal, run in zip((*levels, *bumps), signals, done, strict=True):
         noise = np.random.default_rng([SEED, INPUTS.index(name)])
         if name in bumps:
-            found.append(MeasuredTarget(target=_record(name, run, noise), signal=signal))
+            measurements.append(MeasuredTarget(target=_record(name, run, noise), signal=signal))
             continue
         response = _noisy(run.frf(channels), noise)
         file = folder / f"{name}_frf.csv"
@@ -92,12 +92,12 @@ def make_measurements(
             wheel=vehicle.shaker_wheel,
             averages=float(np.nanmedian(response.averages)),
         )
-        found.append(MeasuredTarget(target=target, signal=signal))
-    return found
+        measurements.append(MeasuredTarget(target=target, signal=signal))
+    return measurements
 
 
 def _noisy(clean: FrequencyResponse, noise: np.random.Generator) -> FrequencyResponse:
-    """H (1 + e (a + j b)) with e = NOISE and the coherence that belongs to it: 1 / gamma^2 times 1 + 2 n e^2."""
+    """Return H (1 + e (a + j b)) with e = NOISE and its coherence: 1 / gamma^2 times 1 + 2 n e^2."""
     real, imaginary = noise.standard_normal((2, *clean.response.shape))
     return dataclasses.replace(
         clean,
@@ -119,7 +119,7 @@ def driven_channels(channels: Sequence[str], wheel: str) -> tuple[str, ...]:
 
 
 def _record(name: str, run: Run, noise: np.random.Generator) -> RecordTarget:
-    """Time histories with white noise of NOISE times their RMS in the window."""
+    """Return time histories with white noise of NOISE times their RMS in the window."""
     inside = (run.time >= BUMP_WINDOW[0]) & (run.time <= BUMP_WINDOW[1])
     histories, recorded = {}, driven_channels(RECORDED, run.car.vehicle.shaker_wheel)
     for channel in recorded:
@@ -142,7 +142,7 @@ HIDDEN = {
     "damper.coulomb_friction": 118.0,
     "bushings.torque_arm_body.stiffness.z": 1.1e5,
 }
-"""The final set of appendix F, each value a few percent beside it."""
+"""Hidden values: each value of appendix F changed by a few percent."""
 
 AUTHORS = (
     # Section 3.1.3.2: stiffness of the suspension mount, measured at its driving point.
@@ -158,13 +158,13 @@ AUTHORS = (
     # Section 3.1.3.2: damper of the quarter car.
     Range(path="damper.viscous", low=3e2, high=8e3, start=1500.0),
     Range(path="damper.coulomb_friction", low=15.0, high=400.0, start=75.0),
-    # Appendix F prints 1.2e6, the source says that it hardly matters: do the data tell?
+    # Appendix F prints 1.2e6 and the thesis finds little effect: is it identifiable from the data?
     Range(path="bushings.torque_arm_body.stiffness.z", low=1.2e4, high=1.2e6, start=1.3e5),
 )
 """Section "starting values before tuning" of Bommer 2006; the bounds are ours and far from start and result."""
 
 SLIDING = ("damper.viscous", "damper.coulomb_friction")
-"""What a damper that sticks does not show: the authors tuned them on bumps (section 3.2.2)."""
+"""Parameters that a stuck damper does not identify: the authors tuned them on bumps (section 3.2.2)."""
 
 QUICK = ("bushings.suspension_mount.stiffness.z", "damper.coulomb_friction")
 """Fitted with --quick; the others stay at the values of the vehicle file, which the data then have too."""
@@ -173,12 +173,12 @@ TEXT = "PATH=LOWER:UPPER or PATH=LOWER:UPPER:START"
 
 
 def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...]:
-    """Parameters of the option --fit; without a start they begin at the value of the vehicle.
+    """Parse the parameters of the option --fit; the default start is the value of the vehicle.
 
     Raises:
         ConfigurationError: a text, a path or a bound is wrong.
     """
-    found: list[Range] = []
+    parameters: list[Range] = []
     for text in texts:
         path, separator, numbers = text.partition("=")
         try:
@@ -187,5 +187,5 @@ def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...
             values = []
         if not separator or len(values) not in (2, 3):
             raise ConfigurationError(f"--fit {text}: needed is {TEXT}, as in damper.viscous=500:5000:1500")
-        found += ranges_of(vehicle, {path: (values[0], values[1], *values[2:])})
-    return tuple(found)
+        parameters += ranges_of(vehicle, {path: (values[0], values[1], *values[2:])})
+    return tuple(parameters)

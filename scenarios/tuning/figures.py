@@ -12,9 +12,9 @@ from scenarios.charts import FrfCurve, draw_frf, figure_file, rows_of
 from vehicle.drawing.rendering.figure import COLOURS, INK
 from vehicle.names import channel_units
 from vehicle.runs.car import Car
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.result import TuningResult
 
 DATA, START, FITTED = "#9a9a9a", COLOURS[3], COLOURS[0]
 """Light, dotted and dashed: where data and fit agree, both are still seen."""
@@ -26,7 +26,7 @@ SHORT = {"stiffness": "K", "suspension_mount": "mount", "torque_arm_engine": "bo
 
 
 def level_figure(path: Path, target: FrfTarget, start: Car, fitted: Car, source: str) -> None:
-    """Write data, start and fit of the FRFs of one level, a column a channel; `source` says what the data are."""
+    """Draw data, start and fit of the FRFs of one level, a column for each channel; `source` describes the data."""
     before, after = target.model_response(start), target.model_response(fitted)
     frequency = target.data.frequency
     columns = []
@@ -57,7 +57,7 @@ def level_figure(path: Path, target: FrfTarget, start: Car, fitted: Car, source:
 
 
 def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitted: Car, source: str) -> None:
-    """Write data, start and fit of the records, a column for each; `source` says what the data are."""
+    """Draw data, start and fit of the records, a column for each record; `source` describes the data."""
     count = max(len(target.record.channels) for target in targets)
     note = (
         f"Data: {source}; no averages. Start and fitted: reduced engine on the same signal. All through the low-pass "
@@ -80,7 +80,7 @@ def record_figure(path: Path, targets: Sequence[RecordTarget], start: Car, fitte
 
 
 def _shown(time: npt.NDArray[np.float64], measured: npt.NDArray[np.float64]) -> tuple[float, float]:
-    """The stretch of `SHOWN` with the largest mean square over all channels, each by its own; the whole if shorter."""
+    """Return the window of `SHOWN` seconds with the largest normalised mean square of all channels; all if shorter."""
     count = int(SHOWN / (time[1] - time[0]))
     if count >= time.size:
         return float(time[0]), float(time[-1])
@@ -91,22 +91,26 @@ def _shown(time: npt.NDArray[np.float64], measured: npt.NDArray[np.float64]) -> 
 
 
 def short_name(path: str) -> str:
-    """A path as it stands on an axis."""
+    """Return a short name of a path for an axis."""
     return ".".join(SHORT.get(part, part) for part in path.removeprefix("bushings.").split("."))
 
 
 def parameter_figure(path: Path, results: Mapping[str, TuningResult], true: Mapping[str, float]) -> None:
-    """Write fitted values with three standard errors, beside the hidden values where there are any.
+    """Draw fitted values with three standard errors, and hidden values if there are any.
 
     Args:
         path: PNG file.
-        results: name of a fit to the fit; the first has all parameters.
-        true: path to hidden value; empty for own data, whose values are drawn against their start.
+        results: name of a fit to its result; the first fit has all parameters.
+        true: path to hidden value; empty for user data, whose values are drawn relative to their start.
     """
     first = next(iter(results.values()))
-    paths = [one.path for one in first.parameters if any(one.path in result.free for result in results.values())]
-    starts = {one.path: one.start for one in first.parameters}
-    held = [short_name(one.path) for one in first.unidentified]
+    paths = [
+        parameter.path
+        for parameter in first.parameters
+        if any(parameter.path in result.free for result in results.values())
+    ]
+    starts = {parameter.path: parameter.start for parameter in first.parameters}
+    held = [short_name(parameter.path) for parameter in first.unidentified]
     against = "hidden" if true else "start"
     note = (
         f"Bars: three standard errors; value over {against} value. "
@@ -115,41 +119,41 @@ def parameter_figure(path: Path, results: Mapping[str, TuningResult], true: Mapp
     )
     with figure_file(path, (12.0, 1.6 + 0.55 * len(paths)), f"Fitted values over {against} values", note) as figure:
         wide, fine = figure.subplots(1, 2, sharey=True)
-        places = np.arange(len(paths), dtype=float)
+        positions = np.arange(len(paths), dtype=float)
         for axis, percent in ((wide, None), (fine, 3.0)):
             axis.axvline(0.0, color=INK, linewidth=0.8)
             for index, ((name, result), colour) in enumerate(zip(results.items(), COLOURS, strict=False)):
                 x, error, y = _relative(
-                    result, paths, true or starts, places + 0.22 * (index - 0.5 * (len(results) - 1))
+                    result, paths, true or starts, positions + 0.22 * (index - 0.5 * (len(results) - 1))
                 )
                 axis.errorbar(x, y, xerr=error, fmt="o", markersize=4, capsize=3, color=colour, label=name)
             if true:
-                away = [100.0 * (starts[one] / true[one] - 1.0) for one in paths]
-                axis.plot(away, places, "x", color=START, label="start")
+                away = [100.0 * (starts[parameter] / true[parameter] - 1.0) for parameter in paths]
+                axis.plot(away, positions, "x", color=START, label="start")
             if percent is not None:
                 axis.set_xlim(-percent, percent)
             axis.set_xlabel(f"(fitted - {against}) / {against} [%]")
-        wide.set_yticks(places, [short_name(one) for one in paths])
+        wide.set_yticks(positions, [short_name(parameter) for parameter in paths])
         wide.invert_yaxis()
         wide.legend(loc="best")
 
 
 def _relative(
-    result: TuningResult, paths: Sequence[str], reference: Mapping[str, float], places: npt.NDArray[np.float64]
+    result: TuningResult, paths: Sequence[str], reference: Mapping[str, float], positions: npt.NDArray[np.float64]
 ) -> tuple[list[float], list[float], list[float]]:
-    """Deviation and three standard errors [%] of the parameters a fit has, and where they are drawn."""
-    found: tuple[list[float], list[float], list[float]] = ([], [], [])
-    for one, place in zip(paths, places, strict=True):
-        if one in result.free:
-            found[0].append(100.0 * (result.values[one] / reference[one] - 1.0))
-            found[1].append(300.0 * result.standard_errors[one] / reference[one])
-            found[2].append(float(place))
-    return found
+    """Return deviation, three standard errors [%] and positions on the axis of the parameters of a fit."""
+    columns: tuple[list[float], list[float], list[float]] = ([], [], [])
+    for path, position in zip(paths, positions, strict=True):
+        if path in result.free:
+            columns[0].append(100.0 * (result.values[path] / reference[path] - 1.0))
+            columns[1].append(300.0 * result.standard_errors[path] / reference[path])
+            columns[2].append(float(position))
+    return columns
 
 
 def correlation_figure(path: Path, result: TuningResult) -> None:
     """Write the correlation matrix of the free parameters."""
-    names = [short_name(one) for one in result.free]
+    names = [short_name(free_path) for free_path in result.free]
     size = 3.2 + 0.75 * len(names)
     note = "All free parameters of the fit; near 1 or -1 the data tell a combination much better than each alone."
     with figure_file(path, (size + 1.5, size), "Correlation of the fitted values", note) as figure:

@@ -16,27 +16,27 @@ STUCK = "low"
 
 
 def own_measurements(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
-    """Targets of the options --frf with --level, and --record with --signal.
+    """Return the targets of the options --frf with --level, and --record with --signal.
 
     Args:
-        options: of the study.
-        car: tells the names of the channels, and the rate of its records.
+        options: options of the study.
+        car: the car, with channel names and record rate.
 
     Raises:
-        ConfigurationError: not one level or signal for each file, a band that is none, or a signal that does not exist.
-        DataError: a file holds bad data.
+        ConfigurationError: a level or signal is missing for a file, or a band or signal is invalid.
+        DataError: a file contains bad data.
     """
-    for files, others, words in (
+    for files, others, name_parts in (
         (options.frf, options.level, "--frf and {} --level; each file of FRFs needs its level: " + repr(STUCK)),
         (options.record, options.signal, "--record and {} --signal; each file of time histories needs its signal"),
     ):
         if len(files) != len(others):
             raise ConfigurationError(
-                f"found {len(files)} {words.format(len(others))}, or the displacement signal it was measured with"
+                f"found {len(files)} {name_parts.format(len(others))}, or the displacement signal it was measured with"
                 if files is options.frf
-                else f"found {len(files)} {words.format(len(others))}: the displacement of the plate"
+                else f"found {len(files)} {name_parts.format(len(others))}: the displacement of the plate"
             )
-    band = _numbers("--band", options.band, "LOW:HIGH in Hz, as in 3:45", least=1e-9)
+    band = _numbers("--band", options.band, "LOW:HIGH in Hz, as in 3:45", minimum=1e-9)
     return [
         *(_responses(options, car, file, level, band) for file, level in zip(options.frf, options.level, strict=True)),
         *(_history(options, car, file, name) for file, name in zip(options.record, options.signal, strict=True)),
@@ -46,7 +46,7 @@ def own_measurements(options: argparse.Namespace, car: Car) -> list[MeasuredTarg
 def _responses(
     options: argparse.Namespace, car: Car, file: Path, level: str, band: tuple[float, float]
 ) -> MeasuredTarget:
-    """FRFs of one level; where the file tells no coherence, all lines count alike."""
+    """Return the target of the FRFs of one level; without a measured coherence all lines have equal weights."""
     return measured_responses(
         car,
         file,
@@ -63,9 +63,9 @@ def _responses(
 
 
 def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> MeasuredTarget:
-    """Time histories of one signal at the times of a run; what counts is what both have."""
+    """Return the target of the time histories on one signal, in the time common to signal and record."""
     delay, drift = clock_of(options)
-    words = "FROM:TO in s, as in 4.9:6.5"
+    form = "FROM:TO in s, as in 4.9:6.5"
     return measured_histories(
         car,
         file,
@@ -75,17 +75,17 @@ def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Me
         fitted=options.channel,
         delay=delay,
         drift=drift,
-        stretch=_numbers("--stretch", options.stretch, words, least=0.0) if options.stretch else None,
+        stretch=_numbers("--stretch", options.stretch, form, minimum=0.0) if options.stretch else None,
         lowpass=options.lowpass,
         window=options.window,
     )
 
 
-def _numbers(option: str, text: str, needed: str, *, least: float) -> tuple[float, float]:
+def _numbers(option: str, text: str, needed: str, *, minimum: float) -> tuple[float, float]:
     try:
         low, high = (float(part) for part in text.split(":"))
     except ValueError:
         low, high = 1.0, 0.0
-    if not least <= low < high:
+    if not minimum <= low < high:
         raise ConfigurationError(f"{option} {text}: needed is {needed}")
     return low, high

@@ -28,7 +28,7 @@ from vehicle.signals.excitation.iso_road import CLASSES, REFERENCE, isotropic_co
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.optimisation.trials import Spread, bands, samples_for
 from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.least_squares import fit
 
 Vector = npt.NDArray[np.float64]
 Rows = list[dict[str, Any]]
@@ -164,7 +164,7 @@ def quantile(repetitions: int) -> Rows:
             ]
             for name, response in responses.items():
                 reference = np.sort(response(rng.uniform(-1.0, 1.0, (100_000, count))))
-                stated = [float(one.worth(response(one.bands)[None])[0]) for one in spreads]
+                stated = [float(one.statistic_of(response(one.bands)[None])[0]) for one in spreads]
                 reached = np.searchsorted(reference, stated) / reference.size
                 rows.append(
                     {

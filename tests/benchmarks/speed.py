@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import subprocess
 import sys
 import time
 from collections.abc import Sequence
@@ -20,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tests.benchmarks.sweep_case import case_alone_ms, case_ms
-from vehicle.engines.reduced.many import simulate_many
+from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
@@ -50,6 +51,8 @@ SHOWN = {
     "four_wheel_step_ratio": "that over step_us, interleaved",
     "four_wheel_reduced_realtime_factor": "simulated over computing time of its reduced engine, all channels",
     "case_ms": "processor time of a sweep case of 30 s, ten parameters varied, everything included [ms]",
+    "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
+    "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
     "reduced_rms_error": "largest RMS difference of an acceleration channel to MuJoCo at an eighth of the step",
 }
 
@@ -101,7 +104,7 @@ def pin_to_one_core() -> None:
 
 def piece(seconds: float, level: str = "high") -> Signal:
     """Beginning of a shipped input; it starts at rest."""
-    signal = read_signal(find_input(f"{level}.csv"))
+    signal = read_signal(find_input(f"{level}.csv"), wheel="fr")
     count = int(np.searchsorted(signal.time, seconds)) + 1
     return Signal(time=signal.time[:count], displacement={"fr": signal.displacement["fr"][:count]})
 
@@ -167,7 +170,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
 def batch_factor(car: Car, signal: Signal) -> float:
     """Simulated time of all cars of a batch over its computing time, tables and all, channels of comfort and slip."""
     started = time.perf_counter()
-    simulate_many(
+    simulate_batch(
         [car.poles] * BATCH,
         signal,
         dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,
@@ -176,6 +179,14 @@ def batch_factor(car: Car, signal: Signal) -> float:
         channels=[name for name in FEW if not name.endswith("_force")],
     )
     return BATCH * signal.duration / (time.perf_counter() - started)
+
+
+def start_ms(statement: str, repeats: int) -> float:
+    """Return the processor time of a statement in a new process [ms]: the minimum of repetitions after a first run."""
+    code = f"import time; begin = time.process_time(); {statement}; print(time.process_time() - begin)"
+    command = [sys.executable, "-c", code]
+    times = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(repeats + 1)]
+    return 1e3 * min(float(text) for text in times)
 
 
 def accuracy(car: Car, seconds: float) -> Figures:
@@ -194,6 +205,8 @@ def accuracy(car: Car, seconds: float) -> Figures:
         "rms_error": errors[worst],
         "rms_error_channel": worst,
         "slip_error": max(slips),
+        "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
+        "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
         "reduced_rms_error": max(reduced),
     }
 
@@ -254,6 +267,8 @@ def measure(effort: Effort) -> Figures:
         "four_wheel_step_us": median(four_wheel),
         "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
         "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
+        "import_ms": start_ms("import vehicle", effort.repeats),
+        "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.repeats),
         "case_ms": min(case_ms(effort.cases) for _ in range(2)),
         "parts_us": parts["native"],
         "plain_parts_us": parts["plain"],

@@ -12,8 +12,8 @@ from tempfile import TemporaryDirectory
 from scenarios.global_sensitivity import RANGES, points_of
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case, table_cases
-from vehicle.studies.sweeps.evaluation import run_of
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.case_evaluation import run_of
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
 SECONDS = 20.0
@@ -26,6 +26,7 @@ def cases(count: int) -> list[Case]:
         name="smooth road",
         rms=ROAD_RMS["smooth"],
         seed=0,
+        wheel="fl",
         duration=SECONDS,
         lead=LEAD_S,
         lower_band_edge=ROAD_EDGE_HZ,
@@ -45,7 +46,7 @@ def case_ms(count: int) -> float:
 
 def case_alone_ms(count: int) -> float:
     """Processor time of a case by itself, its car built whole [ms]: as every case was before there were batches."""
-    measure, (first, *rest) = RoadMeasure(lead=LEAD_S), cases(count + 1)
+    measure, (first, *rest) = RoadMeasure(lead=LEAD_S, wheel="fl"), cases(count + 1)
     measure(run_of(first, measure.channels))
     started = time.process_time()
     for case in rest:
@@ -56,6 +57,8 @@ def case_alone_ms(count: int) -> float:
 def _swept(some: Sequence[Case]) -> None:
     """Sweep in this process, with a folder."""
     with TemporaryDirectory() as folder:
-        table = sweep(some, RoadMeasure(lead=LEAD_S), executor=partial(ThreadPoolExecutor, 1), folder=Path(folder))
+        table = sweep(
+            some, RoadMeasure(lead=LEAD_S, wheel="fl"), executor=partial(ThreadPoolExecutor, 1), folder=Path(folder)
+        )
     if table.failed:
         raise RuntimeError(f"{len(table.failed)} cases failed, the first: {table.failed[0][1]}")

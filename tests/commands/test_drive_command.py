@@ -44,16 +44,16 @@ def test_a_drive_file_is_written_and_read_again(measured, high_piece, tmp_path, 
 
 BAD = {
     "no such channel of the car": (["--channel", "knuckle_acc_z=Dof 12*"], 2, "no acceleration channel"),
-    "no such channel of the file": (["--channel", f"{CHANNEL}=Dof 9*"], 3, "hits no channel"),
+    "no such channel of the file": (["--channel", f"{CHANNEL}=Dof 9*"], 3, "matches no channel"),
     "no acceleration": (["--channel", f"{CHANNEL}=1", "--unit", "mm"], 3, "found a displacement"),
-    "band beyond the record": (["--channel", f"{CHANNEL}=1", "--band", "0.1:50"], 2, "the edges may be 0.5 to 100 Hz"),
-    "band upside down": (["--channel", f"{CHANNEL}=1", "--band", "50:1"], 2, "the lower one first: 1:50"),
+    "band beyond the record": (["--channel", f"{CHANNEL}=1", "--band", "0.1:50"], 2, "and within 0.5 to 100 Hz"),
+    "band upside down": (["--channel", f"{CHANNEL}=1", "--band", "50:1"], 2, "the lower first, as 1:50"),
     "gain": (["--channel", f"{CHANNEL}=1", "--gain", "1.5"], 2, "--gain 1.5: must be above 0 and up to 1"),
     "too few channels": (
         ["--channel", f"{CHANNEL}=1", "--wheel", "front_right", "--wheel", "front_left"], 2, "at least as many channels"
     ),
-    "a sensor that is dead": (["--channel", f"{CHANNEL}=2"], 3, "needed is at least 1e-06 m/s2"),
-    "unit": (["--channel", f"{CHANNEL}=1", "--unit", "kg"], 2, "--unit kg: not known"),
+    "a sensor that is dead": (["--channel", f"{CHANNEL}=2"], 3, "must be at least 1e-06 m/s2"),
+    "unit": (["--channel", f"{CHANNEL}=1", "--unit", "kg"], 2, "--unit kg: unknown unit"),
     "beyond a shaker": (["--channel", "seat_rail_acc_x=3", "--wheel", "front_right"], 4, "would have to be"),
 }  # fmt: skip
 

@@ -90,7 +90,7 @@ def test_values_that_begin_with_a_minus(name, words, place, value):
 
 
 def test_a_single_minus_before_an_option_is_told():
-    with pytest.raises(ConfigurationError, match=r"^-travel=1:2: options begin with two hyphens; give --travel=1:2$"):
+    with pytest.raises(ConfigurationError, match=r"^-travel=1:2: options begin with two hyphens; type --travel=1:2$"):
         parser_of("kinematics").parse_args(["-travel=1:2"])
 
 

@@ -48,8 +48,8 @@ def test_a_measured_profile_is_met_at_the_speed(tmp_path):
     [
         (["--speed", "80"], 2, "either --class or --profile"),
         (["--class", "A"], 2, "a road needs --speed KM/H"),
-        (["--class", "K", "--speed", "80"], 2, "road class 'K': allowed are A, B"),
-        (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: allowed above 0"),
+        (["--class", "K", "--speed", "80"], 2, "road class 'K': must be one of A, B"),
+        (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: must be above 0"),
         (["--class", "A", "--speed", "nan"], 2, "--speed nan km/h"),
         (["--class", "A", "--speed", "80", "--coherence", "2"], 2, "coherence 2.0; allowed: 0 to 1"),
         (["--profile", "missing.csv", "--speed", "80"], 2, "missing.csv"),

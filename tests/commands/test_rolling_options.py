@@ -82,9 +82,9 @@ def test_modes_at_a_speed(capsys: pytest.CaptureFixture[str]) -> None:
         (["--input", "low.csv", "--tyre", "rolling"], "--tyre: belongs to a road"),
         (
             [*ROAD, "--tyre", "standing", "--set", "driving.speed=3", "--vehicle", "sedan"],
-            "--tyre standing beside --set driving.speed",
+            "--tyre standing and --set driving.speed",
         ),
-        ([*ROAD, "--tyre", "rolling"], "does not stand on wheels alone"),
+        ([*ROAD, "--tyre", "rolling"], "has other ground contacts than wheels"),
     ],
 )
 def test_what_does_not_go_together_is_refused(

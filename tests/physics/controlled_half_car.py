@@ -1,4 +1,4 @@
-"""The half car of source 2 with controlled dampers in bodies and rows of MuJoCo, without the lumped model."""
+"""The half car with rider, with controlled dampers in bodies and rows of MuJoCo, without the lumped model."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 
 from tests.engines.simulation.row_model import add_bushing, element_law, empty_spec
+from vehicle.model.laws.control_laws import pack as control_numbers
 from vehicle.model.laws.damper import actuator_parameters, pack
-from vehicle.model.laws.semi_active import pack as control_numbers
 
 UP = [0.0, 0.0, 1.0]
 
@@ -19,7 +19,7 @@ def half_car_spec(car, damper, step):
 
     Args:
         car: parameters of source 2.
-        damper: law of both dampers, controlled, as of the complete car.
+        damper: controlled law of both dampers, as in the complete car.
         step: [s].
     """
     spec = empty_spec(step)

@@ -18,7 +18,7 @@ from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.signals.excitation.bump import bump
 
 
@@ -31,7 +31,7 @@ def results(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def bump_run(car):
-    return car.run(bump(amplitude=7.5e-3, duration=1.2, start=0.3, noise_rms=0.0))
+    return car.run(bump(amplitude=7.5e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0))
 
 
 FIRST_SLIP = "bump 7.5 mm, first slip (end of sticking) with Fd 125 N [s]"
@@ -51,7 +51,7 @@ def test_first_slips_and_what_is_not_judged(results):
     ends = sum(2 * len(panels) for panels in PANELS.values())
     assert len(content["not_judged"]) == ends + 5
     assert len(content["extremes_over_seeds"]["bump_1p5_seat_rail_x_highest"]) == 2
-    # The literal reading is twice as high, so it slips sooner; the source says later.
+    # The literal reading is twice as high, so it slips sooner; the thesis has a later slip.
     literal = re.search(r"\(literal\): first slip (5\.\d+) s", (results / "results.md").read_text(encoding="utf-8"))
     assert literal is not None and 5.0 < float(literal[1]) < slip - 0.005
     names = {path.name for path in results.glob("*.png")}
@@ -61,16 +61,16 @@ def test_first_slips_and_what_is_not_judged(results):
 @pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 def test_seeds_differ_by_their_noise_and_a_stuck_damper_is_told():
     stuck = 1e5
-    found = many_seeds(CarRuns(), "height", (125.0, stuck), 2)
-    assert found.engine == "reduced" and found.count == 2
-    assert np.all(np.isinf(found.stick_end[stuck]))
-    assert np.all(np.abs(found.stick_end[125.0] - 5.035) < 0.02) and np.ptp(found.stick_end[125.0]) < 0.01
-    high = found.extremes[SIZES[1], "seat_rail_z"]
+    seeds = many_seeds(CarRuns(), "height", (125.0, stuck), 2)
+    assert seeds.engine == "reduced" and seeds.count == 2
+    assert np.all(np.isinf(seeds.stick_end[stuck]))
+    assert np.all(np.abs(seeds.stick_end[125.0] - 5.035) < 0.02) and np.ptp(seeds.stick_end[125.0]) < 0.01
+    high = seeds.extremes[SIZES[1], "seat_rail_z"]
     assert high.shape == (2, 2) and 0.001 < np.ptp(high[:, 0]) < 0.2
-    assert np.all(found.fastest[SIZES[0]] < found.fastest[SIZES[1]])
+    assert np.all(seeds.fastest[SIZES[0]] < seeds.fastest[SIZES[1]])
     # A damper that never slips is a row that disagrees, not an error.
     bumps: Any = SimpleNamespace(slip_velocity=0.01, noisy=[Silent()])
-    row = slip_claims(bumps, swapped(found, 125.0, stuck))[0]
+    row = slip_claims(bumps, swapped(seeds, 125.0, stuck))[0]
     assert row.ours == "never in 2 of 2" and row.within is False
 
 
@@ -84,8 +84,8 @@ class Silent:
         return 0.0
 
 
-def swapped(seeds, one, other):
-    ends = {one: seeds.stick_end[other], other: seeds.stick_end[one]}
+def swapped(seeds, key, other):
+    ends = {key: seeds.stick_end[other], other: seeds.stick_end[key]}
     return dataclasses.replace(seeds, stick_end=ends)
 
 
@@ -109,20 +109,20 @@ def test_slip_after_is_told_as_if_the_bump_began_at_five_seconds(bump_run):
     assert slip_after(bump_run, 0.3, 10.0) is None
 
 
-def seeds_at(place):
+def seeds_at(position):
     """Eight seeds whose extremes are at a place of their interval, from 0, its lower end, to 1."""
     scatter = np.linspace(-1e-3, 1e-3, 8)
     extremes = {
-        (size, point): np.array([_at(size, point, word, place) + scatter for word in ("lowest", "highest")]).T
+        (size, point): np.array([_at(size, point, word, position) + scatter for word in ("lowest", "highest")]).T
         for size, panels in PANELS.items()
         for point, *_ in panels
     }
     return BumpSeeds(extremes=extremes, fastest={}, stick_end={}, engine="reduced")
 
 
-def _at(size, point, word, place):
+def _at(size, point, word, position):
     low, high = evidence_of(row_key(size, point, word)).interval
-    return low + place * (high - low)
+    return low + position * (high - low)
 
 
 def test_every_readable_end_of_an_axis_is_a_row():
@@ -130,12 +130,12 @@ def test_every_readable_end_of_an_axis_is_a_row():
     assert len(inside) == 24 and all(claim.within for claim in inside)
     assert all(claim.place.startswith("figure 3.1") or claim.place == "figure 3.20" for claim in inside)
     key = row_key(SIZES[1], "engine_z", "lowest")
-    trials = {"stiffer": {row_key(*one): 0.0 for one in _all_rows()} | {key: -1.2}}
+    trials = {"stiffer": {row_key(*row): 0.0 for row in _all_rows()} | {key: -1.2}}
     outside = extreme_claims(seeds_at(1.5), trials)
     assert not any(claim.within for claim in outside)
     why = {claim.name: claim.why for claim in outside}
     assert "reached with stiffer -1.2" in why["bump 7.5 mm, lowest engine, vertical [m/s2]"]
-    assert "none of the changes tried (stiffer 0)" in why["bump 7.5 mm, highest engine, vertical [m/s2]"]
+    assert "no modification reaches the interval (stiffer 0)" in why["bump 7.5 mm, highest engine, vertical [m/s2]"]
 
 
 def _all_rows():
@@ -151,8 +151,8 @@ def test_ring_down_of_a_known_decay():
     motion[time < 1.0] *= 5.0  # the bump itself does not count
     # exp(-1.2 t) is down to a fifth after ln(5)/1.2; the last swing above it is at most half a period earlier.
     expected = np.log(5.0) / rate
-    found = ring_down_time(time, motion, 1.0)
-    assert expected - 0.5 / frequency - 1e-3 <= found <= expected + 1e-3
+    seconds = ring_down_time(time, motion, 1.0)
+    assert expected - 0.5 / frequency - 1e-3 <= seconds <= expected + 1e-3
     assert np.isnan(ring_down_time(time[:1800], motion[:1800], 1.0))
 
 
@@ -165,14 +165,14 @@ def test_a_film_must_be_an_mp4(tmp_path, capsys):
 def test_the_film_shows_both_bumps_in_step(car, tmp_path):
     if (reason := film_available()) is not None:
         pytest.skip(reason)
-    runs = [car.run(bump(amplitude=size, duration=1.0, start=0.3)) for size in (1.5e-3, 7.5e-3)]
+    runs = [car.run(bump(amplitude=size, wheel="fr", duration=1.0, start=0.3)) for size in (1.5e-3, 7.5e-3)]
     path = tmp_path / "film.mp4"
     side_by_side(path, runs, start=0.4, duration=0.1)
     command = [find_ffmpeg(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
     done = subprocess.run(command, capture_output=True, check=True)
     frames = np.frombuffer(done.stdout, dtype=np.uint8).reshape(-1, BANNER + HALF[1], 2 * HALF[0], 3)
     assert len(frames) == 3
-    left, right = (frames[-1][BANNER:, here].astype(float) for here in (slice(HALF[0]), slice(HALF[0], None)))
+    left, right = (frames[-1][BANNER:, half].astype(float) for half in (slice(HALF[0]), slice(HALF[0], None)))
     assert np.std(left) > 10.0
     # Another position and other captions; the compression alone makes 1.4 of 255 between two equal halves.
     assert 3.0 < np.mean(np.abs(left - right)) < 40.0

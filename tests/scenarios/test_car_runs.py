@@ -14,7 +14,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.bump import bump
 from vehicle.signals.excitation.signal import Signal
 
-SHORT = bump(amplitude=7.5e-3, duration=1.0, start=0.1)
+SHORT = bump(amplitude=7.5e-3, wheel="fr", duration=1.0, start=0.1)
 
 
 def test_a_case_is_computed_once_and_overrides_of_the_case_win():
@@ -32,9 +32,9 @@ def test_another_signal_of_the_same_name_is_another_run():
     runs = CarRuns()
     higher = Signal(time=SHORT.time, displacement={"fr": 1.01 * SHORT.displacement["fr"]}, source=SHORT.source)
     left = Signal(time=SHORT.time, displacement={"fl": SHORT.displacement["fr"]}, source=SHORT.source)
-    found = runs([runs.case(signal) for signal in (SHORT, higher, left)])
-    assert len({id(run) for run in found}) == 3
-    assert found[2].wheel == "fl"
+    results = runs([runs.case(signal) for signal in (SHORT, higher, left)])
+    assert len({id(run) for run in results}) == 3
+    assert results[2].wheel == "fl"
 
 
 def test_worker_processes_give_the_same_numbers_with_one_thread_each(monkeypatch):
@@ -44,9 +44,9 @@ def test_worker_processes_give_the_same_numbers_with_one_thread_each(monkeypatch
     runs = CarRuns(overrides=changes)
     cases = [runs.case(SHORT), runs.case(SHORT, ["damper.coulomb_friction=75"])]
     serial, parallel = runs(cases), CarRuns(overrides=changes, jobs=2)(cases)
-    for one, other in zip(serial, parallel, strict=True):
-        assert other.car.vehicle == one.car.vehicle
-        for name, values in one.recording.channels.items():
+    for expected, other in zip(serial, parallel, strict=True):
+        assert other.car.vehicle == expected.car.vehicle
+        for name, values in expected.recording.channels.items():
             # The same steps of the same program: not one bit differs.
             np.testing.assert_array_equal(other[name], values)
     assert os.environ["OMP_NUM_THREADS"] == "7"
@@ -79,7 +79,7 @@ def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, cap
 
 
 @pytest.mark.parametrize(
-    ("arguments", "words"),
+    ("arguments", "message"),
     [
         (["--jobs", "0"], "--jobs 0"),
         (["--set", "damper.viscuos=1"], "viscous"),
@@ -87,10 +87,10 @@ def test_the_command_writes_what_was_found_and_what_was_not_judged(tmp_path, cap
         (["--vehicle", "no_such.toml"], "no_such.toml"),
     ],
 )
-def test_wrong_options_are_refused_before_the_folder_is_made(arguments, words, tmp_path, capsys):
+def test_wrong_options_are_refused_before_the_folder_is_made(arguments, message, tmp_path, capsys):
     folder = tmp_path / "out"
     assert car_study("example", findings)([*arguments, "--output", str(folder)]) == 2
-    assert words in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not folder.exists()
 
 

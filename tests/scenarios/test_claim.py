@@ -168,7 +168,7 @@ def test_default_folder_is_named_after_the_study():
 def test_the_list_holds_every_study_and_no_other(capsys):
     assert print_list() == 0
     shown = capsys.readouterr().out
-    found = {path.stem for path in HOME.glob("*.py") if "__main__" in path.read_text(encoding="utf-8")}
-    found |= {path.parent.name for path in HOME.glob("*/__main__.py")}
-    assert found - {"__main__", "study"} == set(STUDIES)
+    names = {path.stem for path in HOME.glob("*.py") if "__main__" in path.read_text(encoding="utf-8")}
+    names |= {path.parent.name for path in HOME.glob("*/__main__.py")}
+    assert names - {"__main__", "study"} == set(STUDIES)
     assert all(f"\n{name} " in shown and callable(main_of(name)) for name in STUDIES)

@@ -1,4 +1,4 @@
-"""`python -m scenarios.comfort_sensitivity` as a user runs it, its statistics, and the physics behind it."""
+"""`python -m scenarios.comfort_sensitivity` as a user runs it, its statistics, and its physics."""
 
 import dataclasses
 import json
@@ -34,13 +34,13 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_peak,
 )
 from scenarios.evidence import LEVELS, evidence_of, status_of
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.road import RoadInput, RoadMeasure
+from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 
 needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 
@@ -66,7 +66,7 @@ def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
     assert [(row["name"], row["within"]) for row in content["rows"]] == [(SURE, True)]
     assert "slip share of the right damper, rough road [%]" in content["not_judged"]
     assert content["engine"] == "reduced"
-    slip = [one["slip"] for one in content["source"]["coulomb_friction"]["smooth"]]
+    slip = [point["slip"] for point in content["source"]["coulomb_friction"]["smooth"]]
     assert slip == sorted(slip, reverse=True)
     assert not (results / "sweep" / "rows.jsonl").exists()
 
@@ -90,12 +90,12 @@ def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale(
         "damper.smoothing=5e4",
         f"damper.slip_velocity={2.0 * Car.load().vehicle.damper.slip_velocity!r}",
     )
-    one, two = observe([question(), question(double, rms=0.015)], tmp_path)
+    single, two = observe([question(), question(double, rms=0.015)], tmp_path)
     # Rounding, and the 1e-9 N at which the friction forces of a step are called solved.
-    assert two.comfort == pytest.approx(2.0 * one.comfort, rel=1e-6)
-    assert two.slip == pytest.approx(one.slip, abs=1e-3)
+    assert two.comfort == pytest.approx(2.0 * single.comfort, rel=1e-6)
+    assert two.slip == pytest.approx(single.slip, abs=1e-3)
     static = Car.load().model.static.tyre_load["fl"]
-    assert two.lowest_load - static == pytest.approx(2.0 * (one.lowest_load - static), rel=1e-6)
+    assert two.lowest_load - static == pytest.approx(2.0 * (single.lowest_load - static), rel=1e-6)
 
 
 @needs_reduced
@@ -118,9 +118,9 @@ def test_histories_of_several_cars_are_those_of_their_runs(tmp_path):
     comfort = ComfortRuns(CarRuns(engine="reduced"), Records(count=1, duration=8.0, lead=3.0), tmp_path)
     soft = ("damper.coulomb_friction=62.5",)
     both = comfort.histories([(), soft], "smooth")
-    alone = Car.load(None, soft).run(question().source.signal(), engine="reduced", channels=["seat_rail_acc_z"])
+    run = Car.load(None, soft).run(question().source.signal(), engine="reduced", channels=["seat_rail_acc_z"])
     # Steps of 0.5 ms against 0.125 ms, single against double precision.
-    np.testing.assert_allclose(both[1], alone["seat_rail_acc_z"], atol=2e-3 * np.max(np.abs(both[1])))
+    np.testing.assert_allclose(both[1], run["seat_rail_acc_z"], atol=2e-3 * np.max(np.abs(both[1])))
     assert np.max(np.abs(both[1] - both[0])) > 0.1 * np.max(np.abs(both[0]))
     assert comfort.histories([soft], "smooth")[0] is both[1]
 
@@ -132,21 +132,21 @@ def test_a_run_that_fails_stops_the_study_with_its_reason(tmp_path):
 
 
 def observation(comfort, slip=0.3):
-    rest = {"slip": slip, "slip_left": 0.0, "saturated": 0.5, "pulling": 0.0}
-    return {"comfort": comfort, "gaussian_error": 0.02 * comfort, "lowest_load": 1000.0 * comfort, **rest}
+    others = {"slip": slip, "slip_left": 0.0, "saturated": 0.5, "pulling": 0.0}
+    return {"comfort": comfort, "gaussian_error": 0.02 * comfort, "lowest_load": 1000.0 * comfort, **others}
 
 
 def test_common_roads_make_the_error_of_a_ratio_small():
     level = np.array([1.0, 1.2, 0.8, 1.1])
     base = [observation(value) for value in level]
     scatter = np.array([0.01, -0.01, 0.005, -0.005])
-    found = point(62.5, [observation(value) for value in level * (0.8 + scatter)], base)
-    assert found.relative == pytest.approx(0.8, abs=1e-12)
-    assert found.relative_error == pytest.approx(np.sqrt(np.sum(scatter**2) / 3 / 4))
-    assert found.comfort_error > 10.0 * found.relative_error
+    averaged = point(62.5, [observation(value) for value in level * (0.8 + scatter)], base)
+    assert averaged.relative == pytest.approx(0.8, abs=1e-12)
+    assert averaged.relative_error == pytest.approx(np.sqrt(np.sum(scatter**2) / 3 / 4))
+    assert averaged.comfort_error > 10.0 * averaged.relative_error
     # Four independent records: half the error of one.
-    assert found.gaussian_error == pytest.approx(0.02 * np.sqrt(np.sum((level * (0.8 + scatter)) ** 2)) / 4)
-    assert found.lowest_load == pytest.approx(1000 * 0.8 * (0.8 + scatter[2]))
+    assert averaged.gaussian_error == pytest.approx(0.02 * np.sqrt(np.sum((level * (0.8 + scatter)) ** 2)) / 4)
+    assert averaged.lowest_load == pytest.approx(1000 * 0.8 * (0.8 + scatter[2]))
     assert np.isnan(standard_error([1.0]))
 
 
@@ -200,18 +200,21 @@ def test_an_end_that_disagrees_tells_what_experiments_changed():
     why = {claim.name: claim.why for claim in size_claims(curves, trials)}
     first = why["relative comfort value at Fd 62.5, smooth road [%]"]
     assert "experiments: reached with edge 75; not with body 125" in first
-    assert "none of the changes tried (edge 75, body 125)" in why["relative comfort value at Fd 62.5, rough road [%]"]
+    assert (
+        "no modification reaches the interval (edge 75, body 125)"
+        in why["relative comfort value at Fd 62.5, rough road [%]"]
+    )
 
 
 @needs_reduced
 def test_levels_are_windows_of_all_cars_of_a_figure(tmp_path):
     comfort = ComfortRuns(CarRuns(engine="auto"), Records(count=2, duration=30.0, lead=2.0), tmp_path)
     levels = road_levels(comfort)
-    assert {road: sorted(one.largest) for road, one in levels.items()} == {
+    assert {road: sorted(level.largest) for road, level in levels.items()} == {
         "smooth": ["4.1", "4.5", "4.9"],
         "rough": ["4.10", "4.2"],
     }
-    assert all(values.size == 120 for one in levels.values() for values in one.largest.values())
+    assert all(values.size == 120 for level in levels.values() for values in level.largest.values())
     # One road at two levels; the car is not linear, so its answer is not in that ratio.
     ratio = ROAD_RMS["rough"] / ROAD_RMS["smooth"]
     np.testing.assert_allclose(levels["rough"].swing, ratio * levels["smooth"].swing, rtol=1e-9)
@@ -256,12 +259,14 @@ def test_rows_of_histories_follow_the_numbers():
     failed = [claim.name for claim in (*history_claims(turned), *wheel_claims(turned)) if claim.within is False]
     assert len(failed) == 3 and failed[-1].startswith("peak of the wheel")
     louder = {
-        road: dataclasses.replace(one, largest={figure: 5.0 + found for figure, found in one.largest.items()})
-        for road, one in good.items()
+        road: dataclasses.replace(
+            road_level, largest={figure: 5.0 + values for figure, values in road_level.largest.items()}
+        )
+        for road, road_level in good.items()
     }
     rows = level_claims(louder, {"edge": {figure: 0.7 for figure, *_ in LEVELS}})
     assert not any(claim.within for claim in rows[:5])
-    assert "reached with edge 0.7" in rows[0].why and "none of the changes tried" in rows[3].why
+    assert "reached with edge 0.7" in rows[0].why and "no modification reaches" in rows[3].why
 
 
 def test_the_peak_of_a_wheel_is_that_of_a_known_resonance():
@@ -293,8 +298,8 @@ def test_a_step_within_its_error_is_no_rise():
 
 
 def test_a_single_record_tells_no_error():
-    alone = point(1.0, [observation(0.9)], [observation(1.0)])
-    text = curve_table("Fd [N]", {"smooth": [alone]})
+    single = point(1.0, [observation(0.9)], [observation(1.0)])
+    text = curve_table("Fd [N]", {"smooth": [single]})
     assert "| 1 | 90.00 ± ? |" in text
 
 
@@ -323,13 +328,13 @@ class Answers(ComfortRuns):
 
     def __call__(self, cases):
         self.asked = [*getattr(self, "asked", []), *cases]
-        found = []
-        for one in cases:
-            comfort = 4.0 if one.source.rms > 0.01 else 1.0
-            comfort *= 1.2 if "damper.viscous_law=degressive" in one.overrides else 1.0
-            comfort *= 1.3 if "damper.coulomb_friction=250.0" in one.overrides else 1.0
-            found.append(observation(comfort * (1.01 if one.engine == "mujoco" else 1.0)))
-        return found
+        results = []
+        for case in cases:
+            comfort = 4.0 if case.source.rms > 0.01 else 1.0
+            comfort *= 1.2 if "damper.viscous_law=degressive" in case.overrides else 1.0
+            comfort *= 1.3 if "damper.coulomb_friction=250.0" in case.overrides else 1.0
+            results.append(observation(comfort * (1.01 if case.engine == "mujoco" else 1.0)))
+        return results
 
 
 @needs_reduced
@@ -342,7 +347,7 @@ def test_what_goes_beyond_the_source_is_asked_at_once_and_reported(tmp_path, mon
     linear = {variation.name: comfort.curves(variation) for variation in SOURCE}
     comfort.asked = []
     notes, data = beyond.beyond_findings(comfort, tmp_path, linear)
-    source = {one for variation in SOURCE for one in comfort.all_cases(variation)}
+    source = {case for variation in SOURCE for case in comfort.all_cases(variation)}
     # A run that was not asked for in advance would start worker processes of its own.
     assert set(comfort.asked) <= asked | source
     assert drawn == [

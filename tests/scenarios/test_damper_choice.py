@@ -73,15 +73,17 @@ def test_every_row_has_its_place_and_a_picture_that_is_there(results):
 
 
 def test_one_coefficient_gives_the_linear_tyre_load_and_rebound_pulls_the_body_down():
-    found = compare_curves(P, duration=6.0)
+    comparison = compare_curves(P, duration=6.0)
     linear = tyre_load_ratio(quarter_car_model(P.quarter_car), P.highway, P.bands)[0]
-    assert found.tyre_load[0].mean() == pytest.approx(linear, rel=0.1)  # four roads of 4 s: 5 % each
+    assert comparison.tyre_load[0].mean() == pytest.approx(linear, rel=0.1)  # four roads of 4 s: 5 % each
     # F = c v + d |v| with d = c / 3 has the mean d E|v|, which the spring must hold.
     car = P.quarter_car
-    mean = car.wheel.suspension_damping / 3.0 * found.velocity * np.sqrt(2.0 / np.pi)
-    assert (found.height[0] - found.height[2]).mean() == pytest.approx(mean / car.wheel.suspension_stiffness, rel=0.1)
-    velocity, (one, low, rebound) = found.curves
-    np.testing.assert_allclose(one, car.wheel.suspension_damping * velocity)
+    mean = car.wheel.suspension_damping / 3.0 * comparison.velocity * np.sqrt(2.0 / np.pi)
+    assert (comparison.height[0] - comparison.height[2]).mean() == pytest.approx(
+        mean / car.wheel.suspension_stiffness, rel=0.1
+    )
+    velocity, (constant, low, rebound) = comparison.curves
+    np.testing.assert_allclose(constant, car.wheel.suspension_damping * velocity)
     np.testing.assert_allclose(low[::-1], -low, atol=1e-9)
     assert rebound[-1] == pytest.approx(-2.0 * rebound[0])
 
@@ -91,8 +93,8 @@ def test_both_roads_and_both_measures_are_reported(results):
     assert set(optima) == {"highway", "city"}
     assert all(set(row) == {"printed", "physical"} for row in optima.values())
     for row in optima.values():
-        for one in row.values():
-            assert sum(one["joint"]["values"]) <= sum(one["iteration"][-1]["fluctuation"]) + 1e-6
+        for result in row.values():
+            assert sum(result["joint"]["values"]) <= sum(result["iteration"][-1]["fluctuation"]) + 1e-6
 
 
 def test_existing_results_are_not_overwritten_without_force(results, capsys):
@@ -108,12 +110,12 @@ def test_bad_parameter_is_refused_by_name(tmp_path, capsys):
 
 
 def test_trade_off_scales_with_the_class_and_has_its_optima_inside():
-    found = trade_off(P.quarter_car, np.geomspace(200.0, 10000.0, 41))
+    trade = trade_off(P.quarter_car, np.geomspace(200.0, 10000.0, 41))
     for name in ("tyre_load", "acceleration", "travel"):
-        a, d = (np.array([getattr(one, name) for one in found.measures[road]]) for road in "AD")
+        a, d = (np.array([getattr(measure, name) for measure in trade.measures[road]]) for road in "AD")
         np.testing.assert_allclose(d, 8.0 * a, rtol=1e-12)  # density 64 times, amplitude 8 times
-    assert 200.0 < found.best("acceleration") < found.best("tyre_load") < 10000.0
-    assert np.all(np.diff([one.travel for one in found.measures["A"]]) < 0.0)
+    assert 200.0 < trade.best("acceleration") < trade.best("tyre_load") < 10000.0
+    assert np.all(np.diff([measure.travel for measure in trade.measures["A"]]) < 0.0)
 
 
 def test_trade_off_grid_is_fine_enough(monkeypatch):

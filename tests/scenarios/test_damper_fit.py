@@ -1,4 +1,4 @@
-"""The shipped parameters of the damper study are the fit they claim to be."""
+"""Check that the shipped parameters of the damper study are those of the fit."""
 
 import numpy as np
 import pytest

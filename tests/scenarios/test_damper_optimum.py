@@ -23,19 +23,19 @@ FIXED_POINT = np.linalg.solve([[1.0, -0.3], [-0.2, 1.0]], [3000.0, 2000.0])
 
 
 def test_continuous_optimum_of_a_parabola():
-    found = optimum(lambda c: (c - 3210.0) ** 2)
-    assert found.damping == pytest.approx(3210.0, abs=1.0)  # xatol
+    minimum = optimum(lambda c: (c - 3210.0) ** 2)
+    assert minimum.damping == pytest.approx(3210.0, abs=1.0)  # xatol
 
 
 def test_grid_optimum_is_a_grid_point():
-    found = optimum(lambda c: (c - 3210.0) ** 2, GRID)
-    assert found.damping == 3250.0
-    assert found.value == 1600.0
+    minimum = optimum(lambda c: (c - 3210.0) ** 2, GRID)
+    assert minimum.damping == 3250.0
+    assert minimum.value == 1600.0
 
 
 def test_the_lower_of_two_minima_is_found():
-    found = optimum(lambda c: min((c - 2000.0) ** 2 + 10.0, (c - 9000.0) ** 2))
-    assert found.damping == pytest.approx(9000.0, abs=1.0)
+    minimum = optimum(lambda c: min((c - 2000.0) ** 2 + 10.0, (c - 9000.0) ** 2))
+    assert minimum.damping == pytest.approx(9000.0, abs=1.0)
 
 
 def test_iteration_reaches_the_fixed_point():

@@ -1,4 +1,4 @@
-"""`python -m scenarios.four_post`: what sticks on a smooth input and slides on a rough one, beside the matrices."""
+"""`python -m scenarios.four_post`: what sticks on a smooth input and slides on a rough one, against the matrices."""
 
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ def test_the_response_to_a_motion_is_the_sum_over_the_plates():
     car = Car.load("focus_road")
     channels = channels_of(car, "warp")
     assert channels == ("seat_rail_acc_y", "knuckle_fr_acc_z", "knuckle_rr_acc_z")
-    found = matrix_response(car, "warp", "sliding")[:, ::100]
+    response = matrix_response(car, "warp", "sliding")[:, ::100]
     parts = [
         sign * car.matrix_frf(channels, LINES[::100], damper="sliding", wheel=wheel)
         for wheel, sign in (("fr", 1.0), ("fl", -1.0), ("rr", -1.0), ("rl", 1.0))
     ]
-    np.testing.assert_allclose(found, sum(parts), rtol=1e-6)
+    np.testing.assert_allclose(response, sum(parts), rtol=1e-6)
 
 
 def test_a_car_with_two_plates_is_refused(tmp_path, capsys):

@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 
 from scenarios.global_sensitivity import RANGES, _evaluate, main, points_of
-from tests.studies.sweeps.pieces import ShortRoad
+from tests.studies.sweeps.sweep_samples import ShortRoad
 from vehicle.errors import DataError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.studies.sweeps.case import table_cases
-from vehicle.studies.sweeps.result import Result
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 
 def test_ranges_hold_the_car():
     vehicle = load_vehicle()
-    for one in RANGES:
+    for parameter in RANGES:
         # The path exists, both limits are accepted, and the car of the source lies between them.
-        load_vehicle(None, [f"{one.path}={one.low}"])
-        load_vehicle(None, [f"{one.path}={one.high}"])
-        assert one.low <= value_of(vehicle, one.path) <= one.high, one.path
+        load_vehicle(None, [f"{parameter.path}={parameter.low}"])
+        load_vehicle(None, [f"{parameter.path}={parameter.high}"])
+        assert parameter.low <= value_of(vehicle, parameter.path) <= parameter.high, parameter.path
 
 
 def test_points():
@@ -36,16 +36,16 @@ def test_points():
 @pytest.mark.parametrize("method", ["sobol", "morris", "lhs"])
 def test_quick(method, tmp_path, capsys):
     arguments = ["--method", method, "--quick", "--output", str(tmp_path / "out"), "--executor"]
-    arguments.append("tests.studies.sweeps.pieces:threads")
+    arguments.append("tests.studies.sweeps.sweep_samples:threads")
     assert main(arguments) == 0
     assert " 0 failed" in capsys.readouterr().out
     files = {path.name for path in (tmp_path / "out").iterdir()}
     figure = {"sobol": "indices.png", "morris": "effects.png", "lhs": "scatter.png"}[method]
     assert {"results.md", "results.json", "table.csv", "sweep.json", "rows.jsonl", figure} <= files
-    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    content = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     values = {"sobol": "total", "morris": "mean_size", "lhs": "comfort"}[method]
-    assert np.all(np.isfinite(found[values])) and len(found[values]) >= 10
-    assert "engine reduced" in found["caption"]
+    assert np.all(np.isfinite(content[values])) and len(content[values]) >= 10
+    assert "engine reduced" in content["caption"]
     # Going on computes nothing anew.
     assert main([*arguments, "--resume"]) == 0
     assert "# 0 runs computed" in (tmp_path / "out" / "timing.csv").read_text(encoding="utf-8")
@@ -53,7 +53,7 @@ def test_quick(method, tmp_path, capsys):
 
 def test_a_failed_run_leaves_a_hole_in_the_hypercube_and_is_named_by_the_indices(tmp_path):
     points = points_of("lhs", 24, 1)
-    cases = table_cases([one.path for one in RANGES], points.tolist(), [ShortRoad()])
+    cases = table_cases([parameter.path for parameter in RANGES], points.tolist(), [ShortRoad()])
     results = [Result(values={"comfort": 1.0 + index}) for index in range(23)] + [Result(reason="no grip")]
     table = SweepTable(cases=cases, results=results, units={"comfort": "m/s2"}, made={})
     assert "mean and scatter" in _evaluate("lhs", tmp_path, table, points, "caption", 0)

@@ -41,7 +41,7 @@ def test_the_roll_mode_is_where_the_roof_swings_sideways(ixx):
     mode = roll_mode(car)
     assert "roll" in mode.description
     # Another way to the same mode: the largest lateral FRF of the roof above the lateral and yaw modes (which end at
-    # 4 Hz). Its peak lies within the half-power width of the mode.
+    # 4 Hz). Its peak is within the half-power width of the mode.
     lines = np.arange(4.2, 9.0, 0.01)
     lateral = np.abs(car.matrix_frf(["roof_left_rear_acc_y"], lines))[0] / lines**2
     assert lines[np.argmax(lateral)] == pytest.approx(mode.frequency, rel=2 * mode.damping_ratio)
@@ -84,9 +84,9 @@ def exact_response(car):
 
 
 def test_the_peak_nearest_to_the_mode_is_taken(car):
-    found, roll = exact_response(car), roll_mode(car)
-    assert roll_peak(found, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
-    assert roll_peak(found, 3.6) < 4.5
+    response, roll = exact_response(car), roll_mode(car)
+    assert roll_peak(response, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
+    assert roll_peak(response, 3.6) < 4.5
     # One line without an estimate, 0.2 Hz below the top, must not hide it.
-    found.response[0, np.argmin(np.abs(found.frequency - roll.frequency + 0.2))] = np.nan
-    assert roll_peak(found, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
+    response.response[0, np.argmin(np.abs(response.frequency - roll.frequency + 0.2))] = np.nan
+    assert roll_peak(response, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)

@@ -37,7 +37,7 @@ def mean_error(distribution, size, samples=1500):
     ids=["normal 8", "normal 48", "Gumbel 8", "Gumbel 48"],
 )
 def test_mean_error_over_an_axis(distribution, size, limit):
-    # 1500 samples know a mean probability to 0.2 / sqrt(1500) = 0.005.
+    # The mean probability of 1500 samples has an error of 0.2 / sqrt(1500) = 0.005.
     validated(
         "Statistics and intervals",
         f"mean error of the probability of an interval, {distribution.dist.name}, {size} values",

@@ -26,11 +26,11 @@ def test_the_study(tmp_path, capsys):
     arguments = ["--output", str(folder), "--quick", "--vehicle", "focus", "--vehicle", "sedan"]
     assert main(arguments) == 0
     assert "6 own check (6 agree)" in capsys.readouterr().out
-    found = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    assert list(found["axles"]) == ["focus, front", "sedan, front", "sedan, rear"]
-    # The source of the sedan says that its tie rod was changed: it steers by 2 deg over 100 mm.
-    assert found["axles"]["sedan, front"]["equal"]["toe_deg_per_m"] == pytest.approx(-21.7, abs=0.1)
-    assert found["moved"]["sedan"]["neutral_m"] == pytest.approx(0.031, abs=1e-3)
+    content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert list(content["axles"]) == ["focus, front", "sedan, front", "sedan, rear"]
+    # According to its source the tie rod of the sedan was changed: it steers by 2 deg over 100 mm.
+    assert content["axles"]["sedan, front"]["equal"]["toe_deg_per_m"] == pytest.approx(-21.7, abs=0.1)
+    assert content["moved"]["sedan"]["neutral_m"] == pytest.approx(0.031, abs=1e-3)
     text = (folder / "results.md").read_text(encoding="utf-8")
     assert "| sedan, rear | twist_beam | 0 | 0 |" in text and "moved by +31 mm" in text
     for name in ("travel", "compliance", "point_moved"):
@@ -50,7 +50,7 @@ def test_refusals(arguments, message, tmp_path, capsys):
 
 
 def test_the_point_that_steers_least(sedan):
-    """With the tie rod moved to where its slope says, toe hardly changes over small travel."""
+    """Check that toe is nearly constant over small travel with the tie rod at the computed neutral height."""
     assert (MOVED.gain, MOVED.neutral) == pytest.approx((200.0, -0.015))
     assert not np.isfinite(replace(MOVED, toe_slopes=(1.0, 1.0, 1.0)).neutral)
     change = f"front.hardpoints.tie_inner.z={0.655 + 0.031}"
@@ -66,7 +66,7 @@ def test_the_spring_alone_makes_the_rate_where_bushings_are_stiff(sedan):
     for name in ("suspension_mount", "arm_rear", "arm_front"):
         stiff += [f"front.bushings.{name}.stiffness=[1e9, 1e9, 1e9]", f"front.bushings.{name}.rotational_stiffness=0"]
     axle = measured(Car.load(vehicle_file("sedan"), stiff), "front", TRAVELS)
-    # What is left is the standing horizontal force of the tyres and the weight of the parts.
+    # The remainder is the static horizontal force of the tyres and the weight of the parts.
     assert axle.from_spring == pytest.approx(float(axle.slopes["wheel_rate_n_per_m"] or 0.0), rel=0.02)
 
 

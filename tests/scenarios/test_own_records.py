@@ -24,7 +24,7 @@ STRIBECK = ("damper.friction_law='stribeck'", "damper.stribeck_friction=160.0", 
 def files(tmp_path_factory):
     """A car with Stribeck friction over a bump; measured from 0.2 s on, at the logger's 12.5 s, in g and mm/s."""
     folder = tmp_path_factory.mktemp("records")
-    signal = bump(amplitude=6e-3, duration=1.2, start=0.3, noise_rms=0.0)
+    signal = bump(amplitude=6e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0)
     write_table(folder / "bump.csv", ["time [s]", "displacement_fr [m]"], [signal.time, signal.displacement["fr"]], [])
     run = Car.load(overrides=STRIBECK).run(signal, engine="reduced")
     noise = np.random.default_rng(4)
@@ -44,26 +44,26 @@ def files(tmp_path_factory):
 def measured(folder: Path, *arguments: str):
     parser = Parser()
     add_options(parser)
-    given = ["--record", str(folder / "bump.uff"), "--signal", str(folder / "bump.csv")]
-    given += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", *arguments]
-    (found,) = own_measurements(parser.parse_args(given), Car.load())
-    for text in found.notices:
+    options = ["--record", str(folder / "bump.uff"), "--signal", str(folder / "bump.csv")]
+    options += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", *arguments]
+    (measurement,) = own_measurements(parser.parse_args(options), Car.load())
+    for text in measurement.notices:
         assert text.startswith("bump.uff: ")
-    return found.target
+    return measurement.target
 
 
 def test_the_delay_that_was_forgotten_is_named(files):
     """By the car where the fit begins, which has another law of friction."""
     parser = Parser()
     add_options(parser)
-    given = ["--record", str(files / "bump.uff"), "--signal", str(files / "bump.csv")]
-    given += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", "--turn", "damper_fr_velocity"]
-    (found,) = own_measurements(parser.parse_args(given), Car.load())
-    (late,) = (text for text in found.notices if "--delay" in text)
+    options = ["--record", str(files / "bump.uff"), "--signal", str(files / "bump.csv")]
+    options += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", "--turn", "damper_fr_velocity"]
+    (measurement,) = own_measurements(parser.parse_args(options), Car.load())
+    (late,) = (text for text in measurement.notices if "--delay" in text)
     advice = re.search(r"--delay (\S+)", late)
-    # The other law of friction moves the answer by 2.4 ms.
+    # The other friction law shifts the response by 2.4 ms.
     assert advice is not None and float(advice[1]) == pytest.approx(0.2, abs=5e-3)
-    assert any(text.endswith("give --turn damper_fr_velocity") for text in found.notices)
+    assert any(text.endswith("set --turn damper_fr_velocity") for text in measurement.notices)
 
 
 def test_the_residuals_of_the_true_car_are_the_noise(files):
@@ -81,7 +81,7 @@ def test_the_part_that_counts(files):
     assert measured(files, "--delay", "0.2", "--stretch", "0.25:0.9").window == pytest.approx((0.25, 0.9))
     late = measured(files)  # taken to begin with the signal: nothing fits
     assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
-    with pytest.raises(DataError, match="nothing in common; give --delay S"):
+    with pytest.raises(DataError, match="no overlap; set --delay S"):
         measured(files, "--delay", "5")
 
 

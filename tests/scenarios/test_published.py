@@ -145,9 +145,9 @@ def test_rows_that_do_not_agree_stand_at_the_top_with_a_link(studies, tmp_path):
     ],
 )
 def test_a_place_has_a_heading_and_a_section(text, heading, section):
-    place = place_of(text)
-    found = section_of(THESIS, place)
-    assert (place.text, found and found.number) == (heading, section)
+    location = place_of(text)
+    section_found = section_of(THESIS, location)
+    assert (location.text, section_found and section_found.number) == (heading, section)
 
 
 def test_figures_are_in_the_order_of_their_numbers():
@@ -162,7 +162,7 @@ def test_every_study_of_a_source_exists():
 def test_statements_without_a_row_are_named_on_the_page(studies, tmp_path):
     assert command(tmp_path) == 0
     line = written(tmp_path).split("Statements that no row answers: ")[1].split(".\n")[0]
-    rest = line.split("; ")
+    others = line.split("; ")
     answered = {
         "complete car: slip share, low / mid / high",
         "complete car: vertical wheel mode",
@@ -171,7 +171,7 @@ def test_statements_without_a_row_are_named_on_the_page(studies, tmp_path):
         "quarter car: smoothing parameter eps",
         "half car with rider: VDV with speed",
     }
-    assert rest == [statement for statement in STATEMENTS if statement not in answered]
+    assert others == [statement for statement in STATEMENTS if statement not in answered]
 
 
 def test_a_place_answers_a_statement():

@@ -15,7 +15,7 @@ from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import HIGH, LEVELS, STEP, UPPER_EDGE_HZ, Runs, peak
 from scenarios.quarter_car.sine_claims import stuck_bound
 from tests.validation import validated
-from vehicle.model.parameters.quarter_car import load_quarter_car
+from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 from vehicle.runs.output.written_files import MARKER
 
 TENFOLD = "sine 1 mm, from rest: body acceleration"

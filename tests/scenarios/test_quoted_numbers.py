@@ -1,4 +1,4 @@
-"""Numbers that README.md and the page quote from the table of published results are those of the table."""
+"""Numbers that README.md and docs/trust.md quote from the table of published results are those of the table."""
 
 from __future__ import annotations
 
@@ -21,17 +21,18 @@ TABLE: dict[str, Any] = json.loads((ROOT / HOME / "results.json").read_text(enco
 
 ROWS: list[dict[str, Any]] = TABLE["rows"]
 
-README = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+PAGES = {name: " ".join((ROOT / name).read_text(encoding="utf-8").split()) for name in ("README.md", "docs/trust.md")}
+"""Pages that quote numbers, docs/trust.md all of them."""
 
 
 def named(pattern: str) -> dict[str, Any]:
-    """The only row of the table whose "study: name" matches a pattern."""
+    """Return the only row of the table whose "study: name" matches a pattern."""
     (row,) = [row for row in ROWS if fnmatchcase(row["name"], pattern)]
     return row
 
 
 def ours(pattern: str) -> list[float]:
-    """All numbers of our side of a row, the mean first where there are several values."""
+    """Return all numbers of our value of a row, the mean first."""
     return [float(text) for text in re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", str(named(pattern)["ours"]))]
 
 
@@ -72,14 +73,14 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
     ],
     rf"first slip \(end of sticking[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *end of stick* with Fd 125 N*", 3),
 }
-"""What README.md says, and the numbers of the table, or of the chosen set, that belong there."""
+"""Pattern of a quoted sentence, and the numbers of the table, or of the chosen set, that belong there."""
 
 
 @pytest.mark.parametrize("sentence", QUOTES)
-def test_a_number_of_the_readme_is_that_of_the_table(sentence):
-    found = re.search(sentence, README)
-    assert found, f"README.md has no sentence like {sentence}; change QUOTES with it"
-    assert list(found.groups()) == QUOTES[sentence]()
+def test_a_quoted_number_is_that_of_the_table(sentence):
+    quotes = [match.groups() for text in PAGES.values() for match in re.finditer(sentence, text)]
+    assert re.search(sentence, PAGES["docs/trust.md"]), f"docs/trust.md has no sentence like {sentence}; change QUOTES"
+    assert [list(quote) for quote in quotes] == [QUOTES[sentence]()] * len(quotes)
 
 
 def test_the_page_is_that_of_the_table():

@@ -1,4 +1,4 @@
-"""`python -m scenarios.road` as a user runs it; the scaling of a linear car with friction; what the rows ask."""
+"""`python -m scenarios.road` as a user runs it; the scaling of a linear car with friction; and its rows."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scenarios.road.__main__ import main
 from scenarios.road.findings import friction_claims, ratio, scaling_claim
 from scenarios.road.runs import Ride, RideRuns, one_sided_tyres
 from tests.scenarios.test_comfort_sensitivity import needs_reduced
-from vehicle.model.parameters.elements import Bushing
+from vehicle.model.parameters.force_elements import Bushing
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
 
@@ -38,7 +38,7 @@ def test_a_short_study(car, tmp_path):
     assert main(["--output", str(folder), "--quick", "--vehicle", str(car)]) == 0
     content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert {"class_and_speed.png", "friction.png", "results.md"} <= {path.name for path in folder.iterdir()}
-    rides = {(one["road"], one["friction"]): one["mean"] for one in content["rides"]}
+    rides = {(ride["road"], ride["friction"]): ride["mean"] for ride in content["rides"]}
     smooth, rough = rides["A", None], rides["C", None]
     # Four times the amplitude: nearly four times the vibration; less, for the friction matters less.
     assert 3.0 < rough["rail"] / smooth["rail"] < 4.0 and 3.0 < rough["load_rear"] / smooth["load_rear"] < 5.0
@@ -49,12 +49,12 @@ def test_a_short_study(car, tmp_path):
 
 @needs_reduced
 def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
-    """u = a U(F / a): the reduced engine is linear but for its dampers, which it solves by turns to 1e-9 N."""
+    """u = a U(F / a): the reduced engine is linear except for the dampers, solved iteratively to 1e-9 N."""
     runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)
     pairs = [Ride(car="rigid", road=road, speed=80.0, friction=force) for road, force in (("A", 30.0), ("C", 120.0))]
     for name in ("rail", "seat_weighted", "load_front"):
-        one, other = (ratio(runs, ride, name)[0] for ride in pairs)
-        assert one == pytest.approx(other, rel=1e-5) and abs(one - 1.0) > 0.002
+        single, other = (ratio(runs, ride, name)[0] for ride in pairs)
+        assert single == pytest.approx(other, rel=1e-5) and abs(single - 1.0) > 0.002
     (claim,) = scaling_claim(runs, "rigid", ("A", "C"), 80.0, (0.0, 30.0, 120.0))
     assert claim.within
 
@@ -79,8 +79,8 @@ def test_the_rows_fail_where_the_finding_does_not_hold():
 def test_one_sided_tyres_are_those_of_all_wheels():
     changes = one_sided_tyres(load_vehicle(VEHICLES / "focus_road" / "vehicle.toml"))
     laws = {
-        one.name: one.law
-        for one in load_vehicle(VEHICLES / "focus_road" / "vehicle.toml", changes).composition.connections
+        connection.name: connection.law
+        for connection in load_vehicle(VEHICLES / "focus_road" / "vehicle.toml", changes).composition.connections
     }
-    found = {name: law.one_sided for name, law in laws.items() if isinstance(law, Bushing) and law.one_sided}
-    assert sorted(found) == ["tyre_fl", "tyre_fr", "tyre_rl", "tyre_rr"]
+    one_sided = {name: law.one_sided for name, law in laws.items() if isinstance(law, Bushing) and law.one_sided}
+    assert sorted(one_sided) == ["tyre_fl", "tyre_fr", "tyre_rl", "tyre_rr"]

@@ -18,7 +18,7 @@ def test_velocity_density_is_flat_at_the_level_that_the_band_gives():
     # An edge of three lines: at 0.017 Hz, of one line of 1/60 Hz, the sum over lines is 7 % below the integral over the
     # band, and the exact RMS takes the density up.
     edge = 0.05
-    signal = road(rms=0.0075, seed=3, duration=60.0, lead=LEAD, lower_band_edge=edge)
+    signal = road(rms=0.0075, seed=3, wheel="fr", duration=60.0, lead=LEAD, lower_band_edge=edge)
     # At half a line off the grid a record of T = 60 s holds broken periods: differences show the velocity, a Hann
     # window keeps the leak of the large low lines away; 11 Hz of band average 660 lines.
     velocity = np.diff(signal.displacement["fr"][round(LEAD * RATE_HZ) :]) * RATE_HZ
@@ -36,23 +36,23 @@ def test_velocity_density_is_flat_at_the_level_that_the_band_gives():
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_level_does_not_depend_on_the_seed(seed):
     # Ten periods of the lowest line: what its broken period leaves is far below the 22 % that random amplitudes would.
-    signal = road(rms=0.01, seed=seed, duration=50.0, lead=LEAD, lower_band_edge=0.2)
+    signal = road(rms=0.01, seed=seed, wheel="fr", duration=50.0, lead=LEAD, lower_band_edge=0.2)
     assert np.std(record(signal)) == pytest.approx(0.01, rel=0.02)
-    # With the edge half a line below a multiple of 1/T all lines are periods of the record: exact but for rounding.
-    exact = road(rms=0.01, seed=seed, duration=50.0, lead=LEAD, lower_band_edge=0.19)
+    # With the edge half a line below a multiple of 1/T all lines are periods of the record: exact within rounding.
+    exact = road(rms=0.01, seed=seed, wheel="fr", duration=50.0, lead=LEAD, lower_band_edge=0.19)
     assert np.std(record(exact)) == pytest.approx(0.01, rel=1e-9)
 
 
 def test_both_roads_are_one_road():
-    smooth, rough = (road(rms=rms, seed=1, duration=10.0, lead=LEAD) for rms in ROAD_RMS.values())
+    smooth, rough = (road(rms=rms, seed=1, wheel="fr", duration=10.0, lead=LEAD) for rms in ROAD_RMS.values())
     ratio = ROAD_RMS["rough"] / ROAD_RMS["smooth"]
     np.testing.assert_allclose(rough.displacement["fr"], ratio * smooth.displacement["fr"], rtol=1e-12, atol=1e-15)
-    other = road(rms=ROAD_RMS["smooth"], seed=2, duration=10.0, lead=LEAD)
+    other = road(rms=ROAD_RMS["smooth"], seed=2, wheel="fr", duration=10.0, lead=LEAD)
     assert np.std(record(other) - record(smooth)) > 0.5 * np.std(record(smooth))
 
 
 def test_the_lead_begins_at_rest_and_runs_into_the_record():
-    signal = road(rms=0.01, seed=0, duration=20.0, lead=LEAD)
+    signal = road(rms=0.01, seed=0, wheel="fr", duration=20.0, lead=LEAD)
     z = signal.displacement["fr"]
     assert z[0] == 0.0
     assert abs(z[1]) < 1e-6
@@ -65,11 +65,11 @@ def test_the_lead_begins_at_rest_and_runs_into_the_record():
 
 def test_the_edge_lies_far_below_one_hertz_and_swings_a_tenth_of_a_metre():
     assert ROAD_EDGE_HZ < 0.1
-    swing = [np.ptp(road(rms=ROAD_RMS["rough"], seed=seed).displacement["fr"]) for seed in range(4)]
+    swing = [np.ptp(road(rms=ROAD_RMS["rough"], seed=seed, wheel="fr").displacement["fr"]) for seed in range(4)]
     assert min(swing) > 0.1
 
 
 def test_impossible_roads_are_refused():
     for wrong in ({"rms": 0.0}, {"rms": 0.01, "lower_band_edge": 0.0}, {"rms": 0.01, "duration": -1.0}):
         with pytest.raises(ConfigurationError):
-            road(**{"seed": 0, **wrong})
+            road(**{"seed": 0, "wheel": "fr", **wrong})

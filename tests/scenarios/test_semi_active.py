@@ -1,4 +1,4 @@
-"""The study of semi-active dampers: its settings, what it says of numbers, and its measure on a run."""
+"""The study of semi-active dampers: settings, sentences on values, and the measure on a run."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import pytest
 
 from scenarios import semi_active
 from scenarios.semi_active import LEAD_S, RideMeasure, Setting, main, settings
-from vehicle.model.parameters.semi_active import LAWS
+from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.weighting import weighted_record
-from vehicle.studies.sweeps.runs import Runs
+from vehicle.studies.sweeps.run_batch import Runs
 
 
 def test_settings_cover_laws_roads_delays_and_the_passive_range():
@@ -27,14 +27,18 @@ def test_settings_cover_laws_roads_delays_and_the_passive_range():
 
 
 def made_up(runs, chosen, duration, engine):
-    """Skyhook comfortable, groundhook light on the tyres, both worse by delay."""
-    found = {}
-    for one in chosen:
-        comfort = {"skyhook": 0.8, "groundhook": 1.2}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay) * one.factor**0.2
-        tyre = {"skyhook": 1.1, "groundhook": 0.9}.get(one.law, 1.0) * (1.0 + 0.01 * one.delay)
-        found[one] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "hop": 0.1 * tyre}
-        found[one]["lowest"] = 0.3
-    return found
+    """Return made-up values: skyhook improves comfort, groundhook reduces tyre loads, and delay worsens both."""
+    points = {}
+    for setting in chosen:
+        comfort = (
+            {"skyhook": 0.8, "groundhook": 1.2}.get(setting.law, 1.0)
+            * (1.0 + 0.01 * setting.delay)
+            * setting.factor**0.2
+        )
+        tyre = {"skyhook": 1.1, "groundhook": 0.9}.get(setting.law, 1.0) * (1.0 + 0.01 * setting.delay)
+        points[setting] = {"weighted": comfort, "unfiltered": 2.0 * comfort, "tyre": 0.2 * tyre, "hop": 0.1 * tyre}
+        points[setting]["lowest"] = 0.3
+    return points
 
 
 def test_it_says_what_its_numbers_show(tmp_path, monkeypatch, capsys):

@@ -52,14 +52,14 @@ def test_the_halves_hold_every_topic_and_every_row_once():
     topics = {row.topic for row in EVIDENCE}
     assert {row.topic for row in EVIDENCE if row.key in USED} == topics
     assert {row.topic for row in EVIDENCE if row.key not in USED} == topics
-    # What the body's frame was fitted to is no prediction, although the choice did not use it.
+    # A row to which the body's frame was fitted is not a prediction, even in the held-out half.
     assert "engine_highest" not in USED and status_of("engine_highest") == "fitted"
     assert "bump_1p5_roof_z_lowest" not in USED and status_of("bump_1p5_roof_z_lowest") == "predicted"
     with pytest.raises(KeyError):
         status_of("slip_right_middle")
 
 
-def test_a_hundred_to_one_is_the_most_that_one_row_says():
+def test_a_row_changes_the_likelihood_by_at_most_a_factor_of_a_hundred():
     row = evidence_of("wheel_mode")
     far, near = log_likelihood(row, [40.0]), log_likelihood(row, [28.0])
     assert far == pytest.approx(np.log(MISREADING), abs=1e-9) and near > -0.6
@@ -68,46 +68,46 @@ def test_a_hundred_to_one_is_the_most_that_one_row_says():
 
 
 def test_every_number_of_a_candidate_reads_its_own_values():
-    found, rig = made(np.random.default_rng(1)), Rig(plate="-y")
-    one = Candidate(rig=rig, velocity=4, shaker=0, noise=0, level=0, road=1)
-    values = values_of(found, one, PLAN)
+    readings, rig = made(np.random.default_rng(1)), Rig(plate="-y")
+    candidate = Candidate(rig=rig, velocity=4, shaker=0, noise=0, level=0, road=1)
+    values = values_of(readings, candidate, PLAN)
     assert set(values) == {row.key for row in EVIDENCE}
-    assert np.array_equal(values["slip_left_high"], 100.0 * found.shaker[0, 2, :, 1, 4])
-    assert np.array_equal(values["bump_1p5_roof_z_lowest"], found.extremes[0, :, 1, POINTS.index("roof_left_z"), 0])
-    other = values_of(found, replace(one, rig=replace(rig, roof="+y"), level=1), PLAN)
-    assert np.array_equal(other["bump_1p5_roof_z_lowest"], found.extremes[0, :, 2, POINTS.index("roof_right_z"), 0])
+    assert np.array_equal(values["slip_left_high"], 100.0 * readings.shaker[0, 2, :, 1, 4])
+    assert np.array_equal(values["bump_1p5_roof_z_lowest"], readings.extremes[0, :, 1, POINTS.index("roof_left_z"), 0])
+    other = values_of(readings, replace(candidate, rig=replace(rig, roof="+y"), level=1), PLAN)
+    assert np.array_equal(other["bump_1p5_roof_z_lowest"], readings.extremes[0, :, 2, POINTS.index("roof_right_z"), 0])
     assert np.array_equal(other["bump_7p5_engine_z_lowest"], values["bump_7p5_engine_z_lowest"])
 
 
 def test_the_table_is_the_sum_over_the_rows_of_each_candidate():
-    found, rig = made(np.random.default_rng(2)), Rig()
-    whole = table(found, rig, PLAN)
+    readings, rig = made(np.random.default_rng(2)), Rig()
+    whole = table(readings, rig, PLAN)
     rng = np.random.default_rng(3)
     for _ in range(4):
         at = tuple(int(rng.integers(size)) for size in whole.shape)
-        one = Candidate(rig=rig, **dict(zip(NUMBERS, at, strict=True)))
-        values = values_of(found, one, PLAN)
+        candidate = Candidate(rig=rig, **dict(zip(NUMBERS, at, strict=True)))
+        values = values_of(readings, candidate, PLAN)
         rows = [log_likelihood(row, values[row.key]) for row in EVIDENCE if row.key in USED]
         assert whole[at] == pytest.approx(sum(rows), abs=1e-9)
-    # The same shaker makes the noise of the bump; its own edge can only do better.
-    (tied, one), (free, _) = best({rig: whole})[0], best({rig: whole}, own_noise=True)[0]
-    assert one.noise == one.shaker and free == pytest.approx(np.max(whole)) and tied <= free
-    given = probabilities(found, one, PLAN)
-    assert 0.0 <= agreement(given, sorted(USED)) <= 1.0
-    assert jackknife([(found, one), (found, one)], PLAN) == 0.0
+    # The same shaker makes the noise of the bump; a separate edge cannot be less likely.
+    (tied, candidate), (free, _) = best({rig: whole})[0], best({rig: whole}, own_noise=True)[0]
+    assert candidate.noise == candidate.shaker and free == pytest.approx(np.max(whole)) and tied <= free
+    by_row = probabilities(readings, candidate, PLAN)
+    assert 0.0 <= agreement(by_row, sorted(USED)) <= 1.0
+    assert jackknife([(readings, candidate), (readings, candidate)], PLAN) == 0.0
 
 
 def test_tied_numbers_take_the_median_velocity_and_the_printed_shares():
-    found, rig = made(np.random.default_rng(4)), Rig()
-    whole = np.full(table(found, rig, PLAN).shape, -50.0)
+    readings, rig = made(np.random.default_rng(4)), Rig()
+    whole = np.full(table(readings, rig, PLAN).shape, -50.0)
     for velocity, shaker in ((3, 0), (4, 0), (4, 1), (9, 1)):
         whole[velocity, shaker, shaker, 0, 1] = -19.5
     whole[12, 0, 1, 0, 1] = -10.0  # an edge of its own for the noise: not of one shaker
     # With the second edge the share of the high level is the printed one.
-    found.shaker[1, 2, :, 0, 4], found.shaker[0, 2, :, 0, 4] = 0.218, 0.5
-    found.shaker[:, 0], found.shaker[:, 1], found.shaker[:, 2, :, 1] = 0.0, 0.0, 0.0
-    taken = shipped_numbers(found, rig, PLAN, whole)
-    assert (taken.velocity, taken.shaker, taken.noise, taken.road) == (4, 1, 1, 1)
+    readings.shaker[1, 2, :, 0, 4], readings.shaker[0, 2, :, 0, 4] = 0.218, 0.5
+    readings.shaker[:, 0], readings.shaker[:, 1], readings.shaker[:, 2, :, 1] = 0.0, 0.0, 0.0
+    shipped = shipped_numbers(readings, rig, PLAN, whole)
+    assert (shipped.velocity, shipped.shaker, shipped.noise, shipped.road) == (4, 1, 1, 1)
 
 
 def test_ties_keep_what_was_and_evidence_does_not():

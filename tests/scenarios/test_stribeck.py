@@ -53,12 +53,12 @@ def test_a_burst_after_break_away_is_an_extra_peak():
     assert len(phases) == 1
     assert phases[0].jump == pytest.approx(4.0)
     assert phases[0].start == pytest.approx(0.3)
-    # The burst, and the valley that it makes behind the jump.
+    # The burst, and the valley after the jump.
     valley, burst = extra_peaks(phases)
     assert 0.315 < valley.time < burst.time
     assert burst.time == pytest.approx(0.33, abs=1e-3)
     assert burst.delay == pytest.approx(0.03, abs=1e-3)
-    # The burst stands on what is left of the jump, 4 exp(-3) = 0.2.
+    # The burst is added to the remainder of the jump, 4 exp(-3) = 0.2.
     assert burst.height == pytest.approx(3.2, abs=0.05)
     assert burst.prominence == pytest.approx(3.0, abs=0.3)
     assert most_prominent(phases) in (valley, burst)
@@ -88,7 +88,7 @@ def test_law_of_equations_3_1_and_3_2():
 
 
 def test_force_error_sees_another_law(car):
-    run = car.run(bump(amplitude=7.5e-3, duration=1.2, start=0.3, noise_rms=0.0))
+    run = car.run(bump(amplitude=7.5e-3, wheel="fr", duration=1.2, start=0.3, noise_rms=0.0))
     assert force_error(run) < 0.012
     recording = run.recording
     channels = {**recording.channels, "damper_fr_force": 1.05 * recording["damper_fr_force"]}

@@ -19,7 +19,7 @@ def test_a_short_study_ranks_the_parameters(tmp_path):
     assert (folder / "tornado.png").exists()
     labels = [bar["label"] for bar in content["bars"]]
     assert len(labels) == len(PARAMETERS) == 8
-    # The whole input comes through the tyre, and a fifth of the main spring is 2 % of the stiffness beside a stuck
+    # The whole input comes through the tyre, and a fifth of the main spring is 2 % of the stiffness with a stuck
     # damper: no length of record moves one from the top or the other from the last three.
     assert labels[0].startswith("tyre stiffness")
     assert any(label.startswith("main spring") for label in labels[-3:])
@@ -28,10 +28,10 @@ def test_a_short_study_ranks_the_parameters(tmp_path):
 
 def test_ends_are_a_fifth_away_unless_said_otherwise(tmp_path):
     comfort = ComfortRuns(CarRuns(), Records(count=1), tmp_path)
-    found = {parameter.label: tuple(ends(comfort, parameter)) for parameter in PARAMETERS}
-    assert found["Coulomb friction Fd [N]"] == pytest.approx((100.0, 150.0))
-    assert found["tyre stiffness, z [N/m]"] == pytest.approx((2.0e5, 3.0e5))
-    low, high = found["body stiffness, as factor on its frequencies [-]"]
+    ends_by_label = {parameter.label: tuple(ends(comfort, parameter)) for parameter in PARAMETERS}
+    assert ends_by_label["Coulomb friction Fd [N]"] == pytest.approx((100.0, 150.0))
+    assert ends_by_label["tyre stiffness, z [N/m]"] == pytest.approx((2.0e5, 3.0e5))
+    low, high = ends_by_label["body stiffness, as factor on its frequencies [-]"]
     assert (low**2, high**2) == pytest.approx((0.8, 1.2))
     mount = next(parameter for parameter in PARAMETERS if "mount damping" in parameter.label)
     assert ends(comfort, mount)[0.0] == ()
@@ -54,7 +54,7 @@ def test_conclusions_disagree_where_the_bars_do():
     names = ("Coulomb friction", "suspension mount damping", "suspension mount stiffness")
     good = [bar(name, *pair) for name, pair in zip(names, ((0.9, 1.1), (1.1, 0.9), (1.1, 0.9)), strict=True)]
     assert all(claim.within for claim in tornado_claims(good))
-    bad = [dataclasses.replace(one, at_low=one.at_high, at_high=one.at_low) for one in good]
+    bad = [dataclasses.replace(good_bar, at_low=good_bar.at_high, at_high=good_bar.at_low) for good_bar in good]
     assert not any(claim.within for claim in tornado_claims(bad))
     assert "| Coulomb friction | 1 | 0.8, 1.2 | 90.00 ± 0.10, 110.00 ± 0.10 | 20.0 |" in bar_table(good)
 

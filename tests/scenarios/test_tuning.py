@@ -14,9 +14,9 @@ from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.records.frf import write_frf
-from vehicle.studies.tuning.fit import fit
+from vehicle.signals.records.frf_file import write_frf
 from vehicle.studies.tuning.full_steps import FullSteps
+from vehicle.studies.tuning.least_squares import fit
 
 MOUNT = "bushings.suspension_mount.stiffness.z"
 CHANNELS = ("knuckle_fl_acc_z", "seat_rail_acc_z")
@@ -33,11 +33,11 @@ def test_hidden_values_are_found(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert len(content["rows"]) == len(QUICK) + 1
     assert all(row["within"] for row in content["rows"])
-    found = content["all"]
+    rows = content["all"]
     for path in QUICK:
-        assert found["start"][path] != pytest.approx(HIDDEN[path], rel=0.15)
+        assert rows["start"][path] != pytest.approx(HIDDEN[path], rel=0.15)
         # Three standard errors count for something only where they are small.
-        assert abs(found["values"][path] - HIDDEN[path]) < 0.01 * HIDDEN[path]
+        assert abs(rows["values"][path] - HIDDEN[path]) < 0.01 * HIDDEN[path]
     assert content["not_judged"]
     files = {path.name for path in results.iterdir()}
     assert {"high_frf.csv", "frf_1_high.png", "records.png", "parameters.png", "correlation.png"} <= files
@@ -45,8 +45,8 @@ def test_hidden_values_are_found(results):
 
 def test_the_hidden_car_is_no_secret_of_the_fit():
     # Starts are those of the authors, and no start or bound of the fit is a hidden value.
-    assert {one.path for one in AUTHORS} == set(HIDDEN)
-    assert all(HIDDEN[one.path] not in (one.low, one.start, one.high) for one in AUTHORS)
+    assert {parameter.path for parameter in AUTHORS} == set(HIDDEN)
+    assert all(HIDDEN[parameter.path] not in (parameter.low, parameter.start, parameter.high) for parameter in AUTHORS)
 
 
 def test_options_of_own_files_are_checked(tmp_path, capsys):
@@ -84,9 +84,9 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
                 *("--set", "damper.friction_law=stribeck", "--fit", "damper.stribeck_friction=50:300:120"),
                 *("--fit", "damper.coulomb_friction=20:100:75"),
             ],
-            "the friction at rest must stay at or above that of sliding",
+            "static friction must not be below sliding friction",
         ),
-        (["--channel", "engine_acc_z"], "no channel engine_acc_z; there are knuckle_fl_acc_z, seat_rail_acc_z"),
+        (["--channel", "engine_acc_z"], "no channel engine_acc_z; the file has knuckle_fl_acc_z, seat_rail_acc_z"),
     ):
         assert main([*options, *extra, "--output", str(tmp_path / "refused")]) in (2, 3)
         assert message in capsys.readouterr().err
@@ -95,8 +95,8 @@ def test_options_of_own_files_are_checked(tmp_path, capsys):
 
 
 def test_parameters_of_the_command_line(car):
-    one, two = parse_parameters(["damper.viscous=500:5000", f"{MOUNT}=1e5:1e6:5e5"], car.vehicle)
-    assert (one.low, one.high, one.start) == (500.0, 5000.0, value_of(car.vehicle, "damper.viscous"))
+    first, two = parse_parameters(["damper.viscous=500:5000", f"{MOUNT}=1e5:1e6:5e5"], car.vehicle)
+    assert (first.low, first.high, first.start) == (500.0, 5000.0, value_of(car.vehicle, "damper.viscous"))
     assert (two.path, two.start) == (MOUNT, 5e5)
     for text in ("damper.viscous=1", "damper.viscous=a:b", "damper.viscous=1:2:3:4"):
         with pytest.raises(ConfigurationError, match="needed is PATH=LOWER:UPPER"):
@@ -119,7 +119,7 @@ def finished(result, *, settled=True):
 def test_rows_say_what_was_missed(masses):
     rows = demonstration_claims(finished(masses), None, {**TRUE, "colour": 3.0})
     assert [row.within for row in rows] == [True] * 5
-    assert rows[3].ours == "not told by the data, held at 2"
+    assert rows[3].ours == "not identified by the data, held at 2"
     away = {**TRUE, "upper": TRUE["upper"] + 4.0 * masses.standard_errors["upper"]}
     assert [row.within for row in demonstration_claims(finished(masses, settled=False), None, away)] == [
         True,
@@ -132,7 +132,7 @@ def test_rows_say_what_was_missed(masses):
 
 def test_notes_name_everything(masses):
     text = "\n".join(fit_notes("A fit", masses, finished(masses)))
-    assert "colour: the data cannot tell it (" in text and "held at 2" in text
+    assert "colour: the data do not identify this parameter (" in text and "held at 2" in text
     assert "| damping | 166.667 to 13500 | 2100 |" in text and "-0.50" in text
     assert "body, phase | 60" in text
     assert "damping 1" in frozen_note(masses, {**TRUE, "colour": 2.0})

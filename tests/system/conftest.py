@@ -42,7 +42,7 @@ def shaker(
 def short_signal(tmp_path: Path) -> Path:
     """A random signal of 6 s at the high level."""
     path = tmp_path / "short.csv"
-    write_signal(path, random_road(rms=5.25e-4, seed=3, duration=6.0))
+    write_signal(path, random_road(rms=5.25e-4, seed=3, wheel="fl", duration=6.0), plain=True)
     return path
 
 

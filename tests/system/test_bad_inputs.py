@@ -18,7 +18,7 @@ from tests.system.conftest import csv_text
 from vehicle.signals.excitation.random_road import random_road
 
 ROOT = Path(__file__).resolve().parents[2]
-GOOD = random_road(rms=1e-4, seed=1, duration=4.0).displacement["fr"]
+GOOD = random_road(rms=1e-4, seed=1, wheel="fr", duration=4.0).displacement["fr"]
 
 
 def _with(line: int, text: str) -> str:
@@ -59,7 +59,7 @@ SETTINGS = [
     ("22 negative damping", "damper.viscous=-1", "damper.viscous: found -1.0 N s/m, must be at least 0.0"),
     ("22 negative friction", "damper.coulomb_friction=-1", "damper.coulomb_friction: found -1.0 N"),
     ("23 too stiff", "bushings.tyre.stiffness=[1.5e5, 1.5e5, 1e12]", "must be at most 10000000000.0 (a block of steel"),
-    ("51 mount too stiff for the step", "bushings.suspension_mount.stiffness.z=3e7", "give solver.timestep=0.0005"),
+    ("51 mount too stiff for the step", "bushings.suspension_mount.stiffness.z=3e7", "set solver.timestep=0.0005"),
     ("50 sign of a product", "body.inertia.izx=-1800", "the sum of the two smaller at least the largest"),
     (
         "52 friction line too steep",
@@ -74,11 +74,11 @@ SETTINGS = [
     ("26 collinear arm", "hardpoints.arm_rear=[0.842, 0.2, 0.612]", "lie on one line"),
     ("27 no such body", "body.superelement=nothing.toml", "body.superelement: no file 'nothing.toml'"),
     ("30 unknown name", "damper.coulomb_fricton=100", "the nearest is front.damper.coulomb_friction"),
-    ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, needed is a number"),
+    ("31 a truth value", "damper.viscous=true", "damper.viscous: found True, must be a number"),
     ("31 overflow", "damper.viscous=1e400", "damper.viscous: found inf"),
-    ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), needed is a list of 3 numbers [m]"),
-    ("32 XML in a name", 'name="a\\"/><b"', "allowed are names of letters"),
-    ("33 path in a name", 'body.superelement="../../secret.toml"', "allowed are names of letters"),
+    ("31 two components", "body.cog=[1, 2]", "body.cog: found (1.0, 2.0), must be a list of 3 numbers [m]"),
+    ("32 XML in a name", 'name="a\\"/><b"', "must be a name of letters"),
+    ("33 path in a name", 'body.superelement="../../secret.toml"', "must be a name of letters"),
 ]
 
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.runs.output.destination import free_file, free_files, free_folder
 from vehicle.runs.output.folder import check_file, folder_lock, output_folder, prepare_folder, write_text, write_whole
+from vehicle.runs.output.free_names import free_file, free_files, free_folder
 from vehicle.runs.output.model_files import write_mjcf
 from vehicle.runs.output.written_files import MARKER, discard, foreign, note, written
 
@@ -92,7 +92,7 @@ def test_generated_files_of_a_clone_are_replaced(tmp_path):
     page.write_text("# Page\n\n<!-- Written by `python -m scenarios.published`; never edit by hand. -->\n")
     check_file(page, force=True)
     page.write_text("# Page of somebody else\n")
-    with pytest.raises(ConfigurationError, match="nothing else is ever replaced"):
+    with pytest.raises(ConfigurationError, match="other files are never replaced"):
         check_file(page, force=True)
 
 
@@ -179,7 +179,7 @@ def test_the_next_free_name_and_two_runs_at_once(tmp_path):
 def test_processes_at_once_take_names_of_their_own(tmp_path):
     work = (
         "import sys; from contextlib import ExitStack; from pathlib import Path\n"
-        "from vehicle.runs.output.destination import free_folder; "
+        "from vehicle.runs.output.free_names import free_folder; "
         "from vehicle.runs.output.folder import output_folder\n"
         "with ExitStack() as held:\n"
         "    path = free_folder(held, Path('runs/low'))\n"
@@ -219,7 +219,7 @@ def test_a_link_leads_to_the_folder_that_is_replaced(tmp_path):
 @pytest.mark.parametrize("name", [".", "..", "/"])
 def test_the_working_folder_is_no_output(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ConfigurationError, match="is the working folder, or holds it"):
+    with pytest.raises(ConfigurationError, match="is the working folder, or contains it"):
         put(Path(name), "a.csv", force=True)
 
 

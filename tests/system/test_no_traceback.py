@@ -27,7 +27,7 @@ SETTINGS = [
     ("60 nested lists", f"body.cog={NESTED}", "brackets are nested too deep"),
     ("60 open brackets", "body.cog=" + "[" * 5000, "brackets are nested too deep"),
     ("65 a number for a vector", "bushings.tyre.stiffness=2e5", "bushings.tyre.stiffness.z=2e5"),
-    ("a NUL byte", "name=a\0b", "holds a NUL byte"),
+    ("a NUL byte", "name=a\0b", "contains a NUL byte"),
 ]
 
 

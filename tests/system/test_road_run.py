@@ -128,14 +128,17 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "needed is either --input FILE, or a road: --road C --speed 80"),
-        ([], "needed is either --input FILE, or a road"),
+        ([], "set --input FILE, or a road: --road C --speed 80"),
+        ([], "set --input FILE, or a road"),
         (["--road"], "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond"),
         (["--road", "C"], "a road needs --speed KM/H"),
         (["--road", "Z", "--speed", "80"], "road class 'Z': allowed are A, B"),
         (["--road", "none.csv", "--speed", "80"], "--road none.csv: no class of ISO 8608 (A to H), and no file"),
-        (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C beside --input: give one of them"),
-        (["--road", "C", "--speed", "80", "--wheel", "front_left"], "--wheel: belongs to --input; a road drives all"),
+        (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C and --input: set only one of them"),
+        (
+            ["--road", "C", "--speed", "80", "--wheel", "front_left"],
+            "--wheel: belongs to --input; a road moves the plates of all",
+        ),
         (["--road", "C", "--speed", "80", "--remove-mean"], "--remove-mean: belongs to --input"),
         (["--input", "low.csv", "--speed", "80"], "--speed: belongs to a road, as --road C --speed 80"),
         (["--input", "low.csv", "--any-level", "--seed", "2"], "--seed: belongs to a class of ISO 8608"),

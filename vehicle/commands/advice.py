@@ -1,4 +1,4 @@
-"""The whole command to type for a measurement file, by what its channels measure and what they are called."""
+"""Complete command for a measurement file, from the units and the names of its channels."""
 
 from __future__ import annotations
 
@@ -41,6 +41,9 @@ AXES = {
 }
 """Words for the axes."""
 
+SHAKER_WHEEL = "fl"
+"""Shaker wheel of the car `focus`, the default of the command `shaker`."""
+
 SHORTEST = 8.0
 """Shortest record for which a comfort value is worth a command [s]."""
 
@@ -59,43 +62,43 @@ def words_of(name: str) -> list[str]:
 
 
 def wheel_of(name: str) -> str:
-    """Return the wheel that a channel name speaks of; empty for none.
+    """Return the wheel in the name of a channel; empty if there is none.
 
     Args:
         name: as "FR", "VL", "rear left", "hinten rechts", "LeftFront".
     """
-    words = words_of(name)
-    pair = next((PAIRS[word] for word in words if word in PAIRS), "")
+    parts = words_of(name)
+    pair = next((PAIRS[word] for word in parts if word in PAIRS), "")
     if pair:
         return pair
-    end = next((letter for letter, names in (("f", FRONT), ("r", REAR)) if _any(words, names)), "")
-    side = next((letter for letter, names in (("r", RIGHT), ("l", LEFT)) if _any(words, names)), "")
+    end = next((letter for letter, names in (("f", FRONT), ("r", REAR)) if _any(parts, names)), "")
+    side = next((letter for letter, names in (("r", RIGHT), ("l", LEFT)) if _any(parts, names)), "")
     return end + side if end and side else ""
 
 
-def _any(words: Sequence[str], names: Sequence[str]) -> bool:
-    """True if a whole word, of more than one letter, is among the names."""
-    return any(word in names for word in words if len(word) > 1)
+def _any(parts: Sequence[str], names: Sequence[str]) -> bool:
+    """Return True if a word of more than one letter is among the names."""
+    return any(word in names for word in parts if len(word) > 1)
 
 
 def axis_of(channel: Channel) -> str:
-    """Return the axis of a channel, by its direction or its name; empty for none.
+    """Return the axis of a channel, from its direction or its name; empty if it has none.
 
     Args:
         channel: of a measurement.
     """
     if channel.direction:
         return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
-    words = words_of(channel.name)
-    return next((axis for axis, names in AXES.items() if any(word in names for word in words)), "")
+    parts = words_of(channel.name)
+    return next((axis for axis, names in AXES.items() if any(word in names for word in parts)), "")
 
 
 def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
-    """Return the command for a file, and what it does or why there is none.
+    """Return the command for a file with its purpose, or the reason for the lack of a command.
 
     Args:
         measurement: the file.
-        file: its name as typed.
+        file: name of the file as typed.
     """
     if measurement.shapes and not measurement.channels:
         return _line("compare", "--measured", file), "compares the mode shapes with those of a car"
@@ -103,12 +106,12 @@ def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
     if road is not None:
         return road
     histories = [
-        (number, one)
-        for number, one in enumerate(measurement.channels, 1)
-        if one.kind == "time" and one.function != "road profile" and one.axis is not None
+        (number, channel)
+        for number, channel in enumerate(measurement.channels, 1)
+        if channel.kind == "time" and channel.function != "road profile" and channel.axis is not None
     ]
     by = {
-        quantity: [(number, one) for number, one in histories if one.quantity == quantity]
+        quantity: [(number, channel) for number, channel in histories if channel.quantity == quantity]
         for quantity in ("displacement", "acceleration", "force", "velocity")
     }
     if by["force"] and (by["velocity"] or by["displacement"]) and not by["acceleration"] and len(histories) <= 4:
@@ -120,30 +123,30 @@ def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
         return _plates(measurement, file, by["displacement"], by["velocity"])
     if by["acceleration"]:
         return _accelerations(measurement, file, by["acceleration"])
-    if any(one.kind == "frequency" for one in measurement.channels):
+    if any(channel.kind == "frequency" for channel in measurement.channels):
         return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
     if histories:
         return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"
 
 
-def _line(*words: str) -> str:
-    return shlex.join(["python", "-m", "vehicle", *words])
+def _line(*arguments: str) -> str:
+    return shlex.join(["python", "-m", "vehicle", *arguments])
 
 
 def _pick(measurement: Measurement, number: int) -> str:
-    """Return the name of a channel where it is its own alone, else its number."""
+    """Return the name of a channel if it is unique, else the number of the channel."""
     name = measurement.channels[number - 1].name
-    once = sum(one.name == name for one in measurement.channels) == 1
+    once = sum(channel.name == name for channel in measurement.channels) == 1
     return name if name and once and not name.isdecimal() and not set(name) & set("*?[=") else str(number)
 
 
 def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
-    """Return the command for a profile over the distance; None for any other file."""
+    """Return the command for a road profile over the distance; None for any other file."""
     from vehicle.signals.excitation.measured_road import read_road
 
     profile = measurement.format in ("crg", "erd")
-    if not profile and not any(one.name.strip().lower() == "distance" for one in measurement.channels):
+    if not profile and not any(channel.name.strip().lower() == "distance" for channel in measurement.channels):
         return None
     try:
         read_road(measurement.path, 1.5)
@@ -163,71 +166,78 @@ def _clock(channel: Channel) -> tuple[str, ...]:
 def _plates(
     measurement: Measurement, file: str, moves: list[tuple[int, Channel]], speeds: list[tuple[int, Channel]]
 ) -> tuple[str, str]:
-    """Return the command for displacements: plates of a shaker, or a road with a speed."""
+    """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
 
-    plain = {one.name.strip().rstrip(".").lower() for _, one in moves}
+    plain = {channel.name.strip().rstrip(".").lower() for _, channel in moves}
     if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
         speed = _pick(measurement, speeds[0][0])
-        words = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", f"channel:{speed}"]
-        return _line(*words, *_clock(moves[0][1])), "drives over the recorded road at the recorded speed"
+        arguments = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", f"channel:{speed}"]
+        return _line(*arguments, *_clock(moves[0][1])), "drives over the recorded road at the recorded speed"
     wheels: dict[str, int] = {}
-    for number, one in moves:
-        wheel = wheel_of(one.name)
+    for number, channel in moves:
+        wheel = wheel_of(channel.name)
         if wheel and wheel not in wheels:
             wheels[wheel] = number
-    rest = ""
+    addition = ""
     if not wheels:
-        wheels = {"fr": moves[0][0]}
-        rest = "" if len(moves) == 1 else f"; {len(moves) - 1} more displacements name no wheel"
+        wheels = {SHAKER_WHEEL: moves[0][0]}
+        addition = "" if len(moves) == 1 else f"; {len(moves) - 1} more displacements name no wheel"
     car = ["--vehicle", "focus_road"] if set(wheels) - {"fr", "fl"} else []
     names = {measurement.channels[number - 1].name: wheel for wheel, number in wheels.items()}
-    known = {"displacement": "fr", **{f"displacement_{wheel}": wheel for wheel in wheels}}
+    roles = {"displacement": SHAKER_WHEEL, **{f"displacement_{wheel}": wheel for wheel in wheels}}
     picks = []
-    if any(known.get(name) != wheel for name, wheel in names.items()) or len(moves) > len(wheels):
+    if any(roles.get(name) != wheel for name, wheel in names.items()) or len(moves) > len(wheels):
         for wheel, number in wheels.items():
             picks += ["--channel", f"{wheel}={_pick(measurement, number)}"]
-    words = ["shaker", *car, "--input", file, *picks, *_clock(measurement.channels[next(iter(wheels.values())) - 1])]
-    found, why = _tried(measurement.path, words, (["--detrend"],))
-    what = "puts the displacement on the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels)
-    return (found, what + rest) if found else ("", why)
+    arguments = [
+        "shaker",
+        *car,
+        "--input",
+        file,
+        *picks,
+        *_clock(measurement.channels[next(iter(wheels.values())) - 1]),
+    ]
+    command, why = _tried(measurement.path, arguments, (["--detrend"],))
+    purpose = "puts the displacement on the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels)
+    return (command, purpose + addition) if command else ("", why)
 
 
-def _tried(path: Path, words: list[str], more: Sequence[list[str]]) -> tuple[str, str]:
-    """Return the first form of a shaker command whose signal can be read, or why none can."""
+def _tried(path: Path, arguments: list[str], more: Sequence[list[str]]) -> tuple[str, str]:
+    """Return the first shaker command whose signal is readable, or the reason why the signals are not."""
     from vehicle.commands.input_options import record_choice
     from vehicle.commands.shaker import parser
     from vehicle.signals.excitation.signal_file import read_signal
 
     reason = ""
     if path.stat().st_size > LARGEST_CHECKED:
-        return _line(*words), ""
+        return _line(*arguments), ""
     for extra in ([], *more):
-        options = parser().parse_args([*words, *extra][1:])
+        options = parser().parse_args([*arguments, *extra][1:])
         try:
-            read_signal(path, choice=record_choice(options, "fr"))
+            read_signal(path, wheel=SHAKER_WHEEL, choice=record_choice(options, SHAKER_WHEEL))
         except VehicleError as error:
             reason = reason or f"a displacement, but: {error}"
             continue
-        return _line(*words, *extra), ""
+        return _line(*arguments, *extra), ""
     return "", reason
 
 
 def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, Channel]]) -> tuple[str, str]:
-    """Return the command for accelerations: the comfort of the point whose axes they are."""
+    """Return the comfort command for the accelerations of one point."""
     import numpy as np
 
     seats = [pair for pair in those if {"seat", "sitz"} & set(words_of(pair[1].name + " " + pair[1].place))]
     axes: dict[str, int] = {}
-    for number, one in seats or those:
-        axis = axis_of(one)
+    for number, channel in seats or those:
+        axis = axis_of(channel)
         if axis and axis not in axes:
             axes[axis] = number
     if not axes:
         axes = {"z": (seats or those)[0][0]}
-    one = measurement.channels[next(iter(axes.values())) - 1]
-    rate = one.rate or 0.0
-    length = 0.0 if one.axis is None else float(one.axis[-1] - one.axis[0])
+    channel = measurement.channels[next(iter(axes.values())) - 1]
+    rate = channel.rate or 0.0
+    length = 0.0 if channel.axis is None else float(channel.axis[-1] - channel.axis[0])
     if length < SHORTEST or rate < 25.0:
         return "", f"an acceleration of {length:.3g} s at {rate:.4g} Hz: comfort needs {SHORTEST:g} s at 25 Hz or more"
     picks = [
@@ -238,7 +248,7 @@ def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, C
     ]
     values = [np.real(measurement.channels[number - 1].values) for number in axes.values()]
     still = all(abs(float(np.nanmean(each))) < 1e-3 * float(np.nanstd(each)) for each in values)
-    words = ["comfort", "--input", file, *picks, *_clock(one), *([] if still else ["--offset", "remove"])]
+    arguments = ["comfort", "--input", file, *picks, *_clock(channel), *([] if still else ["--offset", "remove"])]
     which = "the seat" if seats else "the point"
     more = "" if len(those) == len(axes) else f"; {len(those) - len(axes)} more accelerations"
-    return _line(*words), f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"
+    return _line(*arguments), f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"

@@ -22,21 +22,22 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser(
+    """Return the parser of the options."""
+    parser = command_parser(
         "comfort", "Weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums of a record of acceleration."
     )
-    found.add_argument(
+    parser.add_argument(
         "--input",
         dest="inputs",
         required=True,
         nargs="+",
         action="extend",
         metavar="FILE",
-        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone will do; several "
-        "files, or a folder, give one table",
+        help="columns time [s],x [m/s2],y [m/s2],z [m/s2] (or [g]), or any measurement file; z alone is "
+        "sufficient; several files, or a folder, give one table",
     )
-    found.add_argument(
+    channels = parser.add_argument_group("channels of the file")
+    channels.add_argument(
         "--channel",
         dest="picks",
         action="append",
@@ -45,22 +46,23 @@ def parser() -> Parser:
         help="point of a run, as seat_rail in its time.csv or time.npz; columns x, y, z by default; or the channel of "
         'axis in any measurement file, as x="Seat X" (number, exact name, or pattern with *), for x, y and z',
     )
-    found.add_argument(
+    channels.add_argument(
         "--rail",
         metavar="PLACE|z=NAME",
-        help="what is below the seat, as seat_rail, or z=NAME in any measurement file: gives the SEAT value too, the "
-        "weighted z acceleration of --channel over that of the rail, both by the weighting of the seat [-]",
+        help="acceleration below the seat, as seat_rail, or z=NAME in any measurement file; adds the SEAT value [-], "
+        "the weighted z acceleration of --channel divided by that of the rail, both with the weighting of the seat",
     )
-    record_options(found, "", channel=False)
-    found.add_argument("--json", action="store_true", help="print the result as JSON")
-    found.add_argument(
+    record_options(channels, "", channel=False)
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
+    weighting = parser.add_argument_group("evaluation")
+    weighting.add_argument(
         "--place",
         default="seat",
         metavar="NAME",
         help="point of contact, names weightings and factors: seat (default; z Wk, x and y Wd), backrest, feet, "
         "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841",
     )
-    found.add_argument(
+    weighting.add_argument(
         "--offset",
         choices=("refuse", "remove", "keep"),
         default="refuse",
@@ -68,18 +70,18 @@ def parser() -> Parser:
         "the mean is that of gravity (default), remove them (a sensor's offset, gravity), or keep them: the record "
         "starts at rest, so that its first seconds count for MTVV, crest factor and MSDV too",
     )
-    found.add_argument(
+    weighting.add_argument(
         "--skip",
         type=float,
         default=0.0,
         metavar="S",
         help="seconds left out at the beginning of the weighted records; 0 by default",
     )
-    found.add_argument(
+    weighting.add_argument(
         "--mtvv", choices=("linear", "exponential"), default="linear", help="running average of the MTVV"
     )
-    message_options(found)
-    return found
+    message_options(parser)
+    return parser
 
 
 def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | None, Choice | None]:
@@ -88,11 +90,11 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
     Raises:
         ConfigurationError: both a point and channels of axes.
     """
-    places = [text for text in picks if "=" not in text]
-    if len(places) > 1 or (places and len(picks) > 1):
-        raise ConfigurationError("--channel: give one PLACE, or x=NAME, y=NAME and z=NAME")
-    own = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
-    return (places[0] if places else None), record_choice(own, "")
+    points = [text for text in picks if "=" not in text]
+    if len(points) > 1 or (points and len(picks) > 1):
+        raise ConfigurationError("--channel: set one PLACE, or x=NAME, y=NAME and z=NAME")
+    channels = argparse.Namespace(**{**vars(options), "picks": [text for text in picks if "=" in text]})
+    return (points[0] if points else None), record_choice(channels, "")
 
 
 def _evaluate(options: argparse.Namespace) -> RecordComfort:
@@ -111,10 +113,10 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
         axis, equals, name = options.rail.partition("=")
         if equals and axis != "z":
             raise ConfigurationError(
-                f"--rail {options.rail}: the value of a seat is that of z; give z=NAME, or a place"
+                f"--rail {options.rail}: the SEAT value needs axis z; set z=NAME, or an output point"
             )
         rail = _picked(options, [f"z={name}"] if equals else [options.rail])
-    found = evaluate_comfort(
+    result = evaluate_comfort(
         options.input,
         point,
         choice=choice,
@@ -126,21 +128,23 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
         skip=options.skip,
     )
     if options.rail is None and "seat" not in options.picks:
-        return found
+        return result
     more = _about_the_seat(Path(options.input))
-    return RecordComfort({**found.summary, "notices": [*found.summary["notices"], *more]})
+    return RecordComfort({**result.summary, "notices": [*result.summary["notices"], *more]})
 
 
 def _about_the_seat(file: Path) -> list[str]:
-    """What a run in the same folder says of its seat: that there is none."""
+    """Return the notice of a missing seat, if the summary of the run in the same folder contains it."""
     from vehicle.runs.output.run_comfort import NO_SEAT
-    from vehicle.signals.records.run_summary import run_summary
+    from vehicle.signals.records.run_summary import available_summary
 
-    return [NO_SEAT] if NO_SEAT in run_summary(file.parent).get("notices", ()) else []
+    summary = available_summary(file.parent)
+    no_seat = NO_SEAT.partition(",")[0]  # equal in all versions
+    return [NO_SEAT] if summary and any(text.startswith(no_seat) for text in summary["notices"]) else []
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
-    """Return one line for each file: weighted RMS of each axis, their sum, and the measures of z."""
+    """Return the table of several files: weighted RMS of each axis, vector sum, further values of axis z."""
     rows: list[tuple[str, ...]] = []
     for result in results:
         if "error" in result:
@@ -160,7 +164,7 @@ def _overview(results: list[dict[str, Any]]) -> str:
 
 
 def _job(options: argparse.Namespace) -> None:
-    """Evaluate and print."""
+    """Evaluate the records of --input and print the results."""
 
     def one(name: str) -> dict[str, Any]:
         return dict(_evaluate(argparse.Namespace(**{**vars(options), "input": name})).summary)
@@ -171,9 +175,9 @@ def _job(options: argparse.Namespace) -> None:
         print(json.dumps(results, indent=2, allow_nan=False) if options.json else _overview(results), flush=True)
         raise_worst(errors, len(results))
         return
-    found = _evaluate(argparse.Namespace(**{**vars(options), "input": names[0]}))
-    print(json.dumps(found.summary, indent=2, allow_nan=False) if options.json else found.text(), flush=True)
-    for remark in found.notices:
+    result = _evaluate(argparse.Namespace(**{**vars(options), "input": names[0]}))
+    print(json.dumps(result.summary, indent=2, allow_nan=False) if options.json else result.text(), flush=True)
+    for remark in result.notices:
         print(f"notice: {remark}", file=sys.stderr)
 
 

@@ -1,4 +1,4 @@
-"""What all commands share: one message for each error, exit codes, interruption, a progress line."""
+"""Frame of every command: one message for each error, exit codes, interruption, a progress line."""
 
 from __future__ import annotations
 
@@ -23,37 +23,36 @@ INTERRUPTED = 130
 
 OPENGL = ("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0", "glfw", "glx", "egl",
           "osmesa")  # fmt: skip
-"""What MuJoCo takes as MUJOCO_GL on Linux; with anything else its import fails."""
+"""Values of MUJOCO_GL that MuJoCo accepts on Linux; its import fails with any other."""
 
 
 COLLECTED = (20_000, 5, 5)
-"""How often a command looks for unreachable objects, as of `gc.set_threshold`. Loading its libraries makes half a
-million objects that stay: at Python's own pace, that of programs that run on, looking through them takes a tenth of a
-run."""
+"""Thresholds of the garbage collector in a command, see `gc.set_threshold`. The imported libraries create half a
+million permanent objects; with the default thresholds of Python their collection takes 10 % of the time of a run."""
 
 
 def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
-    """Run the job of a command and turn every failure into one message and an exit code.
+    """Run the job of a command, and convert a failure to one message and an exit code.
 
     Args:
-        job: does everything; returns when all that was asked for exists.
-        debug: show the traceback too.
+        job: the whole work of the command.
+        debug: print the traceback too.
 
     Returns:
         0, or the code of the failure: 2 usage, 3 data, 4 simulation, 5 missing part, 6 output, 130 interrupted.
     """
-    # A terminated run cleans up as an interrupted one does.
+    # SIGTERM cleans up like Ctrl-C.
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     _asked_to_end.clear()
     lost = _stand_in_for_closed_streams()
     try:
         backend = os.environ.get("MUJOCO_GL", "").strip().lower()
         if backend not in OPENGL:
-            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; allowed: osmesa, egl; or unset it")
+            raise ConfigurationError(f"MUJOCO_GL={backend}: no OpenGL backend; must be osmesa, egl, glfw or unset")
         job()
         _flush()
         if lost is not None and lost.getvalue():
-            raise OutputError("standard output is closed: what was to be printed is lost")
+            raise OutputError("standard output is closed: the printed results are lost")
     except KeyboardInterrupt:
         _say("interrupted; nothing half-written is left behind")
         return INTERRUPTED
@@ -85,18 +84,18 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
 
 
 def begin_process() -> None:
-    """Tell a process that it is one command: to be called before it loads what the command needs."""
+    """Set up the garbage collector and OpenGL for a process that runs one command; call it before heavy imports."""
     gc.set_threshold(*COLLECTED)
-    # What is left at the end goes with the process; looking through it would take as long as a run.
+    # The operating system frees the memory; a last collection would take as long as a run.
     atexit.register(gc.freeze)
-    # No command opens a window, for which MuJoCo would load a library; films name their own.
+    # Without this MuJoCo loads the GLFW library at its import. Films select a backend themselves.
     os.environ.setdefault("MUJOCO_GL", "disable")
 
 
 def _stand_in_for_closed_streams() -> io.StringIO | None:
-    """Give the process the standard streams that it was started without (>&-); returns that of the output, if so."""
+    """Replace standard streams that were closed at the start (>&-); return the substitute of stdout, or None."""
     while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
-        pass  # so that no file of a run gets the number of a standard stream
+        pass  # a file of the run must not get descriptor 0, 1 or 2
     os.close(descriptor)
     if sys.stderr is None:
         sys.stderr = io.StringIO()
@@ -107,7 +106,7 @@ def _stand_in_for_closed_streams() -> io.StringIO | None:
 
 
 def _flush() -> None:
-    """Hand over what was printed; a full disk behind it shows here."""
+    """Flush standard output; an error such as a full disk is raised here."""
     try:
         sys.stdout.flush()
     except OSError:
@@ -116,7 +115,7 @@ def _flush() -> None:
 
 
 def _print_nowhere() -> None:
-    """Discard what is still to be printed: its reader has gone (| head), or its disk is full."""
+    """Redirect standard output to the null device, after its reader has ended (| head) or its disk is full."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -125,43 +124,43 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
 
     Args:
         parser: with the option --debug.
-        job: as of `run_command`, given the options; in addition to those of the parser `words`, the arguments, and
-            `held`, what is released when the command ends.
+        job: work of the command with the parsed options; they also have `words`, the arguments, and `held`, an exit
+            stack that is closed when the command ends.
         arguments: without the program name; those of the process by default.
 
     Returns:
-        Exit code, as of `run_command`.
+        Exit code, see `run_command`.
     """
-    given = sys.argv[1:] if arguments is None else list(arguments)
+    typed = sys.argv[1:] if arguments is None else list(arguments)
     if arguments is None:
         begin_process()
 
     def work() -> None:
-        for word in given:
+        for word in typed:
             if "\0" in word:
-                raise ConfigurationError(f"argument {word!r}: holds a NUL byte; no path or value may")
+                raise ConfigurationError(f"argument {word!r}: contains a NUL byte, which is not allowed")
         with ExitStack() as held:
-            job(parser.parse_args(given, argparse.Namespace(words=given, held=held)))
+            job(parser.parse_args(typed, argparse.Namespace(words=typed, held=held)))
 
-    # Looked for by hand: a failure to parse must show its traceback too.
-    return run_command(work, debug="--debug" in given)
+    # Not from the parsed options: --debug also applies to an error of the parser.
+    return run_command(work, debug="--debug" in typed)
 
 
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:
-    """The `main` of a command: given its arguments (of the process by default) it returns the exit code.
+    """Return the `main` function of a command, which takes the arguments and returns the exit code.
 
     Args:
-        parser: makes its parser.
-        job: as of `parse_and_run`.
+        parser: function that returns the parser.
+        job: work of the command, see `parse_and_run`.
     """
     return lambda arguments=None: parse_and_run(parser(), job, arguments)
 
 
 FAULT = "a fault of the program"
-"""What every error begins with that no one has foreseen."""
+"""Beginning of the message of an unexpected error."""
 
 _asked_to_end = threading.Event()
-"""Set by a signal. The exception alone can be lost: a compiler that is called back from C swallows it."""
+"""Set by SIGINT and SIGTERM: a KeyboardInterrupt can be lost in a Python callback that C code calls."""
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
@@ -174,15 +173,15 @@ def _say(message: str) -> None:
 
 
 class ProgressLine:
-    """Tells how far a long piece of work is: a line that moves on a terminal, else a new line every half minute.
+    """Progress of a long computation: a bar on a terminal, a new line every half minute in a file.
 
     Args:
-        what: name of the work.
-        enabled: False keeps it silent.
+        what: name of the computation.
+        enabled: False prints nothing.
     """
 
-    def __init__(self, what: str, *, enabled: bool = True) -> None:
-        self.what = what
+    def __init__(self, work: str, *, enabled: bool = True) -> None:
+        self.what = work
         self.enabled = enabled
         self.moving = sys.stderr.isatty()
         self.started = time.monotonic()
@@ -190,12 +189,12 @@ class ProgressLine:
         self.first: tuple[float, float] | None = None
 
     def __call__(self, fraction: float) -> None:
-        """Show a fraction [-]. The place where a lost interruption is noticed."""
+        """Print a finished fraction [-]; raise KeyboardInterrupt after a lost interruption."""
         if _asked_to_end.is_set():
             raise KeyboardInterrupt
         now = time.monotonic()
         if self.first is None:
-            self.first = (now, fraction)  # what was compiled and read before is no measure of what follows
+            self.first = (now, fraction)  # the time left is estimated without compiling and reading
         due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
         if not (self.enabled and due):
             return
@@ -212,4 +211,4 @@ class ProgressLine:
 
 
 MOVING_EVERY, LINE_EVERY = 0.2, 30.0
-"""Time between two signs of progress on a terminal and elsewhere [s]."""
+"""Minimum time between two outputs on a terminal and in a file [s]."""

@@ -1,4 +1,4 @@
-"""`python -m vehicle compare RUN_OR_INPUT --measured FILE`: a measurement beside a run, worst first."""
+"""`python -m vehicle compare RUN_OR_INPUT --measured FILE`: compare a measurement with a run."""
 
 from __future__ import annotations
 
@@ -31,27 +31,27 @@ CAR, RUN = "the car", "the run"
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
+    parser.add_argument(
         "run",
         nargs="?",
         metavar="RUN_OR_INPUT",
         help="folder of a run; or an input, as low.csv, which is put on the shaker; not needed for mode shapes",
     )
-    measured_options(found, required=True, several=True)
-    records = found.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
+    measured_options(parser, required=True, several=True)
+    records = parser.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
     records.add_argument(
         "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
     )
     drift_option(records)
-    responses = found.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
+    responses = parser.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
     responses.add_argument(
         "--window",
         type=float,
         metavar="S",
-        help="length of the Hann windows that the measured responses were averaged over [s]; the simulated ones are "
-        "then estimated alike; by default a local rational model of the whole record",
+        help="length of the Hann windows that the measured responses were averaged over [s]; the simulated "
+        "responses are estimated in the same way; by default a local rational model of the whole record",
     )
     responses.add_argument(
         "--bands",
@@ -59,7 +59,7 @@ def parser() -> Parser:
         metavar="HZ,HZ,...",
         help="edges of the bands of the table [Hz]; %(default)s",
     )
-    shapes = found.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
+    shapes = parser.scoped_group(SHAPES, needs="measured mode shapes; the file holds none", active=None)
     shapes.add_argument(
         "--damper",
         choices=("stuck", "sliding"),
@@ -67,22 +67,24 @@ def parser() -> Parser:
         help="state of the dampers, for modes; stuck by default",
     )
     record_options(
-        found.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None),
+        parser.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None),
         "",
         channel=False,
     )
     vehicle_options(
-        found.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
+        parser.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
     )
-    engine_option(found.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto")
-    output_options(found, OUTPUT)
-    found.add_argument("--json", action="store_true", help="print the content of compare.json")
-    message_options(found, quiet=True)
-    return found
+    engine_option(
+        parser.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto"
+    )
+    output_options(parser, OUTPUT)
+    parser.add_argument("--json", action="store_true", help="print the content of compare.json")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def drift_option(parser: argparse._ActionsContainer) -> None:
-    """Add --drift: the clock of a measurement against that of the run."""
+    """Add --drift, the drift of the clock of a measurement against that of the run."""
     parser.add_argument(
         "--drift",
         type=float,
@@ -94,13 +96,13 @@ def drift_option(parser: argparse._ActionsContainer) -> None:
 
 
 def clock_of(options: argparse.Namespace) -> tuple[float, float]:
-    """Return --delay [s] and --drift as a share [-].
+    """Return --delay [s] and --drift [-].
 
     Args:
-        options: of a command with both.
+        options: parsed options of a command with both.
 
     Raises:
-        ConfigurationError: a number that is not finite, or a drift of more than a tenth.
+        ConfigurationError: a value is not finite, or the drift exceeds 0.1.
     """
     from vehicle.runs.comparison.compared_run import require_clock
     from vehicle.signals.records.counterpart import PARTS
@@ -111,19 +113,19 @@ def clock_of(options: argparse.Namespace) -> tuple[float, float]:
 
 
 def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
-    """Add --measured, --map and --turn: which measurement, and which of its channels is which.
+    """Add --measured, --map and --turn, which choose a measurement and its channels.
 
     Args:
-        parser: of the command.
-        required: whether it is nothing without a measurement.
-        several: --measured takes several files or a folder; then its value is a list.
+        parser: parser of the command.
+        required: True if the command needs a measurement.
+        several: True if --measured accepts several files or a folder; its value is then a list.
     """
-    many: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
+    several_files: dict[str, Any] = {"nargs": "+", "action": "extend"} if several else {}
     parser.add_argument(
         "--measured",
         type=Path,
         required=required,
-        **many,
+        **several_files,
         metavar="FILE",
         help="measurement file of any format of `inspect`, with responses, time histories, or mode shapes (UFF 55)"
         + (
@@ -143,14 +145,14 @@ def measured_options(parser: Parser, *, required: bool = False, several: bool = 
 
 
 def mapping_options(parser: argparse._ActionsContainer) -> None:
-    """Add --map and --turn: which channels of a measurement are which."""
+    """Add --map and --turn, the channels of a measurement and their directions."""
     parser.add_argument(
         "--map",
         dest="mapping",
         action="append",
         default=[],
         metavar="CHANNEL=NAME",
-        help='channel of the model and the one that measured it, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
+        help='channel of the model and its measured channel, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
         "pattern with *, or place and direction; for mode shapes PLACE=NODE; by default equal names, and for modes "
         "nodes at the places of the car; may be repeated",
     )
@@ -160,16 +162,16 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         action="append",
         default=[],
         metavar="CHANNEL",
-        help="this channel was measured in the other direction; may be repeated",
+        help="channel measured in the opposite direction; may be repeated",
     )
 
 
-def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> Choice:
-    """What the options ask of the measurement.
+def measured_choice(options: argparse.Namespace, input_names: Container[str] = ()) -> Choice:
+    """Return the choice of channels and units of the measurement.
 
     Args:
-        options: of the command.
-        taken: names whose units are of another file.
+        options: parsed options of the command.
+        input_names: names of --unit that belong to the input.
 
     Raises:
         ConfigurationError: a channel twice, an unknown unit, a number out of range.
@@ -179,10 +181,10 @@ def measured_choice(options: argparse.Namespace, taken: Container[str] = ()) -> 
     channels = pairs("--map", options.mapping, "")
     if "" in channels:
         raise ConfigurationError(f"--map {channels['']}: needed is CHANNEL=NAME, as knuckle_fr_acc_z=3")
-    units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in taken}
-    own = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
-    own["databases"] = tuple(options.databases)
-    return Choice(channels=channels, units=units, **(own if hasattr(options, "delay") else {}))
+    units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in input_names}
+    settings = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
+    settings["databases"] = tuple(options.databases)
+    return Choice(channels=channels, units=units, **(settings if hasattr(options, "delay") else {}))
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -192,17 +194,17 @@ def _job(options: argparse.Namespace) -> None:
 
     def one(name: str) -> dict[str, Any]:
         file = Path(name)
-        alone = sum(Path(other).stem == file.stem for other in names) == 1
-        output = whole / (file.stem if alone else file.name) if several else whole
+        unique = sum(Path(other).stem == file.stem for other in names) == 1
+        output = whole / (file.stem if unique else file.name) if several else whole
         summary, said = _compared(argparse.Namespace(**{**vars(options), "measured": file}), output)
         return {"summary": summary, "text": f"{said}\nfiles: {output}"}
 
     if not several:
-        found = one(names[0])
+        result = one(names[0])
         if options.json:
-            print(json.dumps(found["summary"], indent=2, allow_nan=False))
+            print(json.dumps(result["summary"], indent=2, allow_nan=False))
         elif not options.quiet:
-            print(found["text"])
+            print(result["text"])
         return
     results, errors = each_file(names, one)
     if options.json:
@@ -214,7 +216,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _overview(results: list[dict[str, Any]]) -> str:
-    """Return one line for each channel of each file: FRAC of responses; RMS ratio and correlation of time histories."""
+    """Return the table of several files, a line for each channel: FRAC; RMS ratio and correlation."""
     rows: list[tuple[str, ...]] = []
     for result in results:
         if "error" in result:
@@ -222,19 +224,19 @@ def _overview(results: list[dict[str, Any]]) -> str:
             continue
         summary = result["summary"]
         keys = (("responses", "frac", ""), ("records", "rms_ratio", "correlation"))
-        for kind, first, second in keys:
-            for channel in summary.get(kind, ()):
+        for section, first, second in keys:
+            for channel in summary.get(section, ()):
                 values = [channel.get(key) if key else None for key in (first, second)]
                 cells = ["-" if value is None else f"{value:.4g}" for value in values]
-                rows.append((result["input"], channel["channel"], kind[:-1], *cells))
+                rows.append((result["input"], channel["channel"], section[:-1], *cells))
     return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), rows)
 
 
 def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any], str]:
-    """Compare one measurement, write its folder, and return the summary with its text.
+    """Compare one measurement, write the results, and return the summary and its text.
 
     Args:
-        options: of the command, with `measured` the file.
+        options: parsed options of the command; `measured` is the file.
         output: folder of the results.
     """
     from vehicle.runs.comparison.compared_run import compare_run
@@ -254,8 +256,8 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         if options.run is None:
             raise ConfigurationError("needed is RUN_OR_INPUT: the folder of a run, or an input as low.csv")
         refuse_idle(options, SHAPES)
-        run, known = _run(options, measurement, choice)
-        measured = _measured(options, known, choice, measurement)
+        run, channels = _run(options, measurement, choice)
+        measured = _measured(options, channels, choice, measurement)
         if measured.frf is None:
             refuse_idle(options, RESPONSES)
         if measured.record is None:
@@ -267,31 +269,35 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
 
 
 def _measured(
-    options: argparse.Namespace, known: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
+    options: argparse.Namespace, channels: tuple[str, ...], choice: Choice, measurement: Measurement | None = None
 ) -> Measured:
     from vehicle.signals.records.measured import read_measured
 
     window = getattr(options, "window", None)
-    return read_measured(options.measured, known, choice, turned=options.turned, window=window, measurement=measurement)
+    return read_measured(
+        options.measured, channels, choice, inverted=options.turned, window=window, measurement=measurement
+    )
 
 
-def measured_beside(options: argparse.Namespace, known: tuple[str, ...], taken: Container[str] = ()) -> Measured | None:
-    """The measurement that a run shall stand beside, read before the run; None where none is asked for.
+def measured_beside(
+    options: argparse.Namespace, channels: tuple[str, ...], input_names: Container[str] = ()
+) -> Measured | None:
+    """Read the measurement of --measured before the run; return None without --measured.
 
     Args:
-        options: with those of `measured_options`.
-        known: names of the channels of the run.
-        taken: names whose units are of the input.
+        options: parsed options, with those of `measured_options`.
+        channels: names of the channels of the run.
+        input_names: names of --unit that belong to the input.
     """
     if options.measured is None:
         return None
-    return _measured(options, known, measured_choice(options, taken))
+    return _measured(options, channels, measured_choice(options, input_names))
 
 
 def _run(
     options: argparse.Namespace, measurement: Measurement, choice: Choice
 ) -> tuple[Run | Simulated, tuple[str, ...]]:
-    """Return the run, simulated where an input is given, and the names of its channels."""
+    """Return the run and the names of its channels; an input is simulated first."""
     from vehicle.runs.comparison.simulated import of_folder
 
     folder = Path(options.run)
@@ -305,9 +311,9 @@ def _run(
     from vehicle.signals.excitation.signal_file import read_signal
 
     car = Car.load(options.vehicle, options.overrides)
-    known = (*car.vehicle.channels, *car.vehicle.load_channels)
+    channels = (*car.vehicle.channels, *car.vehicle.load_channels)
     signal = read_signal(find_input(options.run), wheel=car.vehicle.shaker_wheel)
-    asked = _measured(options, known, choice, measurement)  # refused before anything is simulated
+    asked = _measured(options, channels, choice, measurement)  # refused before anything is simulated
     loads = {*(asked.record.channels if asked.record else ())} - set(car.vehicle.channels)
     run = car.run(
         signal,
@@ -315,39 +321,42 @@ def _run(
         engine=options.engine,
         channels=(*car.vehicle.channels, *sorted(loads)) if loads else None,
     )
-    return run, known
+    return run, channels
 
 
 def _modes(
     options: argparse.Namespace, output: Path, measurement: Measurement, choice: Choice
 ) -> tuple[dict[str, Any], str]:
-    """Mode shapes beside those of the car."""
+    """Compare measured mode shapes with those of the car, write the results, and return summary and text."""
     from vehicle.runs.comparison.mode_comparison import compare_modes
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_json, write_whole
 
     car = _car(options)
-    found, tyres = compare_modes(car, measurement, dict(choice.channels), options.damper), car.vehicle.driving.words
-    name = measurement.path.name
-    summary = found.summary(name)
-    caption = (
-        f"{name} at {len(found.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and columns "
-        "by frequency"
+    comparison, tyres = (
+        compare_modes(car, measurement, dict(choice.channels), options.damper),
+        car.vehicle.driving.words,
     )
-    rows, columns = ([one.frequency for one in those] for those in (found.measured, found.simulated))
+    name = measurement.path.name
+    summary = comparison.summary(name)
+    caption = (
+        f"{name} at {len(comparison.points)} points of the car, dampers {options.damper}, tyres {tyres}; rows and "
+        "columns by frequency"
+    )
+    rows, columns = ([mode.frequency for mode in those] for those in (comparison.measured, comparison.simulated))
     tables = (
-        ("measured (rows), simulated (columns)", found.mac, rows, columns),
-        ("AutoMAC of the measured modes", found.measured_auto, rows, rows),
-        ("AutoMAC of the simulated modes", found.simulated_auto, columns, columns),
+        ("measured (rows), simulated (columns)", comparison.mac, rows, columns),
+        ("AutoMAC of the measured modes", comparison.measured_auto, rows, rows),
+        ("AutoMAC of the simulated modes", comparison.simulated_auto, columns, columns),
     )
     with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
         write_json(folder / "compare.json", summary)
         write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
-    return summary, found.text(name)
+    return summary, comparison.text(name)
 
 
 def _car(options: argparse.Namespace) -> Car:
-    """The car of a run, or of the options."""
+    """Return the car of a run, or that of the options."""
     from vehicle.runs.car import Car
 
     file = options.vehicle

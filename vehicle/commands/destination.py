@@ -1,4 +1,4 @@
-"""Where the results of a command go, as of --output and --force; chosen and locked before anything is computed."""
+"""Destination of the results from --output and --force; chosen and locked before anything is computed."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tup
     """Choose the folder of the results.
 
     Args:
-        options: as of `output_options`.
-        default: folder without --output; where it exists, the next free name is taken, and said.
+        options: parsed options of `output_options`.
+        default: folder without --output; if it exists, the next free name is taken, with a notice.
         protect: input files; a folder that holds one of them is never replaced.
 
     Returns:
         The folder, locked until the command ends.
 
     Raises:
-        ConfigurationError: a folder that is named exists without --force, or holds files that no run wrote.
+        ConfigurationError: the folder of --output exists, and --force is missing or it contains files of the user.
         OutputError: it cannot be written.
     """
-    from vehicle.runs.output.destination import free_folder, named
+    from vehicle.runs.output.free_names import free_folder, named
 
     if is_named(options) or options.force:
         return named(
@@ -33,21 +33,21 @@ def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tup
 
 
 def prepared_folder_of(options: argparse.Namespace, default: Path, *, rows: str = "") -> Path:
-    """Choose and make the folder of a study, a sweep or a search, whose files are written one after the other.
+    """Choose and make the folder of a study, a sweep or a search, which write their files step by step.
 
     Args:
-        options: as of `output_options`, and `resume_options` where the command can go on.
-        default: as of `output_folder_of`.
-        rows: as of `prepare_folder`.
+        options: parsed options of `output_options`, and of `resume_options` if the command has them.
+        default: folder without --output, see `output_folder_of`.
+        rows: name of the file of finished rows, see `prepare_folder`.
 
     Returns:
         The folder, locked until the command ends.
 
     Raises:
-        ConfigurationError, OutputError: as of `prepare_folder`.
+        ConfigurationError, OutputError: see `prepare_folder`.
     """
-    from vehicle.runs.output.destination import free_folder
     from vehicle.runs.output.folder import claim, prepare_folder
+    from vehicle.runs.output.free_names import free_folder
 
     resume = getattr(options, "resume", False)
     if is_named(options) or options.force or resume:
@@ -59,23 +59,22 @@ def prepared_folder_of(options: argparse.Namespace, default: Path, *, rows: str 
 
 
 def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[str]) -> list[Path]:
-    """Choose the files that a command adds to a folder which holds others.
+    """Choose the files that a command adds to a folder with other files.
 
     Args:
-        options: as of `output_options`.
-        folder: without --output; where a file of a name exists there, all names get the next free number, and that is
-            said.
+        options: parsed options of `output_options`.
+        folder: folder without --output; if one of the files exists, all get the next free number, with a notice.
         names: of the files.
 
     Returns:
         The files, locked until the command ends.
 
     Raises:
-        ConfigurationError: a file exists in a folder that is named, without --force; or no run wrote it.
+        ConfigurationError: a file exists in the folder of --output, and --force is missing or it is of the user.
         OutputError: the folder cannot be written.
     """
-    from vehicle.runs.output.destination import free_files
     from vehicle.runs.output.folder import check_files, claim
+    from vehicle.runs.output.free_names import free_files
 
     if is_named(options) or options.force:
         folder = options.output if is_named(options) else folder
@@ -90,15 +89,15 @@ def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[s
 def output_file_of(
     options: argparse.Namespace, default: Path, *, ending: str = "", protect: tuple[Path, ...] = ()
 ) -> Path:
-    """Choose the file of the results; arguments, result and errors as of `output_folder_of`.
+    """Choose the file of the results; return value and errors are those of `output_folder_of`.
 
     Args:
-        options: as of `output_options`.
-        default: file without --output; where it exists, the next free name is taken, and said.
-        ending: that the name must have.
-        protect: input files, which are never replaced.
+        options: parsed options of `output_options`.
+        default: file without --output; if it exists, the next free name is taken, with a notice.
+        ending: required ending of the name.
+        protect: input files; they are never replaced.
     """
-    from vehicle.runs.output.destination import free_file, named_file
+    from vehicle.runs.output.free_names import free_file, named_file
 
     if is_named(options) or options.force:
         path = options.output if is_named(options) else default
@@ -112,7 +111,7 @@ def is_named(options: argparse.Namespace) -> bool:
 
 
 def _said(options: argparse.Namespace, default: Path, chosen: Path) -> Path:
-    """Tell on the console of a name that is not the default one."""
+    """Print a notice if the chosen path is not the default; return the chosen path."""
     if chosen != default and not getattr(options, "quiet", False):
         print(f"notice: {default} exists; writing {chosen} (--force replaces {default})", file=sys.stderr)
     return chosen

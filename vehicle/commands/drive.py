@@ -1,4 +1,4 @@
-"""`python -m vehicle drive`: the plate signals that make the car answer with measured accelerations, as a file."""
+"""`python -m vehicle drive`: drive signals of the plates that reproduce measured accelerations."""
 
 from __future__ import annotations
 
@@ -22,65 +22,69 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("drive", "A drive file from a response: the plates that make the car answer as measured.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("drive", "Drive signals of the plates that reproduce measured accelerations.")
+    parser.add_argument(
         "--target", type=Path, required=True, metavar="FILE", help="measured accelerations, of any format of `inspect`"
     )
     record_options(
-        found,
+        parser.add_argument_group("channels of the target"),
         'an acceleration of the car, as knuckle_fr_acc_z="Dof 12 +Z"; the name alone where the file has it, or has '
         "one channel; at least as many channels as plates",
     )
-    vehicle_options(found)
-    found.add_argument(
+    vehicle_options(parser).add_argument(
         "--wheel",
         dest="wheels",
         action="append",
         choices=sorted(CORNERS),
-        help="wheel whose plate is driven; by default those that the names of the channels tell, else that of the "
-        "vehicle file; may be repeated",
+        help="wheel whose plate is driven; by default the wheels in the names of the channels, else the shaker wheel "
+        "of the vehicle file; may be repeated",
     )
-    found.add_argument(
+    iteration = parser.add_argument_group("the iteration")
+    iteration.add_argument(
         "--band",
         default="1:50",
         metavar="A:B",
-        help="frequencies in which the response is met [Hz]; %(default)s by default; begin it where the target holds "
-        "more than the noise of its sensor",
+        help="frequency range of the replication [Hz]; %(default)s by default; begin where the target exceeds "
+        "the noise of its sensor",
     )
-    found.add_argument("--iterations", type=int, default=15, metavar="N", help="runs at most; %(default)s by default")
-    found.add_argument(
+    iteration.add_argument(
+        "--iterations", type=int, default=15, metavar="N", help="maximum number of runs; %(default)s by default"
+    )
+    iteration.add_argument(
         "--gain",
         type=float,
         default=0.8,
         metavar="G",
-        help="share of the correction that a step makes [-], above 0 and up to 1; %(default)s by default",
+        help="iteration gain: applied part of the correction [-], above 0 and up to 1; %(default)s by default",
     )
-    found.add_argument(
+    iteration.add_argument(
         "--target-error",
         type=float,
         default=0.1,
         metavar="PERCENT",
-        help="end where the RMS of the error in the band falls below this share of the target's [%%]; %(default)s",
+        help="stop if the RMS error in the band is below this part of the RMS of the target [%%]; %(default)s",
     )
-    found.former("--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT")
-    engine_option(found, "auto")
-    output_options(found, None, default="runs/drive_<name of the target>")
-    message_options(found, quiet=True)
-    return found
+    parser.former(
+        "--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT"
+    )
+    engine_option(iteration, "auto")
+    output_options(parser, None, default="runs/drive_<name of the target>")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
     from vehicle.studies.replication.drive_files import save_drive
-    from vehicle.studies.replication.found_drive import replicate_drive, require_iteration
+    from vehicle.studies.replication.drive_search import replicate_drive, require_iteration
 
     inputs = tuple(path for path in (options.target, options.vehicle) if path is not None)
     band, target_error = _band(options.band), 0.01 * options.target_error
     require_iteration(band, options.iterations, options.gain, target_error)
     output = output_folder_of(options, Path("runs") / f"drive_{options.target.stem}", protect=inputs)
     names, choice = _channels(options)
-    found = replicate_drive(
+    drive = replicate_drive(
         Car.load(options.vehicle, options.overrides),
         options.target,
         names,
@@ -93,13 +97,13 @@ def _job(options: argparse.Namespace) -> None:
         engine=options.engine,
         progress=lambda step: None if options.quiet else _say(step, options.iterations),
     )
-    summary = save_drive(found, output, force=options.force, protect=inputs)
+    summary = save_drive(drive, output, force=options.force, protect=inputs)
     if not options.quiet:
         print(report(summary, output))
 
 
 def _say(step: Step, iterations: int) -> None:
-    """A line for each run, while the next one goes on."""
+    """Print the error of a finished iteration."""
     back = "" if step.kept else ", worse: taken back, half the gain"
     print(
         f"iteration {step.number} of at most {iterations}: error {100.0 * step.error:.3g} %{back}",
@@ -114,36 +118,36 @@ def _band(text: str) -> tuple[float, float]:
     Raises:
         ConfigurationError: the text is not A:B.
     """
-    found = re.fullmatch(r"([\d.]+):([\d.]+)", text)
+    match = re.fullmatch(r"([\d.]+):([\d.]+)", text)
     try:
-        low, high = (float(part) for part in found.groups()) if found else (0.0, 0.0)
+        low, high = (float(part) for part in match.groups()) if match else (0.0, 0.0)
     except ValueError:
         low = high = 0.0
     if not 0.0 < low < high:
-        raise ConfigurationError(f"--band {text}: needed are two frequencies [Hz], the lower one first: 1:50")
+        raise ConfigurationError(f"--band {text}: must be two frequencies [Hz], the lower first, as 1:50")
     return low, high
 
 
 def _channels(options: argparse.Namespace) -> tuple[dict[str, str], Choice]:
-    """Return channel of the car to channel of the file, and what else is asked of the file.
+    """Return the channels, name in the car to name in the file, and the further choice of the file.
 
     Raises:
-        ConfigurationError: no channel, or a role twice.
+        ConfigurationError: no channel, or a channel twice.
     """
     from vehicle.signals.records.choice import Choice
-    from vehicle.studies.replication.found_drive import named_channels
+    from vehicle.studies.replication.drive_search import named_channels
 
-    alone = [text.strip() for text in options.picks if "=" not in text]
+    unnamed = [text.strip() for text in options.picks if "=" not in text]
     options.picks = [f"{text}={text}" if "=" not in text else text for text in options.picks]
     choice = record_choice(options, "") or Choice()
     names = {role: name for role, name in choice.channels.items() if role != "time"}
     if not names:
-        raise ConfigurationError("needed is --channel: the acceleration of the car that was measured")
-    return (named_channels(options.target, alone, choice) if alone == list(names) else names), choice
+        raise ConfigurationError("--channel is missing: set the measured acceleration of the car")
+    return (named_channels(options.target, unnamed, choice) if unnamed == list(names) else names), choice
 
 
 def report(summary: dict[str, Any], output: Path) -> str:
-    """The summary as text."""
+    """Return the printed summary."""
     target, drive = summary["target"], summary["drive"]
     low, high = target["band_hz"]
     errors = ", ".join(f"{name} {100.0 * value:.3g} %" for name, value in summary["errors"].items())

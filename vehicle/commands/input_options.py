@@ -1,4 +1,4 @@
-"""Options of what moves the plates: a file and its channels, or a road; and what they ask for."""
+"""Options of the input: a file of signals with its channels, or a road."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
 
 
-FILE_NEEDS = "--input; a road drives all wheels of the car"
-RECORD_NEEDS = "--input, or a road that was recorded over time (--speed channel:NAME); any other road has none"
+FILE_NEEDS = "--input; a road moves the plates of all wheels"
+RECORD_NEEDS = "--input, or to a road that was recorded over time (--speed channel:NAME)"
 ROAD_NEEDS = "a road, as --road C --speed 80, and not to --input"
-CLASS_NEEDS = "a class of ISO 8608, as C at --speed 80; a file of signals and a measured profile are taken as they are"
+CLASS_NEEDS = "a class of ISO 8608, as --road C --speed 80; a file of signals or a measured profile is used unchanged"
 
 
 def signal_options(parser: Parser, *, several: bool = False) -> argparse._ArgumentGroup:
-    """Add --input, --road and the options of each: which plates move, and how.
+    """Add --input, --road and the options of each.
 
     Args:
-        parser: of the command.
+        parser: parser of the command.
         several: --input, --road and --speed may be repeated; then their values are lists.
 
     Returns:
@@ -42,7 +42,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
         "--road",
         action=action,
         metavar="C|FILE",
-        help="instead of --input, all wheels drive over a road: its class of ISO 8608, A to H, or a measured profile "
+        help="instead of --input, a road under all wheels: a class of ISO 8608, A to H, or a measured profile "
         "(columns distance, left, right [m]; OpenCRG .crg; ERD), or heights over time (--speed channel:NAME)"
         f"{again}",
     )
@@ -71,8 +71,8 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     road.add_argument(
         "--tyre",
         choices=("rolling", "standing"),
-        help="tyres that roll at the speed, as they do by default, or that stand on moving plates, as on a rig; on "
-        "plates the tyres stand, unless --set driving.speed=M/S; the tyres of a car that stands on blocks too stand",
+        help="rolling: tyres roll at the speed, the default on a road; standing: tyres on moving plates, as on a rig, "
+        "the default for a car that is on blocks too; with --input tyres are standing unless --set driving.speed=M/S",
     )
     return group
 
@@ -96,14 +96,14 @@ def record_group(parser: Parser) -> argparse._ArgumentGroup:
 def road_options(
     parser: Parser, on_road: Condition, is_class: Condition, *, several: bool = False, rate_note: str = ""
 ) -> argparse._ArgumentGroup:
-    """Add the numbers of a drive over a road; each is None where it is not given.
+    """Add the numeric options of a road; the default of each is None.
 
     Args:
-        parser: of the command.
+        parser: parser of the command.
         on_road: True if the options contain a road.
         is_class: True if a road is a class of ISO 8608.
         several: --speed may be repeated, once for each road, and --seed; then their values are lists.
-        rate_note: what the help of --rate says in addition, where it acts on a file of signals too.
+        rate_note: addition to the help of --rate, for a command in which it acts on a file of signals too.
 
     Returns:
         The group of the options that act on any road.
@@ -150,7 +150,7 @@ def _listed(value: str | list[str] | None) -> list[str]:
 
 
 def speed_value(text: str) -> float | str:
-    """Return a speed [km/h], or channel:NAME as it stands.
+    """Return a speed [km/h], or the text channel:NAME.
 
     Args:
         text: of the option.
@@ -178,35 +178,35 @@ def speeds_of(options: argparse.Namespace) -> list[float | str]:
 
 
 ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
-"""Options of `road_options`, for a drive that is made without a command line."""
+"""Names of the options of `road_options`."""
 
 
 def drives_on_road(options: argparse.Namespace) -> bool:
     """Return True if a road moves the plates, and False for a file of signals.
 
     Args:
-        options: as of `signal_options`.
+        options: parsed options of `signal_options`.
 
     Raises:
-        ConfigurationError: neither or both are given.
+        ConfigurationError: neither or both are set.
     """
     roads = " ".join(f"--road {road}" for road in _listed(options.road))
     if roads and options.input:
-        raise ConfigurationError(f"{roads} beside --input: give one of them")
+        raise ConfigurationError(f"{roads} and --input: set only one of them")
     if not roads and not options.input:
-        raise ConfigurationError("needed is either --input FILE, or a road: --road C --speed 80")
+        raise ConfigurationError("set --input FILE, or a road: --road C --speed 80")
     return bool(roads)
 
 
 def record_options(
     parser: argparse._ActionsContainer, roles: str, *, channel: bool = True, rate: bool = True, unit: bool = True
 ) -> None:
-    """Add the choice of channels, units and times in a measurement file.
+    """Add the options that choose channels, units and times in a measurement file.
 
     Args:
         parser: of the command, or the group of the options that act on the file.
-        roles: what a channel is chosen for, in words, with an example.
-        channel, rate, unit: False where the command has such an option of its own.
+        roles: purpose of a channel in words with an example, for the help.
+        channel, rate, unit: False leaves out the option of this name.
     """
     if channel:
         parser.add_argument(
@@ -241,14 +241,14 @@ def record_options(
 
 
 def unit_option(parser: argparse._ActionsContainer) -> None:
-    """Add --unit: the units of the channels of a file."""
+    """Add --unit, the units of the channels of a file."""
     parser.add_argument(
         "--unit",
         dest="units",
         action="append",
         default=[],
         metavar="[ROLE=]UNIT",
-        help="unit of the chosen channels, or of one, where the file tells none or a wrong one, as mm or g; may be "
+        help="unit of the chosen channels, or of one, if the file has no unit or a wrong unit, as mm or g; may be "
         "repeated",
     )
 
@@ -267,12 +267,12 @@ def database_option(parser: argparse._ActionsContainer) -> None:
 
 
 def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...] = ()) -> Choice | None:
-    """What the options of `record_options` ask for; None for nothing.
+    """Return the choice of the options of `record_options`; None if none of them is set.
 
     Args:
-        options: of the command.
-        role: of a channel or a unit that names none.
-        known: roles of units whose channels are named elsewhere.
+        options: parsed options of the command.
+        role: role of a channel without ROLE=.
+        known: further roles that --unit may name.
 
     Raises:
         ConfigurationError: a role twice, a unit that is not known, a number out of range.
@@ -285,7 +285,7 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
     unknown = next((name for name in asked if name not in units), None)
     if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
         raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")
-    found = Choice(
+    choice = Choice(
         channels=channels,
         units=units,
         rate=options.rate,
@@ -296,4 +296,4 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
         databases=tuple(options.databases),
         resample=options.resample,
     )
-    return None if found.empty else found
+    return None if choice.empty else choice

@@ -1,4 +1,4 @@
-"""`python -m vehicle inspect FILE...`: what measurement files hold, and the whole command to type for a file."""
+"""`python -m vehicle inspect FILE...`: channels of measurement files, and a complete command for each file."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ SHOWN = 60
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("inspect", "List the channels of a measurement file: names, units, rates, levels.")
+    parser.add_argument(
         "files",
         nargs="+",
         metavar="FILE",
         help="of any format, recognised by its content; a shipped input; or a folder; several give one table",
     )
-    database_option(found)
-    found.add_argument("--json", action="store_true", help="print JSON")
-    message_options(found)
-    return found
+    database_option(parser)
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    message_options(parser)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -47,8 +47,8 @@ def _job(options: argparse.Namespace) -> None:
 
     names, several = expanded(options.files)
     if not several:
-        found = one(names[0])
-        print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+        result = one(names[0])
+        print(json.dumps(result, indent=2, allow_nan=False) if options.json else report(result))
         return
     results, errors = each_file(names, one)
     print(json.dumps(results, indent=2, allow_nan=False) if options.json else overview(results), flush=True)
@@ -57,7 +57,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def overview(results: list[dict[str, Any]]) -> str:
-    """Return one line for each file, and the command of each.
+    """Return the table of several files and the command for each.
 
     Args:
         results: contents of each file, or its error.
@@ -68,9 +68,9 @@ def overview(results: list[dict[str, Any]]) -> str:
             rows.append((result["input"], result["error"]))
             continue
         channels = result["channels"]
-        rates = list(dict.fromkeys(f"{one['rate_hz']:.6g}" for one in channels if one.get("rate_hz")))
-        lengths = [one["samples"] / one["rate_hz"] for one in channels if one.get("rate_hz")]
-        quantities = list(dict.fromkeys(one["quantity"] or "?" for one in channels))
+        rates = list(dict.fromkeys(f"{channel['rate_hz']:.6g}" for channel in channels if channel.get("rate_hz")))
+        lengths = [channel["samples"] / channel["rate_hz"] for channel in channels if channel.get("rate_hz")]
+        quantities = list(dict.fromkeys(channel["quantity"] or "?" for channel in channels))
         rows.append(
             (
                 result["input"],
@@ -87,10 +87,14 @@ def overview(results: list[dict[str, Any]]) -> str:
 
 
 def contents(measurement: Measurement) -> dict[str, Any]:
-    """A file in plain numbers and texts; levels in SI, or as found where the unit is open."""
+    """Return the content of a file as plain numbers and texts; levels in SI units, or in the file's if unknown."""
     from vehicle.signals.records.clock import time_remarks
 
-    axes = {id(one.axis): one.axis for one in measurement.channels if one.kind == "time" and one.axis is not None}
+    axes = {
+        id(channel.axis): channel.axis
+        for channel in measurement.channels
+        if channel.kind == "time" and channel.axis is not None
+    }
     remarks = [text for axis in axes.values() for text in time_remarks(axis)]
     return {
         "file": measurement.path.name,
@@ -98,18 +102,18 @@ def contents(measurement: Measurement) -> dict[str, Any]:
         "program": measurement.program,
         "start": measurement.start,
         "sha256": measurement.sha256,
-        "channels": [_channel(number, one) for number, one in enumerate(measurement.channels, 1)],
+        "channels": [_channel(number, channel) for number, channel in enumerate(measurement.channels, 1)],
         "modes": [
             {
-                "number": one.number,
-                "name": one.name,
-                "frequency_hz": one.frequency,
-                "damping_ratio": one.damping_ratio,
-                "modal_mass": one.modal_mass or None,
-                "complex": one.is_complex,
-                "points": len(one.points),
+                "number": shape.number,
+                "name": shape.name,
+                "frequency_hz": shape.frequency,
+                "damping_ratio": shape.damping_ratio,
+                "modal_mass": shape.modal_mass or None,
+                "complex": shape.is_complex,
+                "points": len(shape.points),
             }
-            for one in measurement.shapes
+            for shape in measurement.shapes
         ],
         "points": {name: list(at) for name, at in measurement.geometry.points.items()},
         "lines": len(measurement.geometry.lines),
@@ -121,9 +125,9 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
     import numpy as np
 
     values = channel.si_values
-    known = np.abs(values[np.isfinite(values)]) if np.iscomplexobj(values) else values[np.isfinite(values)]
-    largest = float(np.abs(known).max()) if known.size else 0.0
-    level = 0.0 if known.size else None
+    finite = np.abs(values[np.isfinite(values)]) if np.iscomplexobj(values) else values[np.isfinite(values)]
+    largest = float(np.abs(finite).max()) if finite.size else 0.0
+    level = 0.0 if finite.size else None
     axis = {"rate_hz": channel.rate} if channel.kind == "time" else {"lines": channel.values.size}
     start = None if channel.axis is None or not channel.axis.size else float(channel.axis[0])
     return {
@@ -136,9 +140,9 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
         **axis,
         "samples": channel.values.size,
         "start_s" if channel.kind == "time" else "start_hz": start,
-        "rms": largest * float(np.sqrt(np.mean(np.square(known / largest)))) if largest else level,
-        "min": float(known.min()) if known.size else None,
-        "max": float(known.max()) if known.size else None,
+        "rms": largest * float(np.sqrt(np.mean(np.square(finite / largest)))) if largest else level,
+        "min": float(finite.min()) if finite.size else None,
+        "max": float(finite.max()) if finite.size else None,
         "place": channel.place,
         "direction": channel.direction,
         "reference": channel.reference,
@@ -146,55 +150,57 @@ def _channel(number: int, channel: Channel) -> dict[str, Any]:
     }
 
 
-def report(found: dict[str, Any]) -> str:
-    """Return the table as text; levels in the unit of the file.
+def report(content: dict[str, Any]) -> str:
+    """Return the table of channels as text; levels in the units of the file.
 
     Args:
-        found: of `contents`, with the command.
+        content: of `contents`, with the command.
     """
     from vehicle.signals.records.units import find_ratio
 
-    about = [f"{found['file']}: {found['format']}, {(count := len(found['channels']))} channel{'s' * (count != 1)}"]
-    about += [found[key] for key in ("program", "start") if found[key]]
-    width = max([4, *(len(one["name"]) for one in found["channels"])])
+    lines = [
+        f"{content['file']}: {content['format']}, {(count := len(content['channels']))} channel{'s' * (count != 1)}"
+    ]
+    lines += [content[key] for key in ("program", "start") if content[key]]
+    width = max([4, *(len(channel["name"]) for channel in content["channels"])])
     width = min(width, 40)
-    lines = ["; ".join(about), f"sha256 {found['sha256']}"]
-    if not found["channels"]:
-        lines.append(f"no channels; {len(found['points'])} nodes, {len(found['modes'])} mode shapes")
+    lines = ["; ".join(lines), f"sha256 {content['sha256']}"]
+    if not content["channels"]:
+        lines.append(f"no channels; {len(content['points'])} nodes, {len(content['modes'])} mode shapes")
     else:
         lines.append(
             f"{'no':>4}  {'name':<{width}}  {'unit':<10} {'rate [Hz]':>11} {'samples':>9} {'RMS':>11} {'lowest':>11} "
             f"{'highest':>11}  place"
         )
-    for one in found["channels"][:SHOWN]:
-        unit = find_ratio(one["unit"])
+    for channel in content["channels"][:SHOWN]:
+        unit = find_ratio(channel["unit"])
         factor = 1.0 if unit is None else unit.factor
-        numbers = ["-" if one[key] is None else f"{one[key] / factor:.4g}" for key in ("rms", "min", "max")]
-        rate = one.get("rate_hz")
-        axis = f"{rate:.6g}" if rate is not None else "lines" if "lines" in one else "-"
-        place = " ".join(text for text in (one["place"], one["direction"], one["reference"]) if text)
+        numbers = ["-" if channel[key] is None else f"{channel[key] / factor:.4g}" for key in ("rms", "min", "max")]
+        rate = channel.get("rate_hz")
+        axis = f"{rate:.6g}" if rate is not None else "lines" if "lines" in channel else "-"
+        point = " ".join(text for text in (channel["place"], channel["direction"], channel["reference"]) if text)
         lines.append(
-            f"{one['number']:>4}  {one['name'][:width]:<{width}}  {one['unit'] or '?':<10} {axis:>11} "
-            f"{one['samples']:>9} {numbers[0]:>11} {numbers[1]:>11} {numbers[2]:>11}  {place}"
+            f"{channel['number']:>4}  {channel['name'][:width]:<{width}}  {channel['unit'] or '?':<10} {axis:>11} "
+            f"{channel['samples']:>9} {numbers[0]:>11} {numbers[1]:>11} {numbers[2]:>11}  {point}"
         )
-        if one["remark"]:
-            lines.append(f"{'':>6}{one['remark']}")
-    if len(found["channels"]) > SHOWN:
-        lines.append(f"{'':>6}{len(found['channels']) - SHOWN} more; --json lists all")
-    if found["modes"]:
+        if channel["remark"]:
+            lines.append(f"{'':>6}{channel['remark']}")
+    if len(content["channels"]) > SHOWN:
+        lines.append(f"{'':>6}{len(content['channels']) - SHOWN} more; --json lists all")
+    if content["modes"]:
         lines.append(f"{'mode':>6} {'[Hz]':>10} {'damping':>9} {'modal mass':>12} {'points':>7}")
-    for one in found["modes"]:
-        mass = "-" if one["modal_mass"] is None else f"{one['modal_mass']:.5g} kg"
-        kind = " complex" if one["complex"] else ""
+    for mode in content["modes"]:
+        mass = "-" if mode["modal_mass"] is None else f"{mode['modal_mass']:.5g} kg"
+        complex_note = " complex" if mode["complex"] else ""
         lines.append(
-            f"{one['number']:>6} {one['frequency_hz']:>10.4f} {100 * one['damping_ratio']:>7.2f} % {mass:>12} "
-            f"{one['points']:>7}{kind}  {one['name']}"
+            f"{mode['number']:>6} {mode['frequency_hz']:>10.4f} {100 * mode['damping_ratio']:>7.2f} % {mass:>12} "
+            f"{mode['points']:>7}{complex_note}  {mode['name']}"
         )
-    lines += [f"notice: {text}" for text in found["notices"]]
-    if found["command"]:
-        lines += [f"{found['command_reason']}:", f"  {found['command']}"]
+    lines += [f"notice: {text}" for text in content["notices"]]
+    if content["command"]:
+        lines += [f"{content['command_reason']}:", f"  {content['command']}"]
     else:
-        lines.append(f"no command: {found['command_reason']}")
+        lines.append(f"no command: {content['command_reason']}")
     return "\n".join(lines)
 
 

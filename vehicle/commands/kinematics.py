@@ -1,4 +1,4 @@
-"""`python -m vehicle kinematics`: kinematics and compliance of an axle, as on a rig that lifts the wheels."""
+"""`python -m vehicle kinematics`: kinematics and compliance (K&C) of an axle."""
 
 from __future__ import annotations
 
@@ -25,54 +25,54 @@ MOST_POSITIONS = 2001
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("kinematics", "Camber, toe, track and loads of an axle over wheel travel and load.")
-    vehicle_options(found)
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("kinematics", "Camber, toe, track and loads of an axle over wheel travel and load.")
+    vehicle_options(parser)
+    parser.add_argument(
         "--axle", default="front", metavar="NAME", help="table of the vehicle file; %(default)s by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--travel",
         default="-50:50:5",
         metavar="A:B[:STEP]",
         help="of the wheel centres [mm], upwards; %(default)s by default",
     )
-    found.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
-    loads = found.scoped_group(
+    parser.add_argument("--opposite", action="store_true", help="the left wheel goes down where the right one goes up")
+    loads = parser.scoped_group(
         "loads on the wheels",
         needs="bushings that yield, and --ideal makes ideal joints of them; leave one of the two out",
         active=lambda options: not options.ideal,
     )
-    for name, what in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
+    for name, quantity in (("contact-force", "force [N]"), ("moment", "moment [N m]")):
         loads.add_argument(
             f"--{name}",
             action="append",
             default=[],
             metavar="AXIS=VALUE",
-            help=f"{what} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
+            help=f"{quantity} on both wheels at their contact points, in the axes of the car (x to the rear, y to the "
             "right, z up), as x=1000; with --opposite against each other; may be repeated",
         )
-    found.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
-    found.add_argument(
+    parser.add_argument("--ideal", action="store_true", help="every bushing an ideal joint: kinematics alone")
+    parser.add_argument(
         "--tyre",
         choices=("rolling", "standing"),
         default="rolling",
-        help="patches that roll freely, or that stand, with the horizontal force and torque with which the car was set "
-        "down; %(default)s by default",
+        help="rolling: contact patches that roll freely; standing: patches with the horizontal force and "
+        "torque of the car at rest; %(default)s by default",
     )
-    extra_output_options(found, "kinematics.csv and kinematics.png")
-    found.former("--replace", "--replace: files are replaced by --force, as in all commands")
-    found.former(
+    extra_output_options(parser, "kinematics.csv and kinematics.png")
+    parser.former("--replace", "--replace: files are replaced by --force, as in all commands")
+    parser.former(
         "--force(=| [^-])",
         "--force: replaces files, as in all commands; a force on the wheels is given by --contact-force AXIS=VALUE",
     )
-    found.add_argument("--json", action="store_true", help="print JSON")
-    message_options(found)
-    return found
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    message_options(parser)
+    return parser
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
+    """Run the command and return its exit code."""
     return parse_and_run(parser(), _job, arguments)
 
 
@@ -100,16 +100,16 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
-    """An axle of a car, ready to be lifted.
+    """Return the kinematics model of an axle.
 
     Args:
         car: the car.
-        name: table of the axle in its vehicle file.
-        ideal: every connection an ideal ball joint.
-        standing: as of `AxleStatics`.
+        name: table of the axle in the vehicle file.
+        ideal: True replaces all bushings by ideal ball joints.
+        standing: True for tyres that stand, see `AxleStatics`.
 
     Raises:
-        ConfigurationError: no wheel belongs to such a table.
+        ConfigurationError: the table has no wheel.
     """
     from vehicle.engines.simulation.axle_statics import AxleStatics
 
@@ -121,7 +121,7 @@ def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) ->
 
 
 def _travels(text: str) -> list[float]:
-    """Wheel travels [m] of A:B[:STEP] in mm."""
+    """Return the wheel travels [m] of the text A:B[:STEP] in mm."""
     parts = text.split(":")
     try:
         first, last, step = (float(part) for part in (*parts, "5")[:3])
@@ -136,18 +136,18 @@ def _travels(text: str) -> list[float]:
 
 
 def _vector(option: str, entries: list[str]) -> list[float]:
-    """Components of repeated AXIS=VALUE."""
-    found = dict.fromkeys("xyz", 0.0)
+    """Return the vector of repeated AXIS=VALUE options."""
+    vector = dict.fromkeys("xyz", 0.0)
     for entry in entries:
         axis, _, text = entry.partition("=")
         try:
             value = float(text)
         except ValueError:
             value = math.nan
-        if axis not in found or not math.isfinite(value):
+        if axis not in vector or not math.isfinite(value):
             raise ConfigurationError(f"{option} {entry!r}: needed is AXIS=VALUE with x, y or z and a number, as x=1000")
-        found[axis] = value
-    return list(found.values())
+        vector[axis] = value
+    return list(vector.values())
 
 
 HEADS = {
@@ -165,10 +165,10 @@ HEADS = {
 
 
 def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str, float | None]) -> str:
-    """The table as text."""
-    kind = "ideal joints" if options.ideal else "bushings as they are"
+    """Return the table as text."""
+    joints = "ideal joints" if options.ideal else "bushings as they are"
     lines = [
-        f"{options.axle} axle, wheel on the right, against its design position; {kind}"
+        f"{options.axle} axle, wheel on the right, against its design position; {joints}"
         + ("; left wheel opposite" if options.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
         "  ".join(f"{head:>{max(len(head), 8)}}" for head in HEADS.values()),
@@ -194,8 +194,8 @@ def _write(options: argparse.Namespace, output: Path, name: str, poses: list[Whe
 
     units = {"m": "m", "deg": "deg", "n": "N"}
     names = list(HEADS)
-    heads = [f"{one.rpartition('_')[0]} [{units[one.rpartition('_')[2]]}]" for one in names]
-    columns = [np.array([getattr(pose, one) for pose in poses]) for one in names]
+    heads = [f"{name.rpartition('_')[0]} [{units[name.rpartition('_')[2]]}]" for name in names]
+    columns = [np.array([getattr(pose, name) for pose in poses]) for name in names]
     comments = [
         f"{name}, {options.axle} axle, wheel on the right, against its design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",

@@ -20,30 +20,30 @@ if TYPE_CHECKING:
 
 FILES = ("loads.csv", "load_spectra.csv", "loads.png")
 SHOWN = 15
-"""Most channels that are printed."""
+"""Maximum number of printed channels."""
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
-    found.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or a file of time histories")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("loads", "Rainflow counts, load spectra and equivalent amplitudes of the loads of a run.")
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of a run, or a file of time histories")
+    parser.add_argument(
         "--channels", metavar="NAME,...", help="channels to count; all forces, torques and travels by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--slope",
         type=float,
         default=5.0,
         metavar="K",
-        help="slope of the line of Woehler [-]: damage of n cycles of amplitude A is n A^K; %(default)s by default, "
-        "usual for steel parts of a chassis",
+        help="slope of the S-N (Woehler) curve [-]: damage of n cycles of amplitude A is n A^K; "
+        "%(default)s by default, usual for steel parts of a chassis",
     )
-    found.add_argument(
+    parser.add_argument(
         "--classes", type=int, default=64, metavar="N", help="classes of the range in the spectra; %(default)s"
     )
-    output_options(found, None, default=f"{', '.join(FILES)} in that of the run")
-    message_options(found, quiet=True)
-    return found
+    output_options(parser, None, default=f"{', '.join(FILES)} in that of the run")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -51,7 +51,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.signals.analysis.load_spectrum import load_spectrum
     from vehicle.signals.records.reader import read_columns
-    from vehicle.signals.records.run_summary import run_summary
+    from vehicle.signals.records.run_summary import available_summary
 
     source = _time_file(options.run)
     if not 1 <= options.classes <= 10000:
@@ -62,35 +62,36 @@ def _job(options: argparse.Namespace) -> None:
     names = _chosen(options.channels, record.units, source)
     table, spectra, picture = output_files_of(options, source.parent, FILES)
     duration = float(record.time[-1] - record.time[0])
-    found = [
+    spectra_of_channels = [
         load_spectrum(name, record.units[name], record.channels[name], slope=options.slope, duration=duration)
         for name in names
     ]
-    tyres = run_summary(source.parent).get("tyre")
-    about = (
+    summary = available_summary(source.parent)
+    tyres = summary.get("tyre") if summary else None
+    caption = (
         f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
     )
-    write_text(table, _table(found, about))
-    write_text(spectra, _spectra(found, about, options.classes))
-    write_whole(picture, lambda path: plot_loads(path, found, about))
+    write_text(table, _table(spectra_of_channels, caption))
+    write_text(spectra, _spectra(spectra_of_channels, caption, options.classes))
+    write_whole(picture, lambda path: plot_loads(path, spectra_of_channels, caption))
     if not options.quiet:
-        print(_report(found, about))
+        print(_report(spectra_of_channels, caption))
         print(f"files: {table.parent}: {', '.join(path.name for path in (table, spectra, picture))}")
 
 
 def _time_file(run: Path) -> Path:
-    """The time histories of a run."""
+    """Return the file of the time histories of a run."""
     if not run.is_dir():
         return run
     for name in ("time.npz", "time.csv"):
         if (run / name).is_file():
             return run / name
-    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file of its own")
+    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:
-    """Channels to count: those that are named, or all forces, torques and travels."""
+    """Return the channels to count: those of --channels, by default all forces, torques and travels."""
     if text is None:
         loads = [name for name, unit in units.items() if unit in ("N", "N m") or name.startswith("suspension_travel_")]
         if not loads:
@@ -109,44 +110,44 @@ def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[st
 HEADS = ("minimum", "maximum", "mean", "rms", "cycles", "largest_range", "equivalent_amplitude")
 
 
-def _table(found: list[LoadSpectrum], about: str) -> str:
-    rows = [",".join([one.name, one.unit, *(f"{getattr(one, head):.9g}" for head in HEADS)]) for one in found]
-    return "\n".join([f"# {about}", ",".join(["channel", "unit", *HEADS]), *rows, ""])
+def _table(loads: list[LoadSpectrum], caption: str) -> str:
+    rows = [",".join([load.name, load.unit, *(f"{getattr(load, head):.9g}" for head in HEADS)]) for load in loads]
+    return "\n".join([f"# {caption}", ",".join(["channel", "unit", *HEADS]), *rows, ""])
 
 
-def _spectra(found: list[LoadSpectrum], about: str, classes: int) -> str:
-    """Range pairs: cycles in classes of equal width from zero to the largest range of each channel."""
-    lines = [f"# {about}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
-    for one in found:
-        edges, counts = one.classes(classes)
+def _spectra(loads: list[LoadSpectrum], caption: str, classes: int) -> str:
+    """Return the range-pair table: cycles in equal classes from zero to the largest range of each channel."""
+    lines = [f"# {caption}", "channel,unit,range_above,range_up_to,cycles,cycles_of_this_range_or_more"]
+    for load in loads:
+        edges, counts = load.classes(classes)
         more = counts[::-1].cumsum()[::-1]
         for number, count in enumerate(counts):
             numbers = (edges[number], edges[number + 1], count, more[number])
-            lines.append(",".join([one.name, one.unit, *(f"{value:.9g}" for value in numbers)]))
+            lines.append(",".join([load.name, load.unit, *(f"{value:.9g}" for value in numbers)]))
     return "\n".join([*lines, ""])
 
 
-def _report(found: list[LoadSpectrum], about: str) -> str:
-    strongest = sorted(found, key=lambda one: -one.equivalent_amplitude * (1.0 if one.unit != "m" else 1e-9))[:SHOWN]
+def _report(loads: list[LoadSpectrum], caption: str) -> str:
+    strongest = sorted(loads, key=lambda load: -load.equivalent_amplitude * (1.0 if load.unit != "m" else 1e-9))[:SHOWN]
     heads = f"{'channel':<34}{'unit':>5}{'min':>11}{'max':>11}{'mean':>11}{'rms':>11}{'cycles':>10}{'equivalent':>12}"
     rows = [
-        f"{one.name:<34}{one.unit:>5}{one.minimum:>11.5g}{one.maximum:>11.5g}{one.mean:>11.5g}{one.rms:>11.5g}"
-        f"{one.cycles:>10.6g}{one.equivalent_amplitude:>12.5g}"
-        for one in strongest
+        f"{load.name:<34}{load.unit:>5}{load.minimum:>11.5g}{load.maximum:>11.5g}{load.mean:>11.5g}{load.rms:>11.5g}"
+        f"{load.cycles:>10.6g}{load.equivalent_amplitude:>12.5g}"
+        for load in strongest
     ]
-    left = len(found) - len(strongest)
-    return "\n".join([about, heads, *rows, *([f"and {left} more in {FILES[0]}"] if left else [])])
+    left = len(loads) - len(strongest)
+    return "\n".join([caption, heads, *rows, *([f"and {left} more in {FILES[0]}"] if left else [])])
 
 
 def recorded_channels(text: str, vehicle: Vehicle) -> tuple[str, ...]:
-    """Channels that --channels asks a run to record: the default ones, and more behind them.
+    """Return the channels that a run records: the default channels, then those of --channels.
 
     Args:
-        text: "loads", "all", or names with commas between.
+        text: "loads", "all", or names separated by commas.
         vehicle: the car.
 
     Raises:
-        ConfigurationError: the car has no such channel.
+        ConfigurationError: the car has no channel of this name.
     """
     more = vehicle.requested_channels
     if text in ("loads", "all"):

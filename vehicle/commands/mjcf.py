@@ -12,12 +12,12 @@ from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("mjcf", "Write car.xml, scene.xml and meshes of a vehicle.")
-    vehicle_options(found)
-    output_options(found, Path("mjcf"))
-    message_options(found)
-    return found
+    """Return the parser of the options."""
+    parser = command_parser("mjcf", "Write car.xml, scene.xml and meshes of a vehicle.")
+    vehicle_options(parser)
+    output_options(parser, Path("mjcf"))
+    message_options(parser)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -17,27 +17,27 @@ from vehicle.errors import ConfigurationError
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
-    vehicle_options(found)
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("modes", "Modes up to 60 Hz of the assembled car, from its matrices.")
+    vehicle_options(parser)
+    parser.add_argument(
         "--damper", choices=("stuck", "sliding"), default="stuck", help="state of the dampers; stuck by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--speed", type=float, metavar="KM/H", help="modes of the car that drives at this speed, with tyres that roll"
     )
-    found.add_argument("--json", action="store_true", help="print JSON")
-    found.add_argument(
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument(
         "--uff",
         type=Path,
         metavar="FILE.uff",
         help="write the places of the car, lines between them and the complex mode shapes as a universal file "
         "(datasets 15, 82 and 55), for Testlab, ME'scope or `python -m vehicle compare`",
     )
-    found.add_argument(
+    parser.add_argument(
         "--animate", type=float, metavar="HZ", help="with --video: show the mode nearest to this frequency [Hz]"
     )
-    found.add_argument(
+    parser.add_argument(
         "--video",
         nargs="?",
         const="",
@@ -45,12 +45,12 @@ def parser() -> Parser:
         help="write the mode of --animate as a film of three cycles, 4 s, that can be repeated without a seam; "
         "runs/mode_<frequency>_hz.mp4 by default",
     )
-    files = found.scoped_group(
+    files = parser.scoped_group(
         "files", needs="--uff or --video", active=lambda options: options.uff is not None or options.video is not None
     )
     files.add_argument("--force", action="store_true", help=FORCE_HELP)
-    message_options(found)
-    return found
+    message_options(parser)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -58,29 +58,29 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
 
     if options.uff is not None and options.uff.exists():
-        own = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
-        if not (options.force and own):
-            mend = "is of somebody else; give another name" if options.force else "exists; give --force"
+        written_here = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
+        if not (options.force and written_here):
+            mend = "was not written by this program; set another name" if options.force else "exists; give --force"
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
-    found = modes_table(car, options.damper)
+    table = modes_table(car, options.damper)
     if options.uff is not None:
         from vehicle.runs.output.folder import write_whole
         from vehicle.runs.output.mode_file import write_modes
 
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     if options.animate is not None:
-        found["film"] = _film(options, car)
-    print(json.dumps(found, indent=2, allow_nan=False) if options.json else report(found))
+        table["film"] = _film(options, car)
+    print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table))
 
 
 def _check_film_options(options: argparse.Namespace) -> None:
-    """Refuse what cannot be filmed, before anything is computed; chooses the OpenGL library before MuJoCo is imported.
+    """Check the film options before the computation, and choose the OpenGL library before MuJoCo is imported.
 
     Raises:
-        ConfigurationError: half of the pair, no frequency, or a film that is there.
-        MissingPartError: what films need is missing.
+        ConfigurationError: only one of --animate and --video, no frequency, or an existing film.
+        MissingPartError: OpenGL or ffmpeg is missing.
     """
     if options.animate is None:
         if options.video is not None:
@@ -91,7 +91,7 @@ def _check_film_options(options: argparse.Namespace) -> None:
     if options.video is None:
         raise ConfigurationError(f"--animate {options.animate:g}: shows a mode as a film; give --video [FILE.mp4] too")
     from vehicle.drawing.rendering.backend import require_film
-    from vehicle.runs.output.destination import named_file
+    from vehicle.runs.output.free_names import named_file
 
     if options.video:
         named_file(options.held, film_name(options.video, ""), "--video", force=options.force)
@@ -99,7 +99,7 @@ def _check_film_options(options: argparse.Namespace) -> None:
 
 
 def nearest(modes: Sequence[Any], frequency: float) -> Any:
-    """The mode whose natural frequency [Hz] is nearest; motions that grow are none.
+    """Return the mode whose natural frequency [Hz] is nearest; unstable motions are left out.
 
     Raises:
         ConfigurationError: the car has no mode.
@@ -111,7 +111,7 @@ def nearest(modes: Sequence[Any], frequency: float) -> Any:
 
 
 def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
-    """Write the film; what it shows, and where it is."""
+    """Write the film of a mode, and return its description and path."""
     from vehicle.drawing.rendering.mode_film import mode_film
     from vehicle.runs.output.folder import write_whole
 
@@ -124,12 +124,12 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
 
 
 def modes_table(car: Any, damper: str) -> dict[str, Any]:
-    """Modes of the car and of its free body, in plain numbers and texts."""
+    """Return the modes of the car and of its free body as plain numbers and texts."""
     from vehicle.model.parameters.whole_body import body_notices
 
     body = car.model.superelement
     trimmed = car.trimmed_body
-    found = car.modes(damper)
+    modes = car.modes(damper)
     return {
         "damper": damper,
         "tyre": car.vehicle.driving.words,
@@ -143,9 +143,9 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
                 "energy": mode.energy,
                 "motions": mode.motions,
             }
-            for mode in found
+            for mode in modes
         ],
-        "growing": [mode.description.removeprefix("grows: ") for mode in found if mode.grows],
+        "growing": [mode.description.removeprefix("grows: ") for mode in modes if mode.grows],
         "free_body": {
             "frequency_hz": [float(value) for value in trimmed.frequencies * car.vehicle.body.frequency_scale],
             "description": list(trimmed.mode_names),
@@ -154,30 +154,30 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     }
 
 
-def report(found: dict[str, Any]) -> str:
-    """The table as text."""
-    width = max((len(mode["description"]) for mode in found["modes"]), default=0)
+def report(table: dict[str, Any]) -> str:
+    """Return the table as text."""
+    width = max((len(mode["description"]) for mode in table["modes"]), default=0)
     lines = [
-        f"assembled car, dampers {found['damper']}, tyres {found['tyre']}",
+        f"assembled car, dampers {table['damper']}, tyres {table['tyre']}",
         f"{'Hz':>8} {'damping':>8}  {'description':<{width}} energy",
     ]
-    for mode in found["modes"]:
+    for mode in table["modes"]:
         shares = sorted(mode["energy"].items(), key=lambda item: -item[1])
         text = ", ".join(f"{name} {100 * share:.0f} %" for name, share in shares if share >= 0.05)
         lines.append(
             f"{mode['frequency_hz']:8.3f} {100 * mode['damping_ratio']:6.2f} %  {mode['description']:<{width}} {text}"
         )
-    if found["growing"]:
-        fault = "does not stand" if found["tyre"] == "standing" else "does not keep its course"
-        lines.append(f"this car {fault}: {', '.join(found['growing'])} grows by itself (negative damping above)")
-    lines += [f"note     {text}" for text in found["notices"]]
-    free = found["free_body"]
+    if table["growing"]:
+        fault = "does not stand" if table["tyre"] == "standing" else "does not keep its course"
+        lines.append(f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping above)")
+    lines += [f"note     {text}" for text in table["notices"]]
+    free = table["free_body"]
     if free["frequency_hz"]:
         lines.append("free trimmed body")
     for frequency, name in zip(free["frequency_hz"], free["description"], strict=True):
         lines.append(f"{frequency:8.3f}           {name}")
-    if "film" in found:
-        film = found["film"]
+    if "film" in table:
+        film = table["film"]
         lines.append(f"{film['file']}: mode at {film['frequency_hz']:.3f} Hz, the nearest to {film['asked_hz']:g} Hz")
     return "\n".join(lines)
 

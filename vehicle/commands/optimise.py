@@ -1,4 +1,4 @@
-"""`python -m vehicle optimise`: the parameters with the best compromise, within bounds and limits."""
+"""`python -m vehicle optimise`: search for Pareto-optimal parameters within bounds and limits."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import shlex
 import sys
 from pathlib import Path
 
+from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -25,11 +25,11 @@ from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("optimise", "Search for the parameters with the best compromise of comfort, load, travel.")
-    signal_options(found, several=True)
-    vehicle_options(found)
-    search = found.add_argument_group("the search")
+    """Return the parser of the options."""
+    parser = command_parser("optimise", "Search for the parameters with the best compromise of comfort, load, travel.")
+    signal_options(parser, several=True)
+    vehicle_options(parser)
+    search = parser.add_argument_group("the search")
     search.add_argument(
         "--vary",
         action="append",
@@ -44,19 +44,19 @@ def parser() -> Parser:
         default=[],
         metavar="NUMBER[@INPUT]",
         help="an objective: comfort, weighted, seat [m/s2], tyre_load, lowest_load, slip_share [-], travel [m]; one "
-        "axis or wheel is comfort_z, travel_fr; behind the @ an input, as road_A_120 or the stem of a file, or mean or "
+        "axis or wheel is comfort_z, travel_fr; after the @ an input, as road_A_120 or the stem of a file, or mean or "
         "worst of all; may be repeated",
     )
     search.add_argument(
-        "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="the same, to be as large as can be"
+        "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="an objective to maximise"
     )
     search.add_argument(
         "--limit",
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]<=VALUE",
-        help="what a car must keep, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; without an "
-        "input on every one; may be repeated",
+        help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to "
+        "every input by default; may be repeated",
     )
     search.add_argument("--cars", type=int, default=2000, metavar="N", help="cars to try; %(default)s by default")
     search.add_argument(
@@ -69,25 +69,25 @@ def parser() -> Parser:
     search.add_argument(
         "--search-seed", type=int, default=1, metavar="N", help="one seed is one search; %(default)s by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--tolerance",
         action="append",
         default=[],
         metavar="PATH=SIZE",
         help="half of the band of a parameter, varied or not: in its unit, or in percent: 15%%; may be repeated",
     )
-    made = found.scoped_group(
+    tolerances = parser.scoped_group(
         "cars as they are made",
         needs="--tolerance PATH=SIZE, and there is none",
         active=lambda options: bool(options.tolerance),
     )
-    made.add_argument(
+    tolerances.add_argument(
         "--samples",
         type=int,
         metavar="K",
         help="cars within the tolerances for each car tried; 8 by default, more where the quantile needs them",
     )
-    made.add_argument(
+    tolerances.add_argument(
         "--quantile",
         type=float,
         metavar="Q",
@@ -95,18 +95,20 @@ def parser() -> Parser:
         "quantile Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its "
         "numbers",
     )
-    engine_option(found, "reduced")
-    skip_option(found, 2.0)
-    jobs_option(found)
-    executor_option(found)
-    found.add_argument("--check", action="store_true", help="run the named cars with MuJoCo and tell the difference")
-    found.add_argument(
-        "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn, and how far it is"
+    engine_option(parser, "reduced")
+    skip_option(parser, 2.0)
+    jobs_option(parser)
+    executor_option(parser)
+    parser.add_argument(
+        "--check", action="store_true", help="run the named cars with MuJoCo too and report the difference"
     )
-    output_options(found, Path("runs/optimise"))
-    found.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
-    message_options(found, quiet=True)
-    return found
+    parser.add_argument(
+        "--beside", type=Path, metavar="DIR", help="another search with these objectives: drawn with its distance"
+    )
+    output_options(parser, Path("runs/optimise"))
+    parser.add_argument("--resume", action="store_true", help="go on in that folder, also with more --cars")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -115,7 +117,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.optimisation.car_search import plan_search, require_counts
     from vehicle.studies.optimisation.car_table import CARS
     from vehicle.studies.optimisation.problem import parsed_range, parsed_tolerance
-    from vehicle.studies.optimisation.search_files import read_beside
+    from vehicle.studies.optimisation.search_files import read_other_front
     from vehicle.studies.sweeps.executors import executor_factory
 
     require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
@@ -134,11 +136,11 @@ def _job(options: argparse.Namespace) -> None:
         skip=options.skip,
         seed=options.search_seed,
     )
-    beside = None if options.beside is None else read_beside(options.beside, plan.trials.problem)
+    beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=CARS)
     try:
-        found = plan.run(
+        cars = plan.run(
             folder,
             cars=options.cars,
             population=options.population,
@@ -149,9 +151,9 @@ def _job(options: argparse.Namespace) -> None:
     except KeyboardInterrupt:
         print(f"{folder}: finished generations are kept; --resume goes on", file=sys.stderr)
         raise
-    found.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
+    cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
     if not options.quiet:
-        print(found.text(folder, beside))
+        print(cars.text(folder, beside))
 
 
 main = command(parser, _job)

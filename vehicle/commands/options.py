@@ -1,4 +1,4 @@
-"""Options that several commands have: stated once, so that they mean the same everywhere."""
+"""Options of several commands, each defined once."""
 
 from __future__ import annotations
 
@@ -14,61 +14,72 @@ EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
 )
 
-FORCE_HELP = "replace what an earlier run wrote there; any other file, and one that was changed since, stops it"
+FORCE_HELP = "replace files of an earlier run; stop if the folder contains other or edited files"
 
 
 def command_parser(name: str, description: str) -> Parser:
-    """Parser of a command of the package.
+    """Return the parser of a command, with --help and --version.
 
     Args:
-        name: of its module in `vehicle.commands`.
-        description: one line, which the list of commands shows too.
+        name: name of the command.
+        description: one line, also printed in the list of commands.
     """
-    return Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
+    parser = Parser(prog=f"python -m vehicle {name}", description=description, epilog=EXIT_CODES, allow_abbrev=False)
+    parser.add_version()
+    return parser
 
 
 VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of Bommer 2006 by default"
 
 
-def vehicle_options(parser: argparse._ActionsContainer) -> None:
-    """Add --vehicle and --set: which car."""
-    parser.add_argument(
+def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
+    """Add --vehicle and --set, which choose the car, as a group with the title "the car".
+
+    Args:
+        parser: parser of the command; or an existing group, which gets the options instead.
+
+    Returns:
+        The group.
+    """
+    group = parser.add_argument_group("the car") if isinstance(parser, argparse.ArgumentParser) else parser
+    group.add_argument(
         "--vehicle",
         type=vehicle_file,
         metavar="FILE.toml",
         help=VEHICLE_HELP,
     )
-    parser.add_argument(
+    group.add_argument(
         "--set",
         dest="overrides",
         action="append",
         default=[],
         metavar="PATH=VALUE",
-        help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], one component of it has "
-        "its axis behind the path: bushings.tyre.stiffness.z=2e5; may be repeated",
+        help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], and the path "
+        "of one component ends with its axis: bushings.tyre.stiffness.z=2e5; may be repeated",
     )
+    return group
 
 
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:
-    """Add --output and --force: where the results go, see `vehicle.commands.destination`.
+    """Add --output and --force, see `vehicle.commands.destination`.
 
     Args:
-        parser: of the command.
-        path: folder or file without --output; None where the job chooses it.
-        default: what the help says of it then.
+        parser: parser of the command.
+        path: folder or file without --output; None if the job chooses it.
+        default: default path for the help, if `path` is None.
         metavar: DIR, or FILE with its ending.
     """
-    what = "folder" if metavar == "DIR" else "file"
-    text = f"{what} of the results; {default or path} by default, and the next free name where that exists"
+    destination = "folder" if metavar == "DIR" else "file"
+    text = f"{destination} of the results; {default or path} by default, and the next free name where that exists"
     parser.add_argument("--output", type=Path, default=path, metavar=metavar, help=text)
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
 def extra_output_options(parser: Parser, files: str) -> None:
-    """Add --output and --force of a command that prints, and writes files where --output is given.
+    """Add --output and --force of a command that prints, and writes files only with --output.
 
     Args:
-        parser: of the command.
+        parser: parser of the command.
         files: names of the files, for the help.
     """
     parser.add_argument("--output", type=Path, metavar="DIR", help=f"write {files} there")
@@ -76,43 +87,43 @@ def extra_output_options(parser: Parser, files: str) -> None:
     group.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
-def film_name(given: str, default: str) -> Path:
-    """Name of a film.
+def film_name(value: str, default: str) -> Path:
+    """Return the path of a film.
 
     Args:
-        given: behind --video; empty for the default.
-        default: the name without it.
+        value: value of --video; empty for the default.
+        default: default path.
 
     Raises:
         ConfigurationError: it does not end in .mp4.
     """
-    name = Path(given or default)
+    name = Path(value or default)
     if name.suffix != ".mp4":
-        raise ConfigurationError(f"--video {name}: a film is written as .mp4; give FILE.mp4")
+        raise ConfigurationError(f"--video {name}: a film is written as .mp4; set FILE.mp4")
     return name
 
 
 def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
-    """Add --engine: what computes a run.
+    """Add --engine, the solver of a run.
 
     Args:
-        parser: of the command.
+        parser: parser of the command.
         default: mujoco for a single run, auto for many.
     """
     parser.add_argument(
         "--engine",
         choices=ENGINES,
         default=default,
-        help="mujoco, the model of record; reduced: hundreds of times faster, linear but for the dampers, no film; "
-        "auto: reduced where its validity holds, else mujoco; %(default)s by default",
+        help="mujoco: complete nonlinear model; reduced: hundreds of times faster, linear except for the dampers, no "
+        "film; auto: reduced inside its valid range, otherwise mujoco; %(default)s by default",
     )
 
 
 def skip_option(parser: argparse.ArgumentParser, of_a_file: float) -> None:
-    """Add --skip: start of the evaluation, see `vehicle.signals.excitation.evaluation_start`.
+    """Add --skip, the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`.
 
     Args:
-        parser: of the command.
+        parser: parser of the command.
         of_a_file: default for signals of a file [s].
     """
     text = (
@@ -123,31 +134,36 @@ def skip_option(parser: argparse.ArgumentParser, of_a_file: float) -> None:
 
 
 def resume_options(parser: Parser) -> None:
-    """Add --resume and --retry-failed: go on with a table of runs."""
-    parser.add_argument("--resume", action="store_true", help="go on in that folder; finished rows are kept")
+    """Add --resume and --retry-failed, which continue a table of runs."""
+    parser.add_argument("--resume", action="store_true", help="continue in that folder; finished rows are kept")
     group = parser.scoped_group("going on", needs="--resume", active=lambda options: options.resume)
     group.add_argument("--retry-failed", action="store_true", help="run failed rows again")
 
 
 def jobs_option(parser: argparse.ArgumentParser, *, note: str = "") -> None:
-    """Add --jobs: how many runs at once; the results do not depend on it.
+    """Add --jobs, the number of processes; the results do not depend on it.
 
     Args:
-        parser: of the command.
-        note: what the help says beside.
+        parser: parser of the command.
+        note: addition to the help.
     """
     text = "processes for independent runs; %(default)s by default" + note
     parser.add_argument("--jobs", type=_jobs, default=1, metavar="N", help=text)
 
 
 def executor_option(parser: argparse.ArgumentParser) -> None:
-    """Add --executor: where independent runs are carried out, beside processes here."""
+    """Add --executor, a cluster or a custom executor for independent runs."""
     text = "dask://host:port, or module:factory for an executor of your own"
     parser.add_argument("--executor", metavar="WHERE", help=text)
 
 
 def _jobs(text: str) -> int:
-    """The number of processes; argparse names the option where the text is no number."""
+    """Return the number of processes.
+
+    Raises:
+        ConfigurationError: less than 1.
+        ValueError: no number; argparse adds the name of the option.
+    """
     number = int(text)
     if number < 1:
         raise ConfigurationError(f"--jobs {number}: must be at least 1")
@@ -155,7 +171,7 @@ def _jobs(text: str) -> int:
 
 
 def message_options(parser: argparse.ArgumentParser, *, quiet: bool = False) -> None:
-    """Add --debug, which every command has, and --quiet, where the results are files."""
+    """Add --debug and, for a command whose results are files, --quiet."""
     if quiet:
         parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")

@@ -1,4 +1,4 @@
-"""Argument parser of all commands: values that begin with a minus, former words, options that would do nothing."""
+"""Argument parser of all commands: negative values, options of earlier versions, options without effect."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Condition = Callable[[argparse.Namespace], bool]
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What a group of options acts on.
+    """Object on which a group of options acts.
 
     Attributes:
-        active: True if the options of a command line contain what the group acts on; None where only the command can
-            tell, which then calls `refuse_idle`.
+        active: True if the parsed options contain the object of the group; None if only the command can decide it
+            and calls `refuse_idle`.
         needs: completes "belongs to ...", for the message.
-        options: those of the group; each is added when the group gets it.
+        options: options of the group.
     """
 
     active: Condition | None
@@ -31,7 +31,7 @@ class Scope:
 
 
 class _ScopedGroup(argparse._ArgumentGroup):
-    """Group of options with a scope: whatever is added to the group is refused where the scope is not active."""
+    """Group of options with a scope; they are rejected if the scope is not active."""
 
     scope: Scope
 
@@ -40,10 +40,20 @@ class _ScopedGroup(argparse._ArgumentGroup):
         return super()._add_action(action)
 
 
+class _Version(argparse.Action):
+    """Print the version of the package, which is read only here."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> None:
+        from vehicle.commands.version import package_version
+
+        print(package_version())
+        parser.exit()
+
+
 class Parser(argparse.ArgumentParser):
     """Argument parser whose errors are one message and exit code 2.
 
-    A word with a single minus in front is a value, but for -h: there is no other short option.
+    A word that begins with a single minus is a value, except -h, the only short option.
     """
 
     def __init__(self, *args: Any, **keywords: Any) -> None:
@@ -51,16 +61,20 @@ class Parser(argparse.ArgumentParser):
         self.scopes: dict[str, Scope] = {}
         self.former_words: list[tuple[re.Pattern[str], str]] = []
 
+    def add_version(self) -> None:
+        """Add --version, which prints the version of the package."""
+        self.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+
     def scoped_group(self, title: str, *, needs: str, active: Condition | None) -> argparse._ArgumentGroup:
-        """Add a group of options that act on something that not every command line contains.
+        """Add a group of options that act on an object which not every command line contains.
 
         Args:
             title: of the group in the help.
             needs: completes the message "--option: belongs to ...", with the option that makes the group act.
-            active: True if the parsed options contain what the group acts on; None where only the command can tell.
+            active: True if the parsed options contain that object; None if only the command can decide it.
 
         Returns:
-            The group; every option that is added to it is refused where the group is not active.
+            The group; its options are rejected if it is not active.
         """
         group = _ScopedGroup(self, title)
         group.scope = Scope(active, needs)
@@ -69,61 +83,61 @@ class Parser(argparse.ArgumentParser):
         return group
 
     def former(self, pattern: str, message: str) -> None:
-        """Refuse a word that had a meaning in an earlier version.
+        """Reject an option of an earlier version.
 
         Args:
-            pattern: regular expression that is matched at each word and the one behind it, with a blank between.
-            message: which names the word of today.
+            pattern: regular expression, matched with each word and its successor, separated by a blank.
+            message: error message with the option that replaces it.
         """
         self.former_words.append((re.compile(pattern), message))
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse, and refuse former words and options of groups that are not active."""
-        words = [str(word) for word in (args or ())]
-        for first, second in pairwise([*words, ""]):
+        """Parse the arguments; reject options of earlier versions and of groups that are not active."""
+        arguments = [str(word) for word in (args or ())]
+        for first, second in pairwise([*arguments, ""]):
             for pattern, message in self.former_words:
                 if pattern.match(f"{first} {second}"):
                     raise ConfigurationError(message)
-        options, rest = super().parse_known_args(args, namespace)
-        given = self._given(words)
+        options, unknown = super().parse_known_args(args, namespace)
+        typed = self._given(arguments)
         for scope in self.scopes.values():
             if scope.active is not None and not scope.active(options):
-                _refuse(scope, given)
-        # Those of a subparser are there already.
-        options.given = given | getattr(options, "given", {})
+                _refuse(scope, typed)
+        # Options and scopes of a subparser are in the namespace already.
+        options.given = typed | getattr(options, "given", {})
         options.scopes = self.scopes | getattr(options, "scopes", {})
-        return options, rest
+        return options, unknown
 
-    def _given(self, words: Sequence[str]) -> dict[str, str]:
-        """Return the destinations of the options on a command line, and the word of each as it is written."""
-        found: dict[str, str] = {}
-        for word in words:
+    def _given(self, arguments: Sequence[str]) -> dict[str, str]:
+        """Return the options of a command line: destination to the option as typed."""
+        options: dict[str, str] = {}
+        for word in arguments:
             if word == "--":
                 break
             option = word.partition("=")[0]
             if action := self._option_string_actions.get(option):
-                found[action.dest] = option
-        return found
+                options[action.dest] = option
+        return options
 
     def _parse_optional(self, arg_string: str) -> Any:
-        """Take a word with a single minus as a value; argparse does so for plain numbers alone."""
+        """Parse a word with a single minus as a value; argparse does this for plain numbers only."""
         if not arg_string.startswith("--") and arg_string not in self._option_string_actions:
             if f"-{arg_string.partition('=')[0]}" in self._option_string_actions:
-                raise ConfigurationError(f"{arg_string}: options begin with two hyphens; give -{arg_string}")
+                raise ConfigurationError(f"{arg_string}: options begin with two hyphens; type -{arg_string}")
             return None
         return super()._parse_optional(arg_string)
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        """Raise the message instead of leaving the process."""
+        """Raise a ConfigurationError with the message; argparse would end the process."""
         raise ConfigurationError(f"{message}; see {self.prog} --help")
 
 
 def refuse_idle(options: argparse.Namespace, title: str) -> None:
-    """Refuse the options of a group of which only the command can tell that they would do nothing.
+    """Reject the options of a group that the command found to be without effect.
 
     Args:
-        options: as parsed.
-        title: of the group.
+        options: parsed options.
+        title: title of the group.
 
     Raises:
         ConfigurationError: an option of the group is on the command line.
@@ -131,7 +145,7 @@ def refuse_idle(options: argparse.Namespace, title: str) -> None:
     _refuse(options.scopes[title], options.given)
 
 
-def _refuse(scope: Scope, given: dict[str, str]) -> None:
+def _refuse(scope: Scope, typed: dict[str, str]) -> None:
     for action in scope.options:
-        if word := given.get(action.dest):
+        if word := typed.get(action.dest):
             raise ConfigurationError(f"{word}: belongs to {scope.needs}")

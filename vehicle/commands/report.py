@@ -1,4 +1,4 @@
-"""`python -m vehicle report`: one HTML file of one run, or of several beside each other."""
+"""`python -m vehicle report`: write the report of one run, or of several runs compared, as an HTML file."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ NAME = "report.html"
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("report", "Findings, figures, moving modes and tables of runs as one HTML file.")
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("report", "Findings, figures, moving modes and tables of runs as one HTML file.")
+    parser.add_argument(
         "runs",
         nargs="+",
         type=Path,
@@ -25,10 +25,10 @@ def parser() -> Parser:
         help="folder of a run, as runs/low; the others are compared with the first",
     )
     output_options(
-        found, None, default=f"{NAME} in the folder of a single run, and here for several,", metavar="FILE.html"
+        parser, None, default=f"{NAME} in the folder of a single run, and here for several,", metavar="FILE.html"
     )
-    message_options(found, quiet=True)
-    return found
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

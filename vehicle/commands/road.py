@@ -1,4 +1,4 @@
-"""`python -m vehicle road`: the plate signals of a car that drives over a road, as a file."""
+"""`python -m vehicle road`: write the plate signals of a car on a road."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("road", "Plate signals of a car on a road: class and speed, or a measured profile.")
-    vehicle_options(found)
-    found.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
-    found.add_argument("--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]")
-    road_options(found, lambda _: True, lambda options: options.profile is None)
-    output_options(found, Path("road.csv"), metavar="FILE.csv")
-    message_options(found, quiet=True)
-    return found
+    """Return the parser of the options."""
+    parser = command_parser("road", "Plate signals of a car on a road: class and speed, or a measured profile.")
+    vehicle_options(parser)
+    parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
+    parser.add_argument(
+        "--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]"
+    )
+    road_options(parser, lambda _: True, lambda options: options.profile is None)
+    output_options(parser, Path("road.csv"), metavar="FILE.csv")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -49,10 +51,10 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def class_or_profile(text: str) -> str | Path:
-    """What --road of other commands names: a class, or the file of a profile.
+    """Return the class of ISO 8608, or the file of a profile, of the value of --road.
 
     Raises:
-        ConfigurationError: it is neither.
+        ConfigurationError: the value is neither.
     """
     if len(text) > 1 and not Path(text).is_file():
         raise ConfigurationError(f"--road {text}: no class of ISO 8608 (A to H), and no file of a measured profile")
@@ -64,7 +66,7 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
     Args:
         road: class of ISO 8608, or the file of a profile.
-        options: as of `road_options`, or of `signal_options`.
+        options: parsed options of `road_options` or `signal_options`.
         vehicle: the car.
 
     Raises:
@@ -74,7 +76,7 @@ def road_drive(road: str | Path, options: argparse.Namespace, vehicle: Vehicle) 
 
 
 def road_of(road: str | Path, options: argparse.Namespace) -> Road:
-    """Return the road of the options; arguments as of `road_drive`.
+    """Return the `Road` of the options; the arguments are those of `road_drive`.
 
     Raises:
         ConfigurationError: no speed.
@@ -87,8 +89,8 @@ def road_of(road: str | Path, options: argparse.Namespace) -> Road:
     choice = Choice()
     if isinstance(options.speed, str) and hasattr(options, "picks"):
         # --rate is that of the run; the times are those of the file.
-        own = {**vars(options), "rate": None}
-        choice = record_choice(argparse.Namespace(**own), "height", known=("speed",)) or Choice()
+        settings = {**vars(options), "rate": None}
+        choice = record_choice(argparse.Namespace(**settings), "height", known=("speed",)) or Choice()
     numbers = {name: value for name in (*ROAD_NUMBERS, "tyre") if (value := getattr(options, name, None)) is not None}
     return Road(road, choice=choice, **numbers)
 

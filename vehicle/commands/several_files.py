@@ -1,4 +1,4 @@
-"""Several files in a command: names and folders, and what became of each."""
+"""Commands with several input files: names, folders, results and errors of each file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Row = tuple[str, ...]
 
 
 def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
-    """Return the files that names mean, and True if they are several: the files of a folder in alphabetical order.
+    """Return the files of names and folders, and True for several; files of a folder in alphabetical order.
 
     Args:
         names: paths of files or folders, or names of shipped inputs.
@@ -20,29 +20,29 @@ def expanded(names: Sequence[str]) -> tuple[list[str], bool]:
     Raises:
         ConfigurationError: a folder without files.
     """
-    found: list[str] = []
+    paths: list[str] = []
     for name in names:
         folder = Path(name)
         if not folder.is_dir():
-            found.append(name)
+            paths.append(name)
             continue
-        files = sorted(str(one) for one in folder.iterdir() if one.is_file() and not one.name.startswith("."))
+        files = sorted(str(file) for file in folder.iterdir() if file.is_file() and not file.name.startswith("."))
         if not files:
             raise ConfigurationError(
                 f"{name}: a folder without files; give measurement files, or a folder that has some"
             )
-        found += files
-    return list(dict.fromkeys(found)), len(found) > 1 or any(Path(name).is_dir() for name in names)
+        paths += files
+    return list(dict.fromkeys(paths)), len(paths) > 1 or any(Path(name).is_dir() for name in names)
 
 
 def each_file(
     names: Sequence[str], work: Callable[[str], dict[str, Any]]
 ) -> tuple[list[dict[str, Any]], list[VehicleError]]:
-    """Return the result of every file; a file that fails has its message in place of a result, the others go on.
+    """Return the result of every file; a failed file has its error message as a result, and the others continue.
 
     Args:
         names: files.
-        work: makes a result of plain data of a file.
+        work: function that returns the result of a file as plain data.
     """
     results, errors = [], []
     for name in names:
@@ -55,7 +55,7 @@ def each_file(
 
 
 def table_of(heads: Row, rows: Sequence[Row]) -> str:
-    """Return rows as text: the first column to the left, the others to the right.
+    """Return rows as text; the first column is aligned left, the others right.
 
     Args:
         heads: names of the columns.
@@ -75,14 +75,14 @@ def table_of(heads: Row, rows: Sequence[Row]) -> str:
 
 
 def raise_worst(errors: Sequence[VehicleError], files: int) -> None:
-    """Raise one error for files that failed, after everything else was printed.
+    """Raise one error for all failed files; call it after printing the results.
 
     Args:
-        errors: of the files that failed.
+        errors: errors of the failed files.
         files: number of all files.
 
     Raises:
-        VehicleError: of the kind of the first error.
+        VehicleError: with the class of the first error.
     """
     if errors:
         count = len(errors)

@@ -1,4 +1,4 @@
-"""`python -m vehicle.shaker`: a measured signal on the shaker, and what the test bench would give."""
+"""`python -m vehicle.shaker`: simulate the car on the shaker or a road, and write the results."""
 
 from __future__ import annotations
 
@@ -42,32 +42,32 @@ if TYPE_CHECKING:
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
-    file = signal_options(found)
-    record_options(record_group(found), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
+    """Return the parser of the options."""
+    parser = command_parser("shaker", "Put shaker signals or a road under the wheels of the complete car.")
+    file = signal_options(parser)
+    record_options(record_group(parser), 'a plate, as fr="Shaker FR"', rate=False, unit=False)
     file.add_argument("--interpolate", action="store_true", help="fill missing displacements by interpolation")
     file.add_argument("--remove-mean", action="store_true", help="subtract the mean of the displacement")
-    read = found.scoped_group(
+    read = parser.scoped_group(
         "a file of signals or of a measurement",
         needs="--input, --measured, or a road that was recorded over time; any other road has none",
         active=lambda options: bool(options.input or options.measured) or recorded_over_time(options),
     )
     unit_option(read)
-    output_options(found, None, default="runs/<input stem>, or runs/road_C_80,")
-    vehicle_options(found)
-    engine_option(found, "mujoco")
-    skip_option(found, 0.0)
-    found.add_argument(
+    output_options(parser, None, default="runs/<input stem>, or runs/road_C_80,")
+    vehicle_options(parser)
+    engine_option(parser, "mujoco")
+    skip_option(parser, 0.0)
+    parser.add_argument(
         "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
     )
-    found.add_argument(
+    parser.add_argument(
         "--time-format",
         choices=TABLES,
         default="npz",
         help="format of the time histories; %(default)s by default",
     )
-    found.add_argument(
+    parser.add_argument(
         "--channels",
         dest="recorded",
         metavar="loads|all|NAME,...",
@@ -75,7 +75,7 @@ def parser() -> Parser:
         "[m], or some of these by name; all is everything, with the coefficients of semi-active dampers [N s/m]; "
         "python -m vehicle loads counts their cycles",
     )
-    found.add_argument(
+    parser.add_argument(
         "--format",
         dest="formats",
         action="append",
@@ -84,8 +84,8 @@ def parser() -> Parser:
         help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
         "uff with the places of the car; may be repeated",
     )
-    found.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
-    film = found.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
+    parser.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
+    film = parser.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
     film.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
     film.add_argument(
         "--video-duration",
@@ -96,8 +96,8 @@ def parser() -> Parser:
     )
     film.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
     film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
-    measured_options(found)
-    found.add_argument(
+    measured_options(parser)
+    parser.add_argument(
         "--report",
         nargs="?",
         const="",
@@ -105,8 +105,8 @@ def parser() -> Parser:
         help="write a report too: one HTML file with findings, figures, moving modes and tables; report.html in the "
         "folder of the run by default",
     )
-    message_options(found, quiet=True)
-    return found
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -201,7 +201,7 @@ def _job(options: argparse.Namespace) -> None:
 
             progress = ProgressLine("report    ", enabled=not options.quiet)
             path.write_text(
-                report_page([read_run(folder, place=output, car=car, recording=run.recording)], progress),
+                report_page([read_run(folder, final_path=output, car=car, recording=run.recording)], progress),
                 encoding="utf-8",
             )
 
@@ -221,7 +221,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
-    """Refuse a wheel that the file names itself, and an excerpt outside the record."""
+    """Check --wheel against the wheels of the file, and the excerpt of the film against the record."""
     if options.wheel is not None and len(signal.wheels) > 1:
         raise ConfigurationError(
             f"--wheel {options.wheel}: {options.input} names the wheels of its columns; leave --wheel out"
@@ -235,7 +235,7 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
 
 
 def _check_numbers(options: argparse.Namespace) -> None:
-    """Refuse numbers of the film and the step that nobody can mean, before anything is simulated."""
+    """Check the numeric options of the film and the time step before the simulation."""
     wanted = (
         ("--slow-motion", options.slow_motion, 1.0, "at least 1"),
         ("--video-duration", options.video_duration, 0.1, "at least 0.1 s"),
@@ -248,7 +248,7 @@ def _check_numbers(options: argparse.Namespace) -> None:
 
 
 def _engine(options: argparse.Namespace) -> tuple[str, str]:
-    """The engine that is asked for, and why it is not the one that was named."""
+    """Return the engine, and the reason if it differs from the option."""
     needs = "--video" if options.video is not None else "--timestep" if options.timestep is not None else None
     if needs is None or options.engine == "mujoco":
         return options.engine, ""
@@ -259,12 +259,12 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
 
 
 def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
-    """Where the film goes: a plain name lies in the folder of the run."""
+    """Return the path of the film; a plain name is in the folder of the run."""
     return _beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
 
 
 def _report_path(options: argparse.Namespace, output: Path) -> Path:
-    """Where the report goes, in the same way."""
+    """Return the path of the report; a plain name is in the folder of the run."""
     from vehicle.commands.report import NAME
 
     name = Path(options.report or NAME)
@@ -274,8 +274,8 @@ def _report_path(options: argparse.Namespace, output: Path) -> Path:
 
 
 def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
-    """A plain name in the folder of the run, or a path outside it where nothing is in the way."""
-    from vehicle.runs.output.destination import named_file
+    """Check a path: a plain name in the folder of the run, or a free path outside this folder."""
+    from vehicle.runs.output.free_names import named_file
 
     if name.parent == Path():
         return name
@@ -283,7 +283,7 @@ def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) 
     if name.resolve().parent == folder:
         return Path(name.name)
     if folder in name.resolve().parents:
-        raise ConfigurationError(f"{option} {name}: lies below the folder of the run; give a plain name: {name.name}")
+        raise ConfigurationError(f"{option} {name}: is below the folder of the run; set a plain name: {name.name}")
     return named_file(options.held, name, option, force=options.force)
 
 

@@ -1,26 +1,29 @@
-"""The summary of a run as the text that a command prints."""
+"""Printed text of the summary of a run."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from vehicle.names import side_of
 
+if TYPE_CHECKING:
+    from vehicle.signals.records.run_summary import ComfortSummary, RunSummary, SolverSummary
+
 
 def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
-    """What is said of each wheel by its name and its word, as a list."""
-    words = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
-    return last.join(word for word in (", ".join(words[:-1]), words[-1]) if word)
+    """Return a list in words, with a text for each wheel from its name and its side."""
+    texts = [say(wheel, side_of(wheel, wheels)) for wheel in wheels]
+    return last.join(word for word in (", ".join(texts[:-1]), texts[-1]) if word)
 
 
-def summary_text(summary: dict[str, Any], output: Path) -> str:
-    """The summary of a run as a page of text.
+def summary_text(summary: RunSummary, output: Path) -> str:
+    """Return the printed summary of a run.
 
     Args:
-        summary: the content of `summary.json`.
-        output: the folder of the run.
+        summary: content of `summary.json`.
+        output: folder of the run.
     """
     share, first = summary["slip_share"], summary["first_slip_s"]
     load = summary["static"]["tyre_load_n"]
@@ -32,7 +35,7 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
     lines = [
         f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, plate RMS "
         f"{', '.join(moved)}; tyres {summary['tyre']}",
-        f"damper      in slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
+        f"damper      slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
         f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
         f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
         f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
@@ -57,34 +60,32 @@ def summary_text(summary: dict[str, Any], output: Path) -> str:
     return "\n".join(lines)
 
 
-def _comfort(summary: dict[str, Any]) -> list[str]:
-    """Comfort at the seat rail, and on the seat of a car that has one."""
-    from vehicle.signals.analysis.comfort import COMFORT_BAND
+def _comfort(summary: RunSummary) -> list[str]:
+    """Return the lines of comfort at the seat rail and, for a car with seats, on the seat."""
+    from vehicle.signals.records.run_summary import unweighted_rms
 
-    lines, places = [], summary["comfort"]
-    if "seat_rail" in places:
-        rail = places["seat_rail"]
-        rms = rail.get("rms_of_band", rail["rms_2_50_hz"])
-        low, high = rms.get("band_hz", COMFORT_BAND)
+    lines, points = [], summary["comfort"]
+    if "seat_rail" in points:
+        rms, (low, high) = unweighted_rms(points["seat_rail"])
         axes = ", ".join(f"{axis} {rms[axis]:.4f}" for axis in "xyz")
         lines.append(
             f"comfort     seat rail {rms['overall']:.4f} m/s2 unweighted RMS, {low:g} to {high:g} Hz ({axes}); "
-            f"{_weighted(places, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
+            f"{_weighted(points, 'seat_rail'):.4f} m/s2 weighted RMS (ISO 2631-1)"
         )
     if (ratio := summary["seat_value"]) is not None:
         lines.append(
-            f"            seat {_weighted(places, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
+            f"            seat {_weighted(points, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
             f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
         )
     return lines
 
 
-def _weighted(places: dict[str, Any], place: str) -> float:
-    return float(places[place]["iso2631"]["vector_sum"]["weighted_rms"])
+def _weighted(comfort: dict[str, ComfortSummary], point: str) -> float:
+    return float(comfort[point]["iso2631"]["vector_sum"]["weighted_rms"])
 
 
-def _balance(solver: dict[str, Any]) -> str:
-    """Energy residual, where the engine keeps an energy balance."""
+def _balance(solver: SolverSummary) -> str:
+    """Return the energy residual; empty for an engine without an energy balance."""
     return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
 
 

@@ -1,4 +1,4 @@
-"""`python -m vehicle.sweep`: a table of parameter variations and inputs, and a table of comfort and slip back."""
+"""`python -m vehicle.sweep`: table of comfort and slip for variations of parameters and inputs."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import prepared_folder_of
 from vehicle.commands.input_options import signal_options
-from vehicle.commands.inputs import chosen_inputs
 from vehicle.commands.options import (
     command_parser,
     engine_option,
@@ -27,10 +27,10 @@ from vehicle.commands.parser import Parser
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser("sweep", "Run the car with varied parameters on one or several inputs.")
-    signal_options(found, several=True)
-    found.add_argument(
+    """Return the parser of the options."""
+    parser = command_parser("sweep", "Run the car with varied parameters on one or several inputs.")
+    signal_options(parser, several=True)
+    parser.add_argument(
         "--vary",
         action="append",
         default=[],
@@ -38,22 +38,22 @@ def parser() -> Parser:
         help="values of a parameter, as damper.coulomb_friction=62.5,125, or of a component of a vector, as "
         "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
     )
-    found.add_argument(
+    parser.add_argument(
         "--table",
         type=Path,
         metavar="FILE.csv",
         help="columns are parameter paths, rows are variations; or the table.csv of another sweep",
     )
-    vehicle_options(found)
-    engine_option(found, "auto")
-    skip_option(found, 2.0)
-    jobs_option(found)
-    executor_option(found)
-    output_options(found, Path("runs/sweep"))
-    resume_options(found)
-    found.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
-    message_options(found, quiet=True)
-    return found
+    vehicle_options(parser)
+    engine_option(parser, "auto")
+    skip_option(parser, 2.0)
+    jobs_option(parser)
+    executor_option(parser)
+    output_options(parser, Path("runs/sweep"))
+    resume_options(parser)
+    parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
+    message_options(parser, quiet=True)
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -64,7 +64,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.executors import executor_factory
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.store import ROWS
-    from vehicle.studies.sweeps.table import read_variations
+    from vehicle.studies.sweeps.sweep_table import read_variations
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
@@ -103,7 +103,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Paths and rows of `--vary` options, the last one varying fastest.
+    """Return the parameter paths and the rows of all combinations of `--vary`; the last path varies fastest.
 
     Raises:
         ConfigurationError: an option is not PATH=V1,V2,...
@@ -119,8 +119,8 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
         items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
         if not separator or not path.strip() or not all(items):
             raise ConfigurationError(
-                f"--vary {text}: needed is PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; one component of a "
-                "vector has its axis behind the path: bushings.tyre.stiffness.z=2e5,2.5e5"
+                f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; the path of one "
+                "component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
             )
         if path.strip() in paths:
             raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")

@@ -43,6 +43,19 @@ def test_egl_where_osmesa_is_missing():
     assert os.environ["MUJOCO_GL"] == "egl"
 
 
+def test_glfw_where_the_other_two_are_missing():
+    probe = Machine("glfw")
+    assert backend.choose_backend(probe) == "glfw" and probe.asked == ["osmesa", "egl", "glfw"]
+    assert os.environ["MUJOCO_GL"] == "glfw"
+    assert os.environ["PYOPENGL_PLATFORM"] == "", "PyOpenGL knows no such platform, and MuJoCo uses GLFW without it"
+
+
+def test_every_backend_is_one_of_mujoco():
+    """The message of a machine without it is of the library, not of an unknown name."""
+    for name in backend.BACKENDS:
+        assert "invalid value for environment variable" not in (backend.probe(name) or "")
+
+
 def test_a_working_choice_of_the_user_is_kept(monkeypatch):
     monkeypatch.setenv("MUJOCO_GL", "EGL")
     assert backend.choose_backend(Machine("osmesa", "egl")) == "egl"
@@ -70,7 +83,8 @@ def test_nothing_works_names_the_package():
     with pytest.raises(MissingPartError) as caught:
         backend.choose_backend(Machine())
     assert str(caught.value) == (
-        "video: no off-screen OpenGL library works on this machine (osmesa: no osmesa here; egl: no egl here). "
+        "video: no off-screen OpenGL library works on this machine (osmesa: no osmesa here; egl: no egl here; "
+        "glfw: no glfw here). "
         "Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
     )
     assert caught.value.exit_code == 5

@@ -99,7 +99,7 @@ def test_the_nearest_mode_is_taken(modes):
         (["--animate", "0", "--video"], "--animate 0: must be a frequency above 0 Hz"),
         (["--animate=-3", "--video"], "--animate -3: must be a frequency above 0 Hz"),
         (["--animate", "nan", "--video"], "--animate nan: must be a frequency above 0 Hz"),
-        (["--animate", "28", "--video", "mode.avi"], "--video mode.avi: a film is written as .mp4; give FILE.mp4"),
+        (["--animate", "28", "--video", "mode.avi"], "--video mode.avi: a film is written as .mp4; set FILE.mp4"),
     ],
 )
 def test_what_cannot_be_filmed_is_refused(capsys, options, message):

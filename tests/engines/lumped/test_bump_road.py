@@ -6,7 +6,7 @@ import pytest
 from tests.validation import validated
 from vehicle.engines.lumped.bump_response import bump_passage
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.half_car_rider import BumpShape
+from vehicle.model.parameters.half_car_rider_parameters import BumpShape
 
 SHAPE = BumpShape(height=0.05, length=0.5)
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.model.parameters.elements import FRICTION_LAWS
+from vehicle.model.parameters.force_elements import FRICTION_LAWS
 
 QUARTER_TURN = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
 """Quaternion of 90 degrees about z."""

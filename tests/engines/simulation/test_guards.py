@@ -14,7 +14,7 @@ from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
-SHORT = random_road(rms=1e-4, seed=1, duration=1.5)
+SHORT = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.5)
 
 
 def test_item_36_a_lost_state_stops_with_time_and_joint(car, monkeypatch, tmp_path):
@@ -29,7 +29,7 @@ def test_item_36_a_lost_state_stops_with_time_and_joint(car, monkeypatch, tmp_pa
     time = float(found.group(1))
     # The spline through the samples swings before the jump, by a factor of 4 less each sample.
     assert time == pytest.approx(0.7, abs=0.02)
-    assert re.search(r"\(joint [a-z_0-9]+\); the step answers the car at rest, so it is this motion", message)
+    assert re.search(r"\(joint [a-z_0-9]+\); the step is stable for the car at rest, but not for this motion", message)
     assert caught.value.state is not None
     assert 0.6 < float(caught.value.state["time"]) <= time
     assert np.isfinite(caught.value.state["qpos"]).all()

@@ -38,7 +38,7 @@ def test_both_ends_are_as_good_as_the_middle():
 
 
 def test_engines_record_alike_up_to_the_last_sample():
-    road = random_road(rms=2e-5, seed=3, duration=1.0)
+    road = random_road(rms=2e-5, seed=3, wheel="fr", duration=1.0)
     car = Car.load(None, ["solver.timestep=0.000125", "damper.coulomb_friction=0"])
     stepped, reduced = car.run(road), car.run(road, engine="reduced")
     for name in ("knuckle_fr_acc_z", "seat_rail_acc_z", "engine_acc_z"):

@@ -130,9 +130,9 @@ def test_both_sides_are_mirrored_and_stand(tmp_path):
 
 
 @pytest.mark.parametrize(("axes", "message"), [
-    ('["engine_cog", "engine_kog"]', "connection.link.axes: found 'engine_kog', no such point; the nearest is"),
-    ('["engine_cog"]', "connection.link.axes: found ['engine_cog']; needed are two points"),
-    ("3", "connection.link.axes: found 3, needed is a list"),
+    ('["engine_cog", "engine_kog"]', "connection.link.axes: found 'engine_kog', unknown point; the nearest is"),
+    ('["engine_cog"]', "connection.link.axes: found ['engine_cog']; must be two points"),
+    ("3", "connection.link.axes: found 3, must be a list"),
 ])  # fmt: skip
 def test_bad_axes_are_refused(tmp_path, axes, message):
     law = f'\n[connection.link]\nmoving = "engine"\ncarrier = "body"\nat = {AT}\naxes = {axes}\n'

@@ -31,7 +31,8 @@ stiffness = [1e5, 2e5, 3e5]
 damping = [100.0, 200.0, 300.0]
 rotational_stiffness = 0.0
 """
-ROAD = random_road(rms=1e-3, seed=1, duration=1.0)
+SIDES = {"right": 1e7, "left": 2e7}
+ROAD = random_road(rms=1e-3, seed=1, wheel="fr", duration=1.0)
 
 
 def written(folder: Path, text: str) -> Path:
@@ -123,6 +124,15 @@ def test_numbers_of_one_side_lie_over_those_of_both(tmp_path):
     assert laws["arm_rear_fl"].damping == laws["arm_rear_fr"].damping
     # A point of one side is where it really is.
     assert vehicle.points["tie_inner_fl"] == (0.985, -0.3, 0.66) and vehicle.points["tie_inner_fr"][1] == 0.335
+
+
+def test_two_tables_of_sides_without_one_of_the_instance_are_not_mixed_up(tmp_path):
+    """Numbers of one side were those of the other where the instance itself had no table."""
+    tables = {side: f"[front.{side}.bushings.arm_front]\nstiffness = [{k}, {k}, {k}]\n" for side, k in SIDES.items()}
+    rest = "damping = [0.0, 0.0, 0.0]\nrotational_stiffness = 0.0\n"
+    vehicle = load_vehicle(written(tmp_path, TEXT + "".join(table + rest for table in tables.values())))
+    laws: dict[str, Any] = {one.name: one.law for one in vehicle.composition.connections}
+    assert laws["arm_front_fr"].stiffness == (1e7,) * 3 and laws["arm_front_fl"].stiffness == (2e7,) * 3
 
 
 def test_full_tensors_and_crooked_axes_are_mirrored(tmp_path):

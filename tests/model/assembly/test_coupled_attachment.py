@@ -1,4 +1,4 @@
-"""Bushings and joints behind an attachment that couples the axes: against complex stiffnesses in series, in a car."""
+"""Bushings and joints in series with an attachment that couples the axes: against complex stiffnesses, in a car."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.coupled_attachment import coupled_law
 from vehicle.model.parameters.axes import axes_along
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.elements import Bushing, ForceTable, Hydromount
+from vehicle.model.parameters.force_elements import Bushing, ForceTable, Hydromount
 from vehicle.runs.car import Car
 
 SOFT = Bushing(stiffness=(6e5, 3e5, 5e5), damping=(1000.0, 100.0, 2000.0), rotational_stiffness=100.0)
@@ -74,9 +74,9 @@ def test_an_ideal_joint_becomes_the_sheet_metal_itself():
     np.testing.assert_allclose(b, 1e-4 * k)
 
 
-def test_a_table_behind_it_is_refused():
+def test_a_table_in_series_is_rejected():
     table = replace(SOFT, table_z=ForceTable(displacement=(-0.01, 0.0, 0.01), force=(-100.0, 0.0, 100.0)))
-    with pytest.raises(ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table behind"):
+    with pytest.raises(ConfigurationError, match=r"engine\.bushings\.mount\.table_z: found a table in series"):
         coupled_law(connection(table), flexibility())
 
 

@@ -55,8 +55,8 @@ BAD = {
         "nodes.arm_front.mass: missing; every parameter must be given [kg]",
     ),
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
-    "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', needed is a number"),
-    "two coordinates": ("[0.15, 0.52, 0.82]", "[0.15, 0.52]", "nodes.rail_front.place: found (0.15, 0.52), needed is"),
+    "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', must be a number"),
+    "two coordinates": ("[0.15, 0.52, 0.82]", "[0.15, 0.52]", "nodes.rail_front.place: found (0.15, 0.52), must be"),
     "left side": ("[0.15, 0.52, 0.82]", "[0.15, -0.52, 0.82]", "nodes.rail_front.place: found y = -0.52 m, must be"),
     "place and mirror": (
         'mirror = "seat_rail"',
@@ -114,7 +114,7 @@ BAD = {
         "damping_ratio = 3.0",
         "damping_ratio: found 3.0 -, must be at",
     ),
-    "format": ('"body design 1"', '"body design 7"', "format: found 'body design 7', allowed are body design 1"),
+    "format": ('"body design 1"', '"body design 7"', "format: found 'body design 7', must be one of body design 1"),
     "cut off": ("[members.front_rails]", "[members.front", "not a TOML file"),
 }
 

@@ -13,7 +13,7 @@ from vehicle.model.parameters.toml_file import write_text
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.least_squares import fit
 
 FACTOR, RATIO = "body.modes.2.frequency_factor", "body.modes.2.damping_ratio"
 CHANGED = {FACTOR: 1.12, RATIO: 0.06}
@@ -66,7 +66,7 @@ def test_a_table_that_is_no_number_is_refused(car, tmp_path):
     file = tmp_path / "vehicle.toml"
     text = write_text(car.vehicle)
     file.write_text(text + "\n[body.modes.torsion]\nfrequency_factor = 1.1\n", encoding="utf-8")
-    with pytest.raises(ConfigurationError, match=r"body\.modes\.torsion: needed is the number of a mode from 1"):
+    with pytest.raises(ConfigurationError, match=r"body\.modes\.torsion: must be the number of a mode from 1"):
         Car.load(file)
 
 

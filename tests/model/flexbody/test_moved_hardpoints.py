@@ -18,7 +18,7 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 
-ROAD = random_road(rms=1e-3, seed=1, duration=1.0)
+ROAD = random_road(rms=1e-3, seed=1, wheel="fr", duration=1.0)
 
 
 def rms(car, engine, channel="seat_rail_acc_z"):

@@ -168,14 +168,14 @@ BAD = [
     (
         Coulomb,
         {"friction_limit": np.array([1.0, np.nan]), "smoothing": 1e5},
-        "Coulomb.friction_limit: found nan N, needed is a finite number (friction limit Fd in sliding)",
+        "Coulomb.friction_limit: found nan N, must be a finite number (friction limit Fd in sliding)",
     ),
     (
         Coulomb,
         {"friction_limit": "much", "smoothing": 1e5},
-        "Coulomb.friction_limit: found 'much', needed is a number [N]",
+        "Coulomb.friction_limit: found 'much', must be a number [N]",
     ),
-    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, needed is a number [N]"),
+    (Coulomb, {"friction_limit": True, "smoothing": 1e5}, "Coulomb.friction_limit: found True, must be a number [N]"),
     (
         Degressive,
         {"low_damping": 1.0, "high_damping": 1.0, "knee_velocity": -0.1},

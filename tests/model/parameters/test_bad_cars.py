@@ -69,9 +69,9 @@ VEHICLES = {
     "a number as template": (
         'template = "blocks"',
         "template = 3",
-        "rear.template: found 3, needed is a text in quotes",
+        "rear.template: found 3, must be a text in quotes",
     ),
-    "a name with a blank": (*put('["re ar"]\ntemplate = "blocks"'), "re ar: found 're ar', allowed are letters"),
+    "a name with a blank": (*put('["re ar"]\ntemplate = "blocks"'), "re ar: found 're ar', must consist of letters"),
     # Points.
     "missing": ("tie_outer = [", "tie_outr = [", "front.hardpoints.tie_outr: unknown parameter; the nearest"),
     "twice": ("seat = [", "seat = [1, 0, 1]\nseat = [", "not a TOML file: Cannot overwrite a value (at line"),
@@ -88,19 +88,19 @@ VEHICLES = {
     "of itself": (
         "tie_inner = [0.985, 0.335, 0.66]",
         'tie_inner = "front.tie_inner"',
-        "tie_inner', which leads back to",
+        "tie_inner', which refers back to",
     ),
     "in the plane": (
         "strut_top = [0.877, 0.548, 1.23]",
         "strut_top = [0.877, 0.548]",
-        "needed is a list of 3 numbers [m]",
+        "must be a list of 3 numbers [m]",
     ),
     "not finite": (
         "0.548, 1.23]",
         "0.548, nan]",
-        "front.hardpoints.strut_top: found [0.877, 0.548, nan] m, needed are fin",
+        "front.hardpoints.strut_top: found [0.877, 0.548, nan] m, must be fin",
     ),
-    "a text": ("0.548, 1.23]", '0.548, "high"]', "front.hardpoints.strut_top: found 'high', needed is a number"),
+    "a text": ("0.548, 1.23]", '0.548, "high"]', "front.hardpoints.strut_top: found 'high', must be a number"),
     "on the other side": (
         *put("[front.left.hardpoints]\ntie_inner = [0.985, 0.335, 0.66]"),
         "front.left.hardpoints.tie_inner: found y = 0.335 m, which is on the other side",
@@ -118,7 +118,7 @@ VEHICLES = {
         "mass = -4.05",
         "front.parts.a_arm.mass: found -4.05 kg, must be greater than 0.0",
     ),
-    "infinite mass": ("mass = 4.05", "mass = inf", "front.parts.a_arm.mass: found inf kg, needed is a finite number"),
+    "infinite mass": ("mass = 4.05", "mass = inf", "front.parts.a_arm.mass: found inf kg, must be a finite number"),
     "moments": (
         ARM,
         "inertia = [0.05, 0.02, 0.5]",
@@ -132,23 +132,23 @@ VEHICLES = {
     "a word for numbers": (
         "stiffness = [2.5e5, 8.0e5, 8.0e5]",
         'stiffness = "soft"',
-        "stiffness: found 'soft', needed is a",
+        "stiffness: found 'soft', must be a",
     ),
-    "a number for a table": (*put("[front.left]\nbushings = 3"), "front.left.bushings: found 3, needed is a table"),
+    "a number for a table": (*put("[front.left]\nbushings = 3"), "front.left.bushings: found 3, must be a table"),
     "a number for a side": (
         "[front.hardpoints]",
         "left = 3\n[front.hardpoints]",
-        "front.left: found 3, needed is a table",
+        "front.left: found 3, must be a table",
     ),
     "a date": (
         "mass = 4.05",
         "mass = 2026-11-22",
-        "front.parts.a_arm.mass: found datetime.date(2026, 11, 22), needed is",
+        "front.parts.a_arm.mass: found datetime.date(2026, 11, 22), must be",
     ),
     "a list of tables": (
         "[solver]",
         "[[solver]]",
-        "solver: found [{'timestep': 0.001, 'record_rate': 1000.0}], needed is",
+        "solver: found [{'timestep': 0.001, 'record_rate': 1000.0}], must be",
     ),
     "not TOML": ("gravity = 9.81", "gravity = 9,81", "not a TOML file: "),
     # What is named and is not there, what is there and is not taken.
@@ -160,27 +160,27 @@ VEHICLES = {
     "a part of a port": (
         "[front.hardpoints]",
         'ports = { body = "engin" }\n[front.hardpoints]',
-        "front.ports.body: 'engin'",
+        "front.ports.body: found 'engin'",
     ),
     "moving part": (
         *put(f"[connection.x]\n{LINK.replace('engine', 'engin')}"),
-        "connection.x.moving: found 'engin', no",
+        "connection.x.moving: found 'engin', unknown",
     ),
-    "carrier": (*put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"), "connection.x.carrier: found 'bodi', no such"),
+    "carrier": (*put(f"[connection.x]\n{LINK.replace('body', 'bodi')}"), "connection.x.carrier: found 'bodi', unknown"),
     "the same part": (
         *put(f"[connection.x]\n{LINK.replace('body', 'engine')}"),
-        "connection.x: holds engine on itself",
+        "connection.x: connects engine to itself",
     ),
     "place": (*put(f"[connection.x]\n{LINK.replace('at', '#')}"), "connection.x.at: missing"),
     "part of an output": (
         'on = "engine"',
         'on = "engin"',
-        "outputs.engine.on: found 'engin', no such part; the nearest is",
+        "outputs.engine.on: found 'engin', unknown part; the nearest is",
     ),
     "point of an output": (
         'at = "engine_cog"',
         'at = "engine_kog"',
-        "outputs.engine.at: found 'engine_kog', no such point",
+        "outputs.engine.at: found 'engine_kog', unknown point",
     ),
     "two of one name": (*put(f"[connection.arm_rear_fr]\n{LINK}"), "arm_rear_fr: two elements have this name"),
     "an alias": ("[alias]", '[alias]\nx = "front.nothing"', "alias.x: no parameter front.nothing"),
@@ -191,12 +191,12 @@ VEHICLES = {
     ),
     "side of what is not mirrored": (
         *put("[engine.left.bushings.hydromount]\nstiffness = [1e5, 1e5, 1e5]"),
-        "engine.left.bushings.hydromount: three_mounts.toml does not take it; it is not mirrored",
+        "engine.left.bushings.hydromount: three_mounts.toml does not use it; it is not mirrored",
     ),
     "nothing to stand on": (
         TEXT[TEXT.index("[rear]") : TEXT.index("# Channels")],
         "",
-        "found 0 m, allowed are 0.5 to 8 m",
+        "found 0 m, must be 0.5 to 8 m",
     ),
 }
 
@@ -244,7 +244,7 @@ CURVES = {
     "a word": (HEAD + "-1,-1\nfast,0\n1,1\n", "test.csv:3:1: column 'velocity [m/s]' holds 'fast'"),
     "unsorted": (HEAD + "1,1\n-1,-1\n", "front.damper.velocity: found -1.0 after 1.0, must be ascending"),
     "falling": (HEAD + "-1,1\n1,-1\n", "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
-    "a point": (HEAD + "1,1\n", "front.damper.velocity: found 1 points, needed are 2 to 40"),
+    "a point": (HEAD + "1,1\n", "front.damper.velocity: found 1 points, must be 2 to 40"),
     "one direction": (HEAD + "0,0\n1,1\n", "front.damper.velocity: found 0.0 to 1.0, must lie on both sides of 0"),
 }
 

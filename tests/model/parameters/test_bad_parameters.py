@@ -16,15 +16,15 @@ INSTANCE = re.compile(r"(?<![\w.])(front|engine|rear)\.(?!toml)")
 CASES = {
     "20 NaN stiffness": (
         "main_spring.stiffness=nan",
-        "main_spring.stiffness: found nan N/m, needed is a finite number (stiffness)",
+        "main_spring.stiffness: found nan N/m, must be a finite number (stiffness)",
     ),
     "20 NaN in a vector": (
         "bushings.tyre.stiffness=[1e5, nan, 1e5]",
-        "bushings.tyre.stiffness: found nan N/m, needed is a finite number (Kx, Ky, Kz)",
+        "bushings.tyre.stiffness: found nan N/m, must be a finite number (Kx, Ky, Kz)",
     ),
     "20 infinite stiffness": (
         "stabilizer.torsional_stiffness=inf",
-        "stabilizer.torsional_stiffness: found inf N m/rad, needed is a finite number "
+        "stabilizer.torsional_stiffness: found inf N m/rad, must be a finite number "
         "(torque over relative angle of the halves)",
     ),
     "21 negative stiffness": (
@@ -51,8 +51,8 @@ CASES = {
     ),
     "24 triangle inequality": (
         "parts.engine.inertia=[5.0, 5.0, 15.0]",
-        "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2, the two smaller must add up to the largest at least "
-        "(short by 5); no mass distribution has such moments",
+        "parts.engine.inertia: found [5.0, 5.0, 15.0] kg m2, the two smaller must add up to at least the largest "
+        "(short by 5); no mass distribution has these moments",
     ),
     "25 zero step": ("solver.timestep=0", "solver.timestep: found 0.0 s, must be at least 1e-06"),
     "25 negative step": ("solver.timestep=-1e-3", "solver.timestep: found -0.001 s, must be at least 1e-06"),
@@ -81,7 +81,7 @@ CASES = {
     ),
     "26 millimetres": (
         "hardpoints.strut_top=[877.0, 548.0, 1230.0]",
-        "hardpoints.strut_top: found [877.0, 548.0, 1230.0] m, farther than 20.0 m: looks like mm; give metres",
+        "hardpoints.strut_top: found [877.0, 548.0, 1230.0] m, farther than 20.0 m: probably mm; set metres",
     ),
     "28 Stribeck velocity zero": (
         "damper.stribeck_velocity=0",
@@ -95,42 +95,42 @@ CASES = {
         "bushings.hydromount.maxwell_damping=-1",
         "bushings.hydromount.maxwell_damping: found -1.0 N s/m, must be at least 0.0",
     ),
-    "31 text for a number": ('damper.viscous="2250"', "damper.viscous: found '2250', needed is a number"),
-    "31 truth value": ("damper.viscous=true", "damper.viscous: found True, needed is a number"),
+    "31 text for a number": ('damper.viscous="2250"', "damper.viscous: found '2250', must be a number"),
+    "31 truth value": ("damper.viscous=true", "damper.viscous: found True, must be a number"),
     "31 truth value in a vector": (
         "body.cog=[2.157, true, 1.011]",
-        "body.cog: found True, needed is a number",
+        "body.cog: found True, must be a number",
     ),
     "31 two components": (
         "bushings.tyre.stiffness=[1e5, 1e5]",
-        "bushings.tyre.stiffness: found (100000.0, 100000.0), needed is a list of 3 numbers [N/m]",
+        "bushings.tyre.stiffness: found (100000.0, 100000.0), must be a list of 3 numbers [N/m]",
     ),
     "31 number for a vector": (
         "body.cog=2.157",
-        "--set body.cog=2.157: body.cog is a vector; give all as [x, y, z], or one component with its axis behind the "
+        "--set body.cog=2.157: body.cog is a vector; set all components as [x, y, z], or one by adding its axis to the "
         "path: body.cog.z=2.157",
     ),
     "31 overflow": (
         "main_spring.stiffness=1e400",
-        "main_spring.stiffness: found inf N/m, needed is a finite number (stiffness)",
+        "main_spring.stiffness: found inf N/m, must be a finite number (stiffness)",
     ),
-    "31 number for a switch": ("body.flexible=1", "body.flexible: found 1, needed is true or false"),
-    "31 number for a text": ("name=3", "name: found 3, needed is a text in quotes"),
+    "31 number for a switch": ("body.flexible=1", "body.flexible: found 1, must be true or false"),
+    "31 number for a text": ("name=3", "name: found 3, must be a text in quotes"),
     "31 unknown word": (
         "damper.friction_law=viscous",
-        "damper.friction_law: found 'viscous', allowed are coulomb, stribeck",
+        "damper.friction_law: found 'viscous', must be one of coulomb, stribeck",
     ),
     "32 XML in a name": (
         'name="a\\"/><b"',
-        "name: found 'a\"/><b', allowed are names of letters, digits, '_', '.', '-'",
+        "name: found 'a\"/><b', must be a name of letters, digits, '_', '.', '-'",
     ),
     "32 newline in a name": (
         'name="a\\nb"',
-        "name: found 'a\\nb', allowed are names of letters, digits, '_', '.', '-'",
+        "name: found 'a\\nb', must be a name of letters, digits, '_', '.', '-'",
     ),
     "32 quote in a file name": (
         'body.superelement="it\'s"',
-        "body.superelement: found \"it's\", allowed are names of letters, digits, '_', '.', '-'",
+        "body.superelement: found \"it's\", must be a name of letters, digits, '_', '.', '-'",
     ),
 }
 

@@ -146,8 +146,8 @@ def test_an_override_may_name_an_axis():
             "--set damper.coulomb_fricton=1: no parameter damper.coulomb_fricton; "
             "the nearest is front.damper.coulomb_friction",
         ),
-        ("damper", "--set damper: needed is PATH=VALUE, as in damper.coulomb_friction=93.75"),
-        ("=3", "--set =3: needed is PATH=VALUE, as in damper.coulomb_friction=93.75"),
+        ("damper", "--set damper: must be PATH=VALUE, as in damper.coulomb_friction=93.75"),
+        ("=3", "--set =3: must be PATH=VALUE, as in damper.coulomb_friction=93.75"),
         (
             "main_spring=3",
             "--set main_spring=3: main_spring is a group; set one of front.main_spring.stiffness",

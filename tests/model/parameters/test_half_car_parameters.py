@@ -13,7 +13,11 @@ from vehicle.model.parameters.damper_choice import (
     FrequencyBands,
     damper_choice_parameters,
 )
-from vehicle.model.parameters.half_car_rider import PUBLISHED, HalfCarRiderParameters, half_car_rider_parameters
+from vehicle.model.parameters.half_car_rider_parameters import (
+    PUBLISHED,
+    HalfCarRiderParameters,
+    half_car_rider_parameters,
+)
 from vehicle.model.parameters.paths import override
 from vehicle.model.parameters.toml_file import build, read_table
 
@@ -53,7 +57,7 @@ def test_assumed_values_say_so():
         ("rear.tyre_stiffness=0.0", "rear.tyre_stiffness: found 0.0 N/m, must be greater than 0.0"),
         (
             "seat.stiffness=nan",
-            "seat.stiffness: found nan N/m, needed is a finite number (stiffness of its support)",
+            "seat.stiffness: found nan N/m, must be a finite number (stiffness of its support)",
         ),
         ("bump.length=0.0", "bump.length: found 0.0 m, must be greater than 0.0"),
         ("semi_active.skyhook_share=1.5", "semi_active.skyhook_share: found 1.5 -, must be at most 1.0"),
@@ -62,7 +66,7 @@ def test_assumed_values_say_so():
             "semi_active.maximum_damping=200.0",
             "semi_active.maximum_damping: found 200.0 N s/m, must be at least minimum_damping 300.0 N s/m",
         ),
-        ("upper_limb.mass=true", "upper_limb.mass: found True, needed is a number"),
+        ("upper_limb.mass=true", "upper_limb.mass: found True, must be a number"),
     ],
 )
 def test_bad_rider_parameters_are_refused_by_name(assignment, message):

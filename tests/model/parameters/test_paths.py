@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.elements import Hydromount
+from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.model.parameters.paths import assignments, full_path, overrides_of, unit_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.toml_file import as_table
@@ -140,7 +140,7 @@ def test_overrides_as_a_mapping_and_a_single_text():
         "a.b=1.5", "c=true", "d=[1, 2.0, 3]", 'e="stribeck"', "f=2.0", "g={x = [1, 2]}"
     ]  # fmt: skip
     assert assignments(["a=1"]) == ["a=1"]
-    with pytest.raises(ConfigurationError, match=r"found the text 'a=1'; needed is a list, as \['a=1'\]"):
+    with pytest.raises(ConfigurationError, match=r"found the text 'a=1'; must be a list, as \['a=1'\]"):
         assignments("a=1")
-    with pytest.raises(ConfigurationError, match="a is a object; needed is a number"):
+    with pytest.raises(ConfigurationError, match="a is a object; must be a number"):
         assignments({"a": object()})

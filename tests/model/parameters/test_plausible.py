@@ -19,15 +19,15 @@ from vehicle.runs.car import Car
 ABSURD = {
     "wheel centre below the plate": (
         "hardpoints.wheel_center.z=0.3",
-        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.1 m, allowed are 0.15 to 0.7 m (loaded ",
+        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.1 m, must be 0.15 to 0.7 m (loaded ",
     ),
     "patch above the wheel centre": (
         "hardpoints.tyre_patch.z=0.8",
-        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.105 m, allowed are ",
+        "hardpoints.wheel_center.z less hardpoints.tyre_patch.z: found -0.105 m, must be ",
     ),
     "patch beside the wheel": (
         "hardpoints.tyre_patch.x=1.5",
-        "hardpoints.tyre_patch.x less hardpoints.wheel_center.x: found 0.65 m, allowed are -0.2 to 0.2 m (",
+        "hardpoints.tyre_patch.x less hardpoints.wheel_center.x: found 0.65 m, must be -0.2 to 0.2 m (",
     ),
     "a point below the plate": (
         "hardpoints.lower_ball.z=0.3",
@@ -35,7 +35,7 @@ ABSURD = {
     ),
     "rear support without stiffness": (
         "bushings.rear_support.stiffness.z=0",
-        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m (the rear of the car stands on it; ",
+        "bushings.rear_support.stiffness.z: found 0 N/m, must be at least 5000 N/m (it supports the rear of the car; ",
     ),
     "strut mount without stiffness": (
         "bushings.suspension_mount.stiffness.z=0",
@@ -47,31 +47,31 @@ ABSURD = {
     ),
     "mount of ten tonnes": (
         "parts.suspension_mount.mass=1e4",
-        "parts.suspension_mount.mass: found 10000 kg, allowed are 0.02 to 150 kg (from the screw of a rod to ",
+        "parts.suspension_mount.mass: found 10000 kg, must be 0.02 to 150 kg (from the screw of a rod to ",
     ),
     "knuckle of a microgram": (
         "parts.knuckle.mass=1e-9",
-        "parts.knuckle.mass: found 1e-09 kg, allowed are 0.02 to 150 kg (",
+        "parts.knuckle.mass: found 1e-09 kg, must be 0.02 to 150 kg (",
     ),
     "engine in grams": (
         "parts.engine.mass=220000",
-        "parts.engine.mass: found 220000 kg, allowed are 20 to 1000 kg (an electric motor has 30 kg, ",
+        "parts.engine.mass: found 220000 kg, must be 20 to 1000 kg (an electric motor has 30 kg, ",
     ),
     "engine inertia in kg cm2": (
         "parts.engine.inertia=[151700, 68800, 151700]",
-        "parts.engine.inertia.x: found 151700 kg m2, allowed are 0.00022 to 220 kg m2 (radius of gyration: ",
+        "parts.engine.inertia.x: found 151700 kg m2, must be 0.00022 to 220 kg m2 (radius of gyration: ",
     ),
-    "offset in mm": ("parts.caliper.offset.x=120", "parts.caliper.offset.x: found 120 m, allowed are -1 to 1 m ("),
+    "offset in mm": ("parts.caliper.offset.x=120", "parts.caliper.offset.x: found 120 m, must be -1 to 1 m ("),
     "body of 16 kg": ("body.mass=16", "body.mass: found 16.0 kg, must be at least 100.0 (without engine and axles "),
     "body of 100 tonnes": ("body.mass=100000", "body.mass: found 100000.0 kg, must be at most 5000.0 (without engine "),
     "centre of gravity in mm": (
         "body.cog=[2157, 0, 1011]",
-        "body.cog.x: found 2157 m, allowed are 0.45 to 3.9 m (between the outermost hardpoints; ",
+        "body.cog.x: found 2157 m, must be 0.45 to 3.9 m (between the outermost hardpoints; ",
     ),
-    "height of it in mm": ("body.cog.z=1011", "body.cog.z: found 1011 m, allowed are 0.4 to 1.85 m ("),
+    "height of it in mm": ("body.cog.z=1011", "body.cog.z: found 1011 m, must be 0.4 to 1.85 m ("),
     "inertia without its thousands": (
         "body.inertia.iyy=5.268",
-        "body.inertia.iyy: found 5.268 kg m2, allowed are 32.52 to 17621.6 kg m2 (about the origin; radius of ",
+        "body.inertia.iyy: found 5.268 kg m2, must be 32.52 to 17621.6 kg m2 (about the origin; radius of ",
     ),
     "gravity of 500": ("gravity=500", "gravity: found 500.0 m/s2, must be at most 30.0 (9.81 on Earth; "),
     "stiffness of 1e12": (

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vehicle.commands.advice import SHAKER_WHEEL
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
@@ -12,7 +13,10 @@ from vehicle.runs.car import Car
 
 def test_the_source_s_right_wheel_is_the_driver_s_left():
     vehicle = load_vehicle()
-    assert vehicle.shaker_wheel == "fl" and vehicle.points["wheel_center_fl"][1] < 0.0 > vehicle.points["seat_rail"][1]
+    assert (
+        vehicle.shaker_wheel == "fl" == SHAKER_WHEEL
+        and vehicle.points["wheel_center_fl"][1] < 0.0 > vehicle.points["seat_rail"][1]
+    )
     assert vehicle.wheel_text("fl") == "driver's left front wheel (fl; 'right wheel' in the words of the source)"
     assert vehicle.wheel_text("fr") == "driver's right front wheel (fr)"
 

@@ -17,7 +17,7 @@ from vehicle.commands.shaker import parser as shaker_options
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.runs.car import Car
-from vehicle.runs.comparison.comparison import comparison_of
+from vehicle.runs.comparison.compared_run import comparison_of
 from vehicle.runs.comparison.simulated import of_folder
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
@@ -67,7 +67,7 @@ def measured(tmp_path_factory, car):
 def run(tmp_path_factory, measured):
     """A short run of the car of the vehicle file, with the measurement beside it."""
     folder = tmp_path_factory.mktemp("overlay")
-    signal = read_signal(find_input("low.csv"))
+    signal = read_signal(find_input("low.csv"), wheel="fr")
     table = [signal.time[:6001], signal.displacement["fr"][:6001]]
     write_table(folder / "short.csv", ["time [s]", "displacement [m]"], table, [])
     arguments = [
@@ -120,14 +120,14 @@ def test_the_table_of_a_run_names_the_worst_channel_and_band(run, car):
     first = (run / "compare.csv").read_text().splitlines()[2].split(",")
     assert first[:4] == ["frf", worst[0], f"{worst[1]:g}", f"{rows[0]['high_hz']:g}"]
     said = " ".join(content["notices"])
-    assert "measured along -Z to ?: sign turned" in said and "(g)/(m) made m/s2 per m" in said
+    assert "measured along -Z to ?: sign inverted" in said and "(g)/(m) converted to m/s2 per m" in said
 
 
 def test_the_command_compares_the_files_of_a_run(run, measured, tmp_path, capsys):
     arguments = [str(run), "--measured", str(measured), *MAP[:2], "--output", str(tmp_path / "found")]
     assert compare([*arguments, "--bands", "5,20,40"]) == 0
     said = capsys.readouterr().out
-    assert re.search(r"worst response: knuckle_fr_acc_z, \d+ to \d+ Hz: [+-]\d", said)
+    assert re.search(r"largest error of a response: knuckle_fr_acc_z, \d+ to \d+ Hz: [+-]\d", said)
     content = json.loads((tmp_path / "found" / "compare.json").read_text())
     assert [(row["low_hz"], row["high_hz"]) for row in sorted(content["table"], key=lambda row: row["low_hz"])] == [
         (5.0, 20.0),
@@ -185,8 +185,10 @@ def test_a_record_that_began_later_names_its_delay(run, tmp_path):
     )
     measured = read_measured(path, tuple(truth.channels))
     notices = comparison_of(measured, of_folder(run)).notices
-    assert notices[0] == "no responses: no moving plate is among the channels; --map plate_fr_displacement=NAME"
-    assert notices[1].endswith("0.05 s late, all alike: if the records began at different times, give --delay 0.05")
+    assert notices[0] == "no responses: the channels include no moving plate; set --map plate_fl_displacement=NAME"
+    assert notices[1].endswith(
+        "0.05 s late, in all channels: if the records began at different times, set --delay 0.05"
+    )
     again = comparison_of(measured, of_folder(run), delay=0.05)
     assert again.notices == notices[:1] and again.records[0].correlation == pytest.approx(1.0)
 
@@ -211,7 +213,7 @@ def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):
         drives_on_road(shaker_options().parse_args(road[:4]))
     options = shaker_options().parse_args([*words, "--unit", "knuckle_fr=g"])
     with pytest.raises(
-        ConfigurationError, match=r"--unit knuckle_fr=\.\.\.: not one of the compared channels: knuckle_fr"
+        ConfigurationError, match=r"--unit knuckle_fr=\.\.\.: must be one of the compared channels: knuckle_fr"
     ):
         measured_beside(options, known, {"fr"})
 
@@ -238,18 +240,18 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["--map", "knuckle_acc_z=1"], 2, "the model has no such channel; .*did you mean knuckle_f[rl]_acc_z"),
-        (["--map", "knuckle_fr_acc_z=nothing*"], 3, "--map knuckle_fr_acc_z= 'nothing\\*' hits no channel"),
-        (["--map", "knuckle_fr_acc_z=Acc *"], 3, "hits 3 channels"),
-        (["--map", "damper_fr_velocity=1"], 3, "the model has those of accelerations alone"),
-        ([], 3, "none of its channels has a name of the model; say what is what"),
+        (["--map", "knuckle_acc_z=1"], 2, "unknown model channel; .*did you mean knuckle_f[rl]_acc_z"),
+        (["--map", "knuckle_fr_acc_z=nothing*"], 3, "--map knuckle_fr_acc_z= 'nothing\\*' matches no channel"),
+        (["--map", "knuckle_fr_acc_z=Acc *"], 3, "matches 3 channels"),
+        (["--map", "damper_fr_velocity=1"], 3, "only acceleration channels of the model"),
+        ([], 3, "no channel has the name of a model channel; set --map"),
         (
             [*MAP[:2], "--unit", "knuckle_fr_acc_z=m/s2/N"],
             3,
-            "a response to a force; the plates of the model are driven",
+            "a response to a force, but the inputs of the model are plate",
         ),
-        ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "needed is a displacement, velocity or acceleration over one"),
-        ([*MAP[:2], "--bands", "9,3"], 2, "needed are rising edges in Hz"),
+        ([*MAP[:2], "--unit", "knuckle_fr_acc_z=Pa"], 3, "must be a motion of a point over a motion"),
+        ([*MAP[:2], "--bands", "9,3"], 2, "must be increasing edges in Hz"),
         (["--map", "3"], 2, "needed is CHANNEL=NAME"),
     ],
 )

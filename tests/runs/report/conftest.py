@@ -28,7 +28,7 @@ class Reported:
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     """A run of 20 s with another friction, whose input has a name that is markup."""
     place = tmp_path_factory.mktemp("report")
-    write_signal(place / "a<b>&c.csv", random_road(rms=5.25e-4, seed=3, duration=20.0))
+    write_signal(place / "a<b>&c.csv", random_road(rms=5.25e-4, seed=3, wheel="fl", duration=20.0), plain=True)
     folder = place / "run"
     words = [
         "--input",

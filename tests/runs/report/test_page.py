@@ -17,7 +17,7 @@ from vehicle.commands.report import main
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.comparison import changed_parameters, difference, shipped_origin
+from vehicle.runs.report.differences import changed_parameters, difference, shipped_origin
 from vehicle.runs.report.moving_modes import FULL
 
 EMPTY = {"meta", "link", "input", "img", "br"}
@@ -62,8 +62,8 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     assert outline.links and all(link.startswith(("#", "data:")) for link in outline.links)
     assert not re.search(r"url\((?!#)|@import|<iframe|<object|<base", reported.text)
     assert "default-src 'none'" in unescape(reported.text)
-    wanted = ["Findings", "What was run", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
-    assert outline.titles == [*wanted, "All numbers", "How to repeat it"]
+    wanted = ["Findings", "Car, signal, engine", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
+    assert outline.titles == [*wanted, "All values", "How to repeat the run"]
     assert reported.text.count("<svg ") == 2
 
 
@@ -74,7 +74,7 @@ def test_the_page_says_the_numbers_of_the_summary(reported, outline):
     assert f"{total:.3g} m/s²" in words and reactions(total)[0] in words
     assert f"{100 * summary['slip_share']['fl']:.2f} %" in words
     top = max(summary["peaks"]["knuckle_fl_acc_z"], key=lambda peak: peak["magnitude"])
-    assert f"The highest vertical resonance at the knuckle lies at {top['frequency_hz']:.1f} Hz" in words
+    assert f"The highest vertical resonance at the knuckle is at {top['frequency_hz']:.1f} Hz" in words
     assert "front.damper.coulomb_friction" in words and "a<b>&c.csv" in words
     assert all(notice in words for notice in summary["notices"])
     assert summary["command"].startswith("python -m vehicle.shaker --input ") and summary["command"] in words
@@ -102,8 +102,8 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
-    assert found.titles[0] == "Beside each other" and found.titles[-1] == "Modes"
-    assert "None: the cars are the same." in found.words
+    assert found.titles[0] == "Comparison of the runs" and found.titles[-1] == "Modes"
+    assert "None: the cars have equal parameters." in found.words
     assert page.stat().st_size < 6e6
 
 
@@ -111,7 +111,7 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     ("words", "message"),
     [
         (["nowhere"], "nowhere: is no folder; give the folder of a run"),
-        (["."], "holds no summary.json; give the folder of a run"),
+        (["."], "has no summary.json; give the folder of a run"),
         (["{run}", "--output", "page.txt"], "--output page.txt: this file is written as .html"),
         (["{run}", "--output", "mine.html", "--force"], "--output mine.html: is not as this program wrote it there"),
     ],
@@ -127,7 +127,15 @@ def test_what_cannot_be_reported_is_refused(words, message, reported, tmp_path, 
 def test_a_damaged_run_is_refused(reported, tmp_path, capsys):
     (tmp_path / "summary.json").write_text('{"files": {}}')
     assert main([str(tmp_path)]) == 3
-    assert "summary.json: is damaged (KeyError" in capsys.readouterr().err
+    assert "summary.json: is damaged (comfort: missing); run the simulation again" in capsys.readouterr().err
+    content = json.loads((reported.folder / "summary.json").read_text())
+    content["comfort"]["seat_rail"]["rms_2_50_hz"]["x"] = "0.5"
+    (tmp_path / "summary.json").write_text(json.dumps(content))
+    assert main([str(tmp_path)]) == 3
+    assert "(comfort.seat_rail.rms_2_50_hz.x: found '0.5', must be float)" in capsys.readouterr().err
+    del content["input"]["wheel"]
+    (tmp_path / "summary.json").write_text(json.dumps(content))
+    assert main([str(tmp_path)]) == 3 and "(input.wheel: missing)" in capsys.readouterr().err
     (tmp_path / "summary.json").write_text((reported.folder / "summary.json").read_text())
     assert main([str(tmp_path)]) == 3
     assert "vehicle.toml: missing, though summary.json lists it as vehicle" in capsys.readouterr().err
@@ -213,17 +221,18 @@ def test_a_mode_of_the_page_is_that_of_the_car(reported):
 
 def test_what_makes_the_seat_rail_loud_is_said_with_the_shares_of_the_command(reported, capsys):
     text = unescape(re.sub(r"<[^>]+>", "", reported.text))
-    told = re.findall(r"At ([\d.]+) Hz the vertical acceleration at the seat rail is made by (.+?) [+-]\d+ %", text)
+    start = "the largest contributions to the vertical acceleration at the seat rail are"
+    told = re.findall(rf"At ([\d.]+) Hz {start} (.+?) [+-]\d+ %", text)
     assert 1 <= len(told) <= 3
     peaks = json.loads((reported.folder / "summary.json").read_text())["peaks"]["seat_rail_acc_z"]
     highest = max(peaks, key=lambda peak: peak["magnitude"])["frequency_hz"]
     first = next(name for at, name in told if float(at) == pytest.approx(highest, abs=0.051))
-    (state,) = re.findall(r"linear car with dampers (\w+): `python -m vehicle body participation`", text)
+    (state,) = re.findall(r"linear car with dampers (\w+); see `python -m vehicle body participation`", text)
     words = ["participation", "--at", str(highest), "--damper", state, "--json"]
     assert body_command([*words, "--vehicle", str(reported.folder / "vehicle.toml")]) == 0
     parts = {one["name"]: one["share"] for one in json.loads(capsys.readouterr().out)["contributions"]}
     assert first in parts and abs(parts[first]) == max(map(abs, parts.values()))
-    assert f"made by {first} {100 * parts[first]:+.0f} %" in text
+    assert f"are {first} {100 * parts[first]:+.0f} %" in text
 
 
 def test_a_car_is_compared_with_the_shipped_one_that_it_was_made_from():

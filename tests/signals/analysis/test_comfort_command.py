@@ -60,7 +60,7 @@ def test_channels_that_were_copied_and_a_clipped_sensor_are_named(ride, tmp_path
     np.savetxt(path, table, fmt="%.6f", delimiter=",", header="time [s],x [m/s2],y [m/s2],z [m/s2]", comments="")
     assert main(["--input", str(path), "--json"]) == 0
     out, err = capsys.readouterr()
-    assert "x and z hold the same samples" in err and "--channel z=NAME" in err
+    assert "x and z have identical samples" in err and "--channel z=NAME" in err
     assert "y: clipped?" in err and "x: clipped" not in err and "constant" not in err
     found = json.loads(out)["z"]
     weighted = weighted_record(1e-3, np.round(rough[0], 6), "Wk")
@@ -100,7 +100,9 @@ def test_gravity_is_refused_until_its_treatment_is_said(ride, capsys):
     assert err.startswith(
         f"error: {path}: the mean of column 'z' is 9.81 m/s2, its drift -0.004 m/s2; they change its "
     )
-    assert "weighted RMS or VDV by 70.3 %, allowed are 1 % and a mean of 1 m/s2; give --offset remove if" in err
+    assert (
+        "weighted RMS or VDV by 70.3 %, must be at most 1 %, with a mean of at most 1 m/s2; set --offset remove" in err
+    )
     assert err.count("\n") == 1
     assert main(["--input", path, "--json", "--offset", "remove"]) == 0
     removed = json.loads(capsys.readouterr().out)
@@ -199,6 +201,6 @@ def test_gravity_is_refused_in_a_record_of_any_length_and_a_small_offset_does_no
     if abs(mean) > 1.0:
         assert found[2] == 3
         assert f"the mean of column 'z' is {mean:g} m/s2" in err
-        assert "give --offset remove" in err
+        assert "set --offset remove" in err
     else:
         assert found[3] == pytest.approx(found[1], rel=0.01)  # it was twice

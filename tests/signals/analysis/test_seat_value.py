@@ -79,12 +79,13 @@ def test_a_run_says_what_its_seat_does(tmp_path, monkeypatch, capsys):
     still = Signal(time=TIME[:500], displacement=dict.fromkeys(("fr", "fl", "rr", "rl"), 0.0 * TIME[:500]))
     bare = Car.load("focus_road").run(still, engine="reduced")
     assert comfort_notices(bare)[-1] == NO_SEAT and seat_values(bare) is None
-    (tmp_path / "seated" / "summary.json").write_text(json.dumps({"notices": comfort_notices(bare)}))
+    summary = json.loads((tmp_path / "seated" / "summary.json").read_text())
+    (tmp_path / "seated" / "summary.json").write_text(json.dumps({**summary, "notices": comfort_notices(bare)}))
     assert comfort(["--input", "seated/time.npz", *asked]) == 0
     assert f"notice: {NO_SEAT}" in capsys.readouterr().err
     for wrong, message in (
-        (["--rail", "x=1"], "--rail x=1: the value of a seat is that of z; give z=NAME, or a place"),
-        (["--rail", "seat_rail", "--place", "feet"], "--place feet: --rail asks for the value of a seat"),
+        (["--rail", "x=1"], "--rail x=1: the SEAT value needs axis z; set z=NAME, or an output point"),
+        (["--rail", "seat_rail", "--place", "feet"], "--place feet: --rail is for the SEAT value of a seat"),
     ):
         assert comfort(["--input", "seated/time.npz", "--channel", "seat", "--offset", "keep", *wrong]) == 2
         assert message in capsys.readouterr().err

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from vehicle.signals.excitation.signal_file import read_signal
+
 HEADER = "time [s],displacement [m]"
+
+read_plain = partial(read_signal, wheel="fr")
+"""Read a signal whose plain `displacement` column drives the wheel fr."""
 
 
 def rows(count: int = 400, *, rate: float = 1000.0, amplitude: float = 1e-3, frequency: float = 10.0) -> list[str]:

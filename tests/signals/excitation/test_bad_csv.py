@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.signals.excitation.csv_samples import HEADER, rows, with_row, write
+from tests.signals.excitation.csv_samples import HEADER, read_plain, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.plausibility import band_limited_acceleration
-from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records import text as csv_text
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
@@ -19,7 +18,7 @@ NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displace
 def refused(path: Path, **options: object) -> str:
     """Message of the refusal without the path in front."""
     with pytest.raises(DataError) as caught:
-        read_signal(path, **options)  # type: ignore[arg-type]
+        read_plain(path, **options)  # type: ignore[arg-type]
     assert caught.value.exit_code == 3
     message = str(caught.value)
     assert message.startswith(str(path))
@@ -49,16 +48,14 @@ def test_1_header_or_comments_only(tmp_path):
 
 
 def test_1_a_few_rows_are_no_record(tmp_path):
-    assert refused_lines(tmp_path, [HEADER, *rows(31)]) == (
-        ": 31 rows; allowed from 32 rows; this is no record of a vibration"
-    )
+    assert refused_lines(tmp_path, [HEADER, *rows(31)]) == (": 31 rows, must be at least 32 rows; use a longer record")
 
 
 @pytest.mark.parametrize("cell", ["nan", "NaN", "inf", "-Inf", "", "#N/A", "1e400"])
 def test_2_missing_or_infinite(tmp_path, cell):
     assert refused_lines(tmp_path, with_row(17, f"0.017000,{cell}")) == (
-        f":19:2: column 'displacement [m]' holds {cell!r}; allowed are finite numbers; repair the cell, or ask for "
-        "interpolation (--interpolate)"
+        f":19:2: column 'displacement [m]' holds {cell!r}; allowed are finite numbers; repair the cell, or set "
+        "--interpolate"
     )
 
 
@@ -94,27 +91,24 @@ def test_2_missing_time_is_never_interpolated(tmp_path, cell):
 
 def test_3_non_uniform_time(tmp_path):
     assert refused_lines(tmp_path, with_row(100, "0.100002,0.001")) == (
-        ":102: time is not uniform: the step of 0.001002 s deviates by 0.002 of the median step 0.001 s; allowed "
-        "0.001; "
-        "write the time with more digits, or set --resample 1000"
+        ":102: time is not uniform: the step of 0.001002 s deviates by 0.002 of the median step 0.001 s, "
+        "must be at most 0.001; write the time with more digits, or set --resample 1000"
     )
 
 
 def test_3_jitter_within_the_tolerance_is_accepted(tmp_path):
     lines = with_row(100, f"0.1000005,{rows()[100].split(',')[1]}")
-    assert read_signal(write(tmp_path, lines)).notices == ()
+    assert read_plain(write(tmp_path, lines)).notices == ()
 
 
 def test_4_repeated_and_decreasing_time(tmp_path):
     assert refused_lines(tmp_path, with_row(100, "0.099000,0.001")) == (
         ":102: time 0.099 s repeats the time 0.099 s of line 101; time must increase from row to row; were two "
-        "logs put "
-        "behind each other?"
+        "logs concatenated?"
     )
     assert refused_lines(tmp_path, [HEADER, *rows(), "# second log", *rows()]) == (
-        ":403: time 0 s goes back behind the time 0.399 s of line 401; time must increase from row to row; were "
-        "two logs "
-        "put behind each other?"
+        ":403: time 0 s is before the time 0.399 s of line 401; time must increase from row to row; were "
+        "two logs concatenated?"
     )
 
 
@@ -127,7 +121,7 @@ def test_5_no_header(tmp_path):
 def test_5_unknown_and_missing_columns(tmp_path):
     assert refused_lines(tmp_path, ["time [s],displacement [m],force [N]", "0,0,0"]) == (
         ":1: unknown column 'force [N]'; found 'time [s]', 'displacement [m]', 'force [N]'; needed are "
-        f"{NEEDED}; remove the others, or say which one drives a plate: --channel fr=NAME"
+        f"{NEEDED}; remove the others, or assign a column to a wheel: --channel fr=NAME"
     )
     assert refused_lines(tmp_path, ["zeit [s],weg [m]", "0,0"]).startswith(
         ":1: unknown column 'zeit [s]', 'weg [m]'; found"
@@ -153,7 +147,7 @@ def test_6_decimal_comma_is_never_guessed(tmp_path):
     assert refused_lines(tmp_path, lines) == (
         ":2:3: row has 4 cells, the header 2; with decimal commas the columns must be separated by ';', in the "
         "header too; "
-        "1,5 is never guessed"
+        "1,5 is ambiguous"
     )
 
 
@@ -177,26 +171,26 @@ def test_6_rows_with_another_delimiter(tmp_path):
     [
         (
             "time [s],displacement",
-            ":1:2: column 'displacement' has no unit; write it in brackets behind the name, allowed: [m] or [mm]",
+            ":1:2: column 'displacement' has no unit; write [m] or [mm] after the name",
         ),
         (
             "time,displacement [m]",
-            ":1:1: column 'time' has no unit; write it in brackets behind the name, allowed: [s]",
+            ":1:1: column 'time' has no unit; write [s] after the name",
         ),
         (
             "time [s],displacement [furlong]",
-            ":1:2: column 'displacement [furlong]' has the unit [furlong]; allowed: [m] or [mm]",
+            ":1:2: column 'displacement [furlong]' has the unit [furlong], must be [m] or [mm]",
         ),
         (
             "time [s],displacement [cm]",
-            ":1:2: column 'displacement [cm]' has the unit [cm]; allowed: [m] or [mm]; with --channel, as --channel "
-            "fr=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command takes the "
+            ":1:2: column 'displacement [cm]' has the unit [cm], must be [m] or [mm]; with --channel, as --channel "
+            "fl=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command reads the "
             "time.npz of its run",
         ),
         (
             "time [ms],displacement [m]",
-            ":1:1: column 'time [ms]' has the unit [ms]; allowed: [s]; with --channel, as --channel "
-            "fr=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command takes the "
+            ":1:1: column 'time [ms]' has the unit [ms], must be [s]; with --channel, as --channel "
+            "fl=displacement, the shaker reads any unit of `python -m vehicle inspect`, and every command reads the "
             "time.npz of its run",
         ),
     ],
@@ -228,7 +222,7 @@ def test_91_one_pothole_is_named_and_no_reason_to_refuse(tmp_path):
     def lines(values):
         return [HEADER, *(f"{t:.3f},{value:.8f}" for t, value in zip(time, values, strict=True))]
 
-    said = [text for text in read_signal(write(tmp_path, lines(z))).notices if "a pothole" in text]
+    said = [text for text in read_plain(write(tmp_path, lines(z))).notices if "a pothole" in text]
     # -2 A / s^2 at its deepest point, below 100 Hz
     assert len(said) == 1 and "at t = 12" in said[0] and "beyond 50 m/s2" in said[0]
     # in mm under [m] the whole record is beyond, and a spike of a logger is no pothole
@@ -241,7 +235,7 @@ def test_7_too_small_to_be_true(tmp_path):
     assert message.startswith(": RMS of plate fr is 3.5")
     assert "allowed from 1e-07 m; does the column hold metres?" in message
     still = refused_lines(tmp_path, [HEADER, *(f"{i / 1000},0" for i in range(400))])
-    assert still.startswith(": no plate moves: every column holds one value only")
+    assert still.startswith(": no plate moves: all columns are constant")
 
 
 def test_64_a_column_in_millimetres_is_judged_in_millimetres(tmp_path):
@@ -272,9 +266,9 @@ def test_7_quantisation_of_a_measured_signal_is_no_acceleration(tmp_path):
 def test_9_acceleration_is_refused(tmp_path, header):
     message = refused_lines(tmp_path, [f"time [s],{header}", *rows()])
     assert message.startswith(
-        f":1:2: column {header!r} is an acceleration or a velocity; the plate needs a displacement. Drift makes "
+        f":1:2: column {header!r} is an acceleration or a velocity; the plate needs a displacement. Because of "
     )
-    assert message.endswith(f" --highpass 0.5; or give {NEEDED}") and "--channel fr='" in message
+    assert message.endswith(f" --highpass 0.5; or use {NEEDED}") and "--channel fr='" in message
 
 
 def test_9_a_level_is_no_velocity(tmp_path):
@@ -284,13 +278,13 @@ def test_9_a_level_is_no_velocity(tmp_path):
 def test_11_sampling_too_low(tmp_path):
     lines = [HEADER, *(f"{i / 9},{row.split(',')[1]}" for i, row in enumerate(rows()))]
     assert refused_lines(tmp_path, lines) == (
-        ": sampling rate 9 Hz; allowed from 10 Hz (usable up to 4 Hz); measure or export with a higher rate"
+        ": sampling rate 9 Hz, must be at least 10 Hz (usable up to 4 Hz); measure or export with a higher rate"
     )
 
 
 def test_11_time_in_milliseconds_under_seconds(tmp_path):
     lines = [HEADER, *(f"{i},{row.split(',')[1]}" for i, row in enumerate(rows()))]
-    assert "sampling rate 1 Hz; allowed from 10 Hz (usable up to 4 Hz); the time looks like ms;" in refused_lines(
+    assert "sampling rate 1 Hz, must be at least 10 Hz (usable up to 4 Hz); the time looks like ms;" in refused_lines(
         tmp_path, lines
     )
 
@@ -303,15 +297,14 @@ def test_14_columns_of_different_length(tmp_path, ending):
     path = write(tmp_path, lines)
     for interpolate in (False, True):
         assert refused(path, interpolate=interpolate) == (
-            ":302:3: column 'displacement_fl [m]' ends here while others go on: columns of different length; all "
-            "plates need "
-            "the same samples; nothing is cut or filled up; export them over the same time"
+            ":302:3: column 'displacement_fl [m]' ends before the other columns: columns of different length, "
+            "must be equal; export all columns over the same time"
         )
 
 
 def test_14_a_file_cut_off_in_its_last_row(tmp_path):
     assert refused_lines(tmp_path, [HEADER, *rows(), "0.4"]) == (
-        ":402:1: the last row has 1 cells, the header 2; the file was cut off; remove the row"
+        ":402:1: the last row has 1 cells, the header 2; the file is truncated; remove the row"
     )
 
 
@@ -324,7 +317,7 @@ def test_17_too_large_is_refused_before_it_is_read(tmp_path):
     message = refused(path)
     assert message.startswith(": about ")
     assert "rows in 10 GB need" in message
-    assert "GiB of memory; allowed 2 GiB; cut the record into parts or lower its sampling rate" in message
+    assert "GiB of memory, must be at most 2 GiB; cut the record into parts or lower its sampling rate" in message
     rows_estimated = float(message.split()[2])
     assert rows_estimated == pytest.approx(10e9 / (len(block) / 50001), rel=0.01)  # rows are equally long
 
@@ -362,7 +355,7 @@ def test_19_nul_behind_the_first_megabyte(tmp_path):
 
 def test_missing_file_is_a_wrong_path(tmp_path):
     with pytest.raises(ConfigurationError, match=r"none\.csv: no such file; give the path of a CSV file"):
-        read_signal(tmp_path / "none.csv")
+        read_plain(tmp_path / "none.csv")
 
 
 def test_unreadable_file(tmp_path, monkeypatch):

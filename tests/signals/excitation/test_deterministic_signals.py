@@ -34,7 +34,7 @@ def test_bump_velocity_is_continuous_at_both_ends(end):
 
 
 def test_bump_noise_has_its_rms_outside_and_runs_on_inside():
-    signal = bump(amplitude=7.5e-3)
+    signal = bump(amplitude=7.5e-3, wheel="fr")
     t, z = signal.time, signal.displacement["fr"]
     outside = (t <= 5.0) | (t >= 5.0 + 1.0 / 3.0)
     assert np.std(z[outside]) == pytest.approx(5e-5, rel=1e-12)  # rounding
@@ -64,5 +64,5 @@ def test_bump_without_noise_is_the_shape():
 )
 def test_bad_bumps_are_refused(change, message):
     with pytest.raises(ConfigurationError) as caught:
-        bump(**{"amplitude": 1e-3, **change})
+        bump(**{"amplitude": 1e-3, "wheel": "fr", **change})
     assert str(caught.value) == message

@@ -15,7 +15,7 @@ from vehicle.signals.excitation.random_road import random_road
 @pytest.mark.parametrize("rms", [1.06e-4, 3.17e-4, 5.25e-4])
 @pytest.mark.parametrize("taper", [0.0, 0.5])
 def test_rms_and_mean_are_exact(rms, taper):
-    signal = random_road(rms=rms, seed=5, taper_length=taper)
+    signal = random_road(rms=rms, seed=5, wheel="fr", taper_length=taper)
     # rounding of 60001 samples
     validated(
         "Roads and excitation", f"RMS of a random input of {1e3 * rms:g} mm, taper {taper:g} s", signal.rms("fr"), rms,
@@ -27,19 +27,19 @@ def test_rms_and_mean_are_exact(rms, taper):
 
 
 def test_same_seed_same_signal_and_another_seed_another():
-    a, b = (random_road(rms=1e-4, seed=5, duration=5.0).displacement["fr"] for _ in range(2))
+    a, b = (random_road(rms=1e-4, seed=5, wheel="fr", duration=5.0).displacement["fr"] for _ in range(2))
     assert np.array_equal(a, b)
-    c = random_road(rms=1e-4, seed=6, duration=5.0).displacement["fr"]
+    c = random_road(rms=1e-4, seed=6, wheel="fr", duration=5.0).displacement["fr"]
     assert abs(np.corrcoef(a, c)[0, 1]) < 0.5  # about 1/sqrt(2 * 48 Hz * 5 s) = 0.05 for independent ones
 
 
 def test_levels_of_one_seed_are_one_shape():
-    low, high = (random_road(rms=rms, seed=5, duration=5.0).displacement["fr"] for rms in (1e-4, 5e-4))
+    low, high = (random_road(rms=rms, seed=5, wheel="fr", duration=5.0).displacement["fr"] for rms in (1e-4, 5e-4))
     np.testing.assert_allclose(high, 5.0 * low, rtol=0, atol=1e-16)  # rounding of 1e-3 m
 
 
 def test_begins_and_ends_at_rest():
-    signal = random_road(rms=1e-4, seed=5, duration=5.0)
+    signal = random_road(rms=1e-4, seed=5, wheel="fr", duration=5.0)
     z = signal.displacement["fr"]
     assert z[0] == 0.0
     assert z[-1] == 0.0
@@ -50,7 +50,7 @@ def test_begins_and_ends_at_rest():
 
 
 def test_without_taper_the_record_is_one_period():
-    z = random_road(rms=1e-4, seed=5, duration=5.0, taper_length=0.0).displacement["fr"]
+    z = random_road(rms=1e-4, seed=5, wheel="fr", duration=5.0, taper_length=0.0).displacement["fr"]
     assert z[0] == z[-1]
     lines = np.abs(np.fft.rfft(z[:-1])) / z.size
     outside = np.ones(lines.size, dtype=bool)
@@ -62,7 +62,7 @@ def test_without_taper_the_record_is_one_period():
 
 
 def test_displacement_psd_falls_with_the_square_of_frequency():
-    signal = random_road(rms=5.25e-4, seed=5, duration=240.0)
+    signal = random_road(rms=5.25e-4, seed=5, wheel="fr", duration=240.0)
     f, psd = welch(signal.displacement["fr"], fs=1000.0, nperseg=8000)
     band = (f >= 3.0) & (f <= 48.0)
     slope, intercept = np.polyfit(np.log(f[band]), np.log(psd[band]), 1)
@@ -84,7 +84,7 @@ def test_displacement_psd_falls_with_the_square_of_frequency():
 
 def test_velocity_psd_is_constant():
     # The other way round: the velocity of the plate itself, mean level of two bands.
-    signal = random_road(rms=5.25e-4, seed=5, duration=120.0)
+    signal = random_road(rms=5.25e-4, seed=5, wheel="fr", duration=120.0)
     velocity = signal.plate_motion(signal.time).velocity["fr"]
     f, psd = welch(velocity, fs=1000.0, nperseg=4000)
     low = psd[(f > 3.0) & (f < 25.0)].mean()
@@ -94,7 +94,7 @@ def test_velocity_psd_is_constant():
 
 
 def test_amplitudes_are_gaussian():
-    z = random_road(rms=1e-4, seed=5, duration=240.0).displacement["fr"]
+    z = random_road(rms=1e-4, seed=5, wheel="fr", duration=240.0).displacement["fr"]
     # Kurtosis of a Gaussian 0; effective samples about 2 * 8 Hz * 240 s: 1 sigma = sqrt(24 / 4000) = 0.08.
     assert abs(kurtosis(z)) < 0.3
     # Rayleigh amplitudes: the line powers times f^2 scatter exponentially (std = mean); pure random phases would have
@@ -109,7 +109,9 @@ def test_the_band_edge_does_not_change_the_road():
     # One seed is one road: without taper the content above 5 Hz has the same phases and ratios whatever the lower edge.
     wide, narrow = (
         np.fft.rfft(
-            random_road(rms=1e-4, seed=5, duration=5.0, lower_band_edge=edge, taper_length=0.0).displacement["fr"][:-1]
+            random_road(
+                rms=1e-4, seed=5, wheel="fr", duration=5.0, lower_band_edge=edge, taper_length=0.0
+            ).displacement["fr"][:-1]
         )
         for edge in (1.0, 5.0)
     )
@@ -134,13 +136,15 @@ def test_the_band_edge_does_not_change_the_road():
 )
 def test_bad_parameters_are_refused(change, message):
     with pytest.raises(ConfigurationError) as caught:
-        random_road(**{"rms": 1e-4, "seed": 5, "duration": 5.0, **change})
+        random_road(**{"rms": 1e-4, "seed": 5, "wheel": "fr", "duration": 5.0, **change})
     assert message in str(caught.value)
 
 
 @pytest.mark.parametrize("order", [0, 2])
 def test_each_line_has_the_level_of_the_density(order):
-    road = partial(random_road, rms=5e-4, duration=20.0, lower_band_edge=4.0, roll_off_order=order, level="lines")
+    road = partial(
+        random_road, rms=5e-4, wheel="fr", duration=20.0, lower_band_edge=4.0, roll_off_order=order, level="lines"
+    )
     records = [road(seed=seed, taper_length=0.0).displacement["fr"] for seed in (1, 2)]
     assert abs(np.corrcoef(records[0], records[1])[0, 1]) < 0.5
     checked: list[object] = []
@@ -163,6 +167,8 @@ def test_each_line_has_the_level_of_the_density(order):
 
 
 def test_the_text_says_what_is_exact():
-    said = [random_road(rms=1e-4, seed=5, duration=5.0, level=level).source for level in ("record", "lines")]
+    said = [
+        random_road(rms=1e-4, seed=5, wheel="fr", duration=5.0, level=level).source for level in ("record", "lines")
+    ]
     assert "RMS 0.0001 m (of the record, exact)" in said[0]
     assert "RMS 0.0001 m (before the taper, each line exactly at its level)" in said[1]

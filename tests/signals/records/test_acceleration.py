@@ -68,7 +68,7 @@ NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\
         ("", r"ride.csv: the file is empty; needed are a header line with units and one row per sample"),
         ("# nothing\n\n", rf"ride.csv: only comments; {NEEDED.replace('needed are', 'needed are the columns')}"),
         (lines(), r"ride.csv:1: the file ends after the header"),
-        (lines(*ROWS[:2]), r"ride.csv: 2 samples, at least 3 are needed"),
+        (lines(*ROWS[:2]), r"ride.csv: 2 samples, must be at least 3"),
         (lines(*ROWS, header=""), rf"ride.csv:2: no column 'time \[s\]'; found '0', '0.1', '0.2', '0.3'; {NEEDED}"),
         (
             lines(*ROWS, header=HEADER.replace("z", "w")),
@@ -81,7 +81,7 @@ NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\
             lines(*ROWS, header="time,x,y,z"),
             rf"ride.csv:1: no column 'time \[s\]'; found 'time', 'x', 'y', 'z'; {NEEDED}",
         ),
-        (lines(*ROWS, header=HEADER.replace("x [m/s2]", "x [mm/s2]")), r"column 'x' has the unit 'mm/s2', allowed are"),
+        (lines(*ROWS, header=HEADER.replace("x [m/s2]", "x [mm/s2]")), r"'x' has the unit 'mm/s2', must be one of"),
         (
             lines(*ROWS[:2], "0,002,0.2,-0.2,0.1", ROWS[3]),
             r"ride.csv:4:5: row has 5 cells, the header 4; with decimal commas the columns must be separated by ';'",
@@ -96,7 +96,7 @@ NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\
         (lines(*ROWS[:2], "0.002,#N/A,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '#N/A'"),
         (lines(*ROWS[:2], "0.002,1e400,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '1e400'"),
         (lines(*ROWS[:2], "0.002,1_0,0.2,0.1", ROWS[3]), r"ride.csv:4:2: column 'x \[m/s2\]' holds '1_0'"),
-        (lines(*ROWS, ROWS[0]), r"ride.csv:6: time 0 s goes back behind the time 0.003 s of line 5; .* two logs"),
+        (lines(*ROWS, ROWS[0]), r"ride.csv:6: time 0 s is before the time 0.003 s of line 5; .* two logs"),
         (lines(*ROWS, ROWS[3]), r"ride.csv:6: time 0.003 s repeats the time 0.003 s of line 5"),
         (
             lines(*ROWS, "0.0043,0,0,0"),
@@ -104,7 +104,7 @@ NEEDED = r"needed are time \[s\], x \[m/s2\], y \[m/s2\], z \[m/s2\] \(or \[g\]\
         ),
         (
             lines(*ROWS, "0.004,0,0,980"),
-            r"column 'z' swings by 783\.9 m/s2 about its mean, allowed are 50; looks like mm",
+            r"column 'z' deviates by 783\.9 m/s2 from its mean, must be at most 50; is the unit mm",
         ),
         (b"time [s]\xff", r"ride.csv:1:9: byte 0xff is not UTF-8; save the file as UTF-8"),
         (b"time [s]\n\0", r"ride.csv:2:1: NUL byte; allowed is UTF-8 text"),

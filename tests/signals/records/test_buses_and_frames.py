@@ -30,7 +30,7 @@ def test_a_bus_log_is_named_and_decoded(tmp_path, capsys, name):
     database.write_text(DBC)
     assert inspect([str(path)]) == 3
     said = capsys.readouterr().err
-    assert "is a log of a CAN bus" in said and "0x64" in said and "give --dbc FILE" in said
+    assert "log of a CAN bus" in said and "0x64" in said and "set --dbc FILE" in said
     channels = {one.name: one for one in read_record(path, [database]).channels}
     assert (channels["AccZ"].unit, channels["AccZ"].place, channels["Speed"].unit) == ("g", "Body 0x64", "km/h")
     np.testing.assert_allclose(channels["AccZ"].values, 0.01 * (256 + np.arange(6)) - 1.0)
@@ -45,7 +45,7 @@ def test_a_database_is_asked_for_and_checked(tmp_path):
     pytest.importorskip("asammdf")
     path = tmp_path / "bus.log"
     path.write_text(TEXTS["bus.log"])
-    with pytest.raises(ConfigurationError, match=r"--dbc .*none.dbc: no such file"):
+    with pytest.raises(ConfigurationError, match=r"--dbc .*none.dbc: file not found"):
         read_record(path, [tmp_path / "none.dbc"])
     (tmp_path / "bad.dbc").write_text("nothing")
     with pytest.raises(ConfigurationError, match=r"--dbc .*bad.dbc"):
@@ -137,7 +137,7 @@ def test_rows_and_records_in_hdf5(tmp_path):
     assert channels["one"].values.size == 20
     np.testing.assert_array_equal(channels["three(2,:)"].values, 30.0 + np.arange(30))
     assert channels["acc_z_g"].unit == "g" and channels["acc_z_g"].rate == pytest.approx(100.0)
-    assert "fields of 'log' that hold no numbers are left out: 'id'" in found.notices
+    assert "fields of 'log' without numbers are ignored: 'id'" in found.notices
 
 
 def test_objects_of_matlab_7_3_are_refused_with_the_line_that_converts(tmp_path):
@@ -148,7 +148,7 @@ def test_objects_of_matlab_7_3_are_refused_with_the_line_that_converts(tmp_path)
         file["T"].attrs.update({"MATLAB_class": np.bytes_("table"), "MATLAB_object_decode": np.int32(3)})
     with path.open("r+b") as raw:
         raw.write(b"MATLAB 7.3 MAT-file".ljust(128))
-    with pytest.raises(DataError, match=r"T \(table\) are objects of MATLAB, .* as writetable\(T, 'T.csv'\)"):
+    with pytest.raises(DataError, match=r"T \(table\) are MATLAB objects, .* for example writetable\(T, 'T.csv'\)"):
         read_record(path)
 
 
@@ -168,11 +168,13 @@ def test_objects_of_matlab_5(tmp_path):
     head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
     path = tmp_path / "table.mat"
     path.write_bytes(head + table)
-    with pytest.raises(DataError, match=r"T \(timetable\) are objects .* as writetimetable\(T, 'T.csv'\)"):
+    with pytest.raises(
+        DataError, match=r"T \(timetable\) are MATLAB objects.* for example writetimetable\(T, 'T.csv'\)"
+    ):
         read_record(path)
     path.write_bytes(head + table + plain)
     found = read_record(path)
-    assert [one.name for one in found.channels] == ["acc"] and "left out: T (timetable)" in found.notices[0]
+    assert [one.name for one in found.channels] == ["acc"] and "ignored: T (timetable)" in found.notices[0]
 
 
 def test_parquet(tmp_path):
@@ -187,11 +189,11 @@ def test_parquet(tmp_path):
     assert [(one.name, one.unit) for one in found.channels] == [("acc_z_g", "g"), ("Speed", "km/h")]
     np.testing.assert_allclose(times(found.channels[0]), 0.01 * np.arange(8), atol=1e-12)
     np.testing.assert_array_equal(found.channels[0].values, values)
-    assert found.start == "2026-02-09T19:20:02.000+00:00" and "left out: 'label'" in found.notices[0]
+    assert found.start == "2026-02-09T19:20:02.000+00:00" and "ignored: 'label'" in found.notices[0]
     data = path.read_bytes()
     for broken in (data[:-20], data[:200], b"PAR1" + bytes(600)):
         path.write_bytes(broken)
-        with pytest.raises(DataError, match="no Parquet file that can be read"):
+        with pytest.raises(DataError, match="cannot be read as Parquet"):
             read_record(path)
 
 
@@ -208,9 +210,9 @@ def test_parquet_without_its_library(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("head", "said"),
     [
-        (b"LOGG" + bytes(200), r"Vector BLF\), which is not read; export MDF4 or ASC, as `python -m can.logconvert"),
+        (b"LOGG" + bytes(200), r"Vector BLF\), not supported; export MDF4 or ASC, as `python -m can.logconvert"),
         (b"\x1aE\xdf\xa3\x9fB\x86\x81\x01B\x82\x84mide" + bytes(200), r"enDAQ IDE .* endaq.ide.to_pandas\("),
-        (b"ULog\x01\x12\x35" + bytes(200), "PX4 ULog, which .* `ulog2csv"),
+        (b"ULog\x01\x12\x35" + bytes(200), "PX4 ULog, not supported.* `ulog2csv"),
     ],
 )
 def test_what_is_not_read_is_refused_with_the_line_that_exports(tmp_path, head, said):

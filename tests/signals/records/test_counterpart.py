@@ -35,7 +35,7 @@ def test_the_advice_is_obeyed_and_does_what_it_says(shift, drift):
     measured, simulated = records(shift, drift)
     (said,) = advice(measured, simulated)
     assert ("clock of the measurement is 0.2 % slow" in said) is (drift > 0.0)
-    assert ("0.2 % fast" in said) is (drift < 0.0) and "all alike" in said
+    assert ("0.2 % fast" in said) is (drift < 0.0) and "in all channels" in said
     delay = float(re.findall(r"--delay (-?[\d.e-]+)", said)[0])
     found = re.search(r"--drift (-?[\d.]+)", said)
     slow = float(found[1]) * 1e-6 if found else 0.0
@@ -63,7 +63,7 @@ def test_records_that_agree_and_those_that_have_nothing_in_common_are_quiet():
     )
     parts = counterparts(measured, turned, measured.time)
     outer = [part for part in parts if part.channel != NAMES[1]]  # the one in the middle is itself
-    assert all(part.known is None for part in outer) and clock_advice(outer, STEP, 0.0, 0.0) == []
+    assert all(part.reliable_shift is None for part in outer) and clock_advice(outer, STEP, 0.0, 0.0) == []
 
 
 def test_sign_and_unit_are_named_with_their_option():
@@ -72,7 +72,7 @@ def test_sign_and_unit_are_named_with_their_option():
     channels = {name: factors[name] * values for name, values in measured.channels.items()}
     wrong = Record(time=measured.time, channels=channels, units=measured.units)
     said = sign_and_unit(counterparts(wrong, simulated, wrong.time))
-    options = [re.findall(r"give (--\S+ \S+)$", text)[0] for text in said]
+    options = [re.findall(r"set (--\S+ \S+)$", text)[0] for text in said]
     assert options == [f"--turn {NAMES[0]}", f"--unit {NAMES[1]}=g", f"--unit {NAMES[2]}=mm/s2"]
 
 
@@ -83,9 +83,9 @@ def test_responses_tell_sign_and_unit_too():
     weight = np.ones(frequency.size)
     assert response_faults("seat_rail_acc_z", truth, model, weight) == []
     (said,) = response_faults("seat_rail_acc_z", -truth, model, weight)
-    assert said.endswith("give --turn seat_rail_acc_z")
+    assert said.endswith("set --turn seat_rail_acc_z")
     (said,) = response_faults("seat_rail_acc_z", truth / 9.80665, model, weight)
-    assert said.endswith("give --unit seat_rail_acc_z=g")
+    assert said.endswith("set --unit seat_rail_acc_z=g")
     # A level that is ten times too low at some frequencies alone is no unit.
     assert response_faults("seat_rail_acc_z", np.where(frequency < 12.0, truth / 9.8, truth), model, weight) == []
 

@@ -26,7 +26,7 @@ CHANNELS = (
 
 
 def signal(path, *options):
-    return read_signal(path, choice=record_choice(parser().parse_args(["--input", "x", *options]), "fr"))
+    return read_signal(path, wheel="fr", choice=record_choice(parser().parse_args(["--input", "x", *options]), "fr"))
 
 
 def exported(**quantity):
@@ -58,7 +58,7 @@ def test_structures_of_testlab(tmp_path):
     with path.open("wb") as file:
         savemat(file, {"Signal": exported(label="g", unit_transformation={"factor": 1.0})})
     (channel,) = read_record(path).channels
-    assert channel.unit == "" and channel.remark.endswith("its factor 1 to SI: a contradiction")
+    assert channel.unit == "" and channel.remark.endswith("its factor to SI 1: a contradiction")
 
 
 @pytest.mark.parametrize("version", ["4", "5"])
@@ -67,9 +67,9 @@ def test_plain_arrays_of_matlab_have_no_unit_and_no_time(tmp_path, version):
     savemat(path, {"t": TIME, "data": np.column_stack([SINE, 2.0 * SINE])}, format=version)
     found = read_record(path)
     assert [one.name for one in found.channels] == ["t", "data(:,1)", "data(:,2)"]
-    with pytest.raises(DataError, match=r"has no unit; give --unit fr=UNIT"):
+    with pytest.raises(DataError, match=r"has no unit; set --unit fr=UNIT"):
         signal(path, "--channel", "fr=data(:,1)", "--rate", "2048")
-    with pytest.raises(DataError, match=r"has no times; give --rate HZ, or --channel time=NAME"):
+    with pytest.raises(DataError, match=r"has no times; set --rate HZ, or --channel time=NAME"):
         signal(path, "--channel", "fr=data(:,1)", "--unit", "fr=mm")
     options = ["--channel", "fr=data(:,2)", "--unit", "fr=mm", "--channel", "time=t", "--unit", "time=s"]
     found = signal(path, *options)
@@ -92,7 +92,7 @@ def test_wav_is_shares_of_full_scale(tmp_path, kind):
     share = SINE / 5.0  # half of full scale
     data = share if kind is np.float32 else share * 128 + 128 if kind is np.uint8 else share * np.iinfo(kind).max
     wavfile.write(path, int(RATE), data.astype(kind))
-    with pytest.raises(DataError, match=r"no unit: shares of full scale; .* give --unit fr=UNIT"):
+    with pytest.raises(DataError, match=r"no unit: fractions of full scale; .* set --unit fr=UNIT"):
         signal(path)
     found = signal(path, "--unit", "12.5 mm")
     step = {np.uint8: 1.0 / 128, np.int16: 2.0**-15}.get(kind, 1e-7)
@@ -101,7 +101,7 @@ def test_wav_is_shares_of_full_scale(tmp_path, kind):
         abs=20e-3 * step, unit="m", source=foreign("scipy", "wavfile"),
     )  # fmt: skip
     path.write_bytes(path.read_bytes()[:-200])
-    with pytest.raises(DataError, match=r"chunk 'data' claims \d+ bytes of data, the file holds"):
+    with pytest.raises(DataError, match=r"chunk 'data' claims \d+ bytes of data, the file contains"):
         read_record(path)
 
 
@@ -150,14 +150,14 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"FRAMES": "5000"}, "FRAMES 5000 claims 80000 bytes of data, the file holds 96"),
-        ({"SAMPLES": "21"}, "SAMPLES 21; allowed is 1 to 20"),
-        ({"CHANNELS": "nan"}, "CHANNELS is 'nan'; needed is a number"),
+        ({"FRAMES": "5000"}, "FRAMES 5000 claims 80000 bytes of data, the file contains 96"),
+        ({"SAMPLES": "21"}, "SAMPLES 21, must be 1 to 20"),
+        ({"CHANNELS": "nan"}, "CHANNELS is 'nan', must be a number"),
         ({"CHANNELS": None}, "no CHANNELS in the header"),
-        ({"PTS_PER_GROUP": "7"}, "7 samples a group, 4 a frame"),
+        ({"PTS_PER_GROUP": "7"}, "7 samples per group, 4 per frame"),
         ({"DELTA_T": "0"}, "DELTA_T 0 s"),
         ({"SCALE.CHAN_2": "x"}, "SCALE.CHAN_2 is 'x'"),
-        ({"FORMAT": "ASCII"}, "FORMAT is 'ASCII'; allowed are BINARY"),
+        ({"FORMAT": "ASCII"}, "FORMAT is 'ASCII', must be one of BINARY"),
         ({"NUM_PARAMS": "90000"}, "NUM_PARAMS claims"),
         ({"UPPER_LIMIT.CHAN_1": "0.001", "LOWER_LIMIT.CHAN_1": "0"}, "channel 1 reaches 0.17, its limits"),
         ({"DATA_TYPE": "FLOATING_POINT"}, "claims 192 bytes"),

@@ -5,7 +5,7 @@ import pytest
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.records.frf import read_frf, write_frf
+from vehicle.signals.records.frf_file import read_frf, write_frf
 
 CHANNELS = ("knuckle_fr_acc_z", "engine_acc_z")
 HEADER = "frequency [Hz],a_magnitude,a_phase [deg],a_coherence"
@@ -59,9 +59,9 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
     np.testing.assert_allclose(part.response[0], 8.0j * part.frequency, atol=1e-12)
     assert np.all(part.coherence == 0.9)
     assert data.select(("a", "b"), band=(2.0, 12.0)).frequency.size == 41
-    with pytest.raises(DataError, match="no channel c; there are b, a"):
+    with pytest.raises(DataError, match="no channel c; the file has b, a"):
         data.select(("c",), band=(2.0, 12.0))
-    with pytest.raises(DataError, match="3 frequencies between 2 and 4 Hz that are 1 Hz apart; at least 8"):
+    with pytest.raises(DataError, match="3 frequencies between 2 and 4 Hz with a spacing of 1 Hz, must be at least 8"):
         data.select(("a",), band=(2.0, 4.0), spacing=1.0)
 
 
@@ -80,10 +80,13 @@ def test_selection_by_channel_band_and_spacing(tmp_path):
         ([HEADER, *ROWS, "20,inf,2,0.5"], r"own\.csv:12:2: column 'a_magnitude' holds 'inf'"),
         ([HEADER, *ROWS, "20,1,x,0.5"], r"own\.csv:12:3: column 'a_phase \[deg\]' holds 'x'"),
         ([HEADER, *ROWS, ",1,2,0.5"], r"own\.csv:12:1: column 'frequency \[Hz\]' holds ''; a frequency is never"),
-        ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' holds 1\.5; allowed is 0 to 1"),
-        ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' holds -1; allowed is 0 and above"),
-        ([HEADER, *ROWS, "3,1,2,0.5"], r"own\.csv:12: column 'frequency \[Hz\]' holds 3 after 10; .*must rise"),
-        ([HEADER, "0,1,2,0.5", *ROWS], r"own\.csv:2: column 'frequency \[Hz\]' holds 0; allowed is above 0"),
+        ([HEADER, *ROWS, "20,1,2,1.5"], r"own\.csv:12: column 'a_coherence' has the value 1\.5, must be 0 to 1"),
+        ([HEADER, *ROWS, "20,-1,2,0.5"], r"own\.csv:12: column 'a_magnitude' has the value -1, must be 0 and above"),
+        (
+            [HEADER, *ROWS, "3,1,2,0.5"],
+            r"own\.csv:12: column 'frequency \[Hz\]' has the value 3 after 10; .*must increase",
+        ),
+        ([HEADER, "0,1,2,0.5", *ROWS], r"own\.csv:2: column 'frequency \[Hz\]' has the value 0, must be above 0"),
     ],
 )
 def test_bad_files_are_refused_by_place(tmp_path, lines, message):

@@ -149,19 +149,19 @@ def test_starts_programs_and_what_is_left_out(tmp_path):
     assert read(tmp_path, TEXTS["racechrono.csv"]).start == "2026-02-09T19:20:02.050+00:00"
     assert read(tmp_path, TEXTS["androsensor.csv"]).start == "2014-05-13 14:08:14:600"
     torque = read(tmp_path, TEXTS["torque.csv"])
-    assert torque.start == "21-Aug-2012 18:20:20.500" and "left out: 'GPS Time'" in " ".join(torque.notices)
+    assert torque.start == "21-Aug-2012 18:20:20.500" and "ignored: 'GPS Time'" in " ".join(torque.notices)
     assert torque.channels[-1].si_unit == ""  # g/s is a flow of grams, no acceleration over time
     lvm = read(tmp_path, LVM, "x.lvm")
-    assert lvm.start == "2013/02/19 09:51:40,5" and "comments of rows are left out" in lvm.notices
+    assert lvm.start == "2013/02/19 09:51:40,5" and "comments of rows are ignored" in lvm.notices
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
         ("id,t [s],a\nACC,0.0,1.5\nGYR,0.1,2.5\nACC,0.2,1.5\nGYR,0.3,2.5\n" * 1 + "ACC,0.4,1\n" * 1 + "GYR,0.5,1\n" * 1,
-         "column 'id' holds 'ACC', 'GYR' in turn"),
+         "column 'id' alternates between 'ACC', 'GYR'"),
         ("a,b,c,d\n" + "0.5,1.5,2.5\n" * 8, "4 names for 3 columns"),
-        (clock_file("iso").replace("10:00:00.050Z", "later"), r"log.csv:7:1: column 'time' holds '2026-03-01Tlater'"),
+        (clock_file("iso").replace("10:00:00.050Z", "later"), r"log.csv:7:1: column 'time' has the cell '2026-03-01Tl"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_known_is_refused(tmp_path, text, said):
@@ -172,8 +172,8 @@ def test_what_cannot_be_known_is_refused(tmp_path, text, said):
 def test_a_rate_above_a_table_without_times_is_named_and_not_used(tmp_path):
     found = read(tmp_path, "# Config: data_rate = 2000.0 Hz\ncount,a_x\n" + "".join(f"{n},0.{n}\n" for n in range(9)))
     assert [one.rate for one in found.channels] == [None, None]
-    assert "give --rate 2000.0" in " ".join(found.notices)
-    with pytest.raises(DataError, match="has no times; give --rate HZ"):
+    assert "set --rate 2000.0" in " ".join(found.notices)
+    with pytest.raises(DataError, match="has no times; set --rate HZ"):
         choose(found, Choice(channels={"fr": "a_x"}, units={"fr": "g"}))
 
 
@@ -189,18 +189,18 @@ def test_segments_of_labview_follow_their_clocks(tmp_path):
 
 def test_packets_of_labview_without_times_between_them_have_no_rate(tmp_path):
     (one, _) = read(tmp_path, LVM.replace("Samples\t6\t6", "Samples\t3\t3"), "x.lvm").channels
-    assert one.rate is None and "packets of 3 samples" in one.remark and "give --rate 25600" in one.remark
+    assert one.rate is None and "packets of 3 samples" in one.remark and "set --rate 25600" in one.remark
     (one, _) = read(tmp_path, LVM.replace("3,906250E-5", "0,000977"), "x.lvm").channels
     assert one.rate == 1024.0 and "taken as a clock of 1024 Hz" in one.remark
     (one, _) = read(tmp_path, LVM.replace("3,906250E-5", "0,000500"), "x.lvm").channels
-    assert one.rate == 2000.0 and "is known to 0.1 %" in one.remark
+    assert one.rate == 2000.0 and "uncertainty of the rate 2000 Hz 0.1 %" in one.remark
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
         ("Channels\t2", "Channels\t5", "2 names for 5 channels"),
-        ("X_Columns\tNo", "X_Columns\tTwo", "allowed are Tab or Comma, and No, One or Multi"),
+        ("X_Columns\tNo", "X_Columns\tTwo", "must be Tab or Comma, and No, One or Multi"),
         ("0,500000", "0.500000", "decimal points and commas"),
         ("***End_of_Header***\t\t\t", "", "no rows of numbers"),
         ("1,000000\t3,000000", "1,000000", "row has 2 cells for 3 columns"),
@@ -244,4 +244,4 @@ def test_damaged_vbox_files_are_refused(tmp_path, old, new, said):
 def test_units_of_vbox_that_fit_no_columns_are_not_used(tmp_path):
     found = read(tmp_path, VBO.replace("g\ndeg/s\n", "g\n\ndeg/s\nV\n").replace("long accel g", "x"), "x.vbo")
     assert next(one for one in found.channels if one.name == "Yaw_Rate").unit == ""
-    assert "which belongs to which is open, none is used: g, -, deg/s, V" in " ".join(found.notices)
+    assert "the assignment is ambiguous, no unit is used: g, -, deg/s, V" in " ".join(found.notices)

@@ -46,11 +46,11 @@ def test_all_motions_over_motions_become_accelerations_over_displacements(tmp_pa
 @pytest.mark.parametrize(
     ("unit", "message"),
     [
-        ("(m/s2)/N", "a response to a force; the plates of the model are driven by displacements"),
+        ("(m/s2)/N", "a response to a force, but the inputs of the model are plate displacements"),
         ("g/N", "a response to a force"),
-        ("V/m", "needed is a displacement, velocity or acceleration over one of the plate"),
-        ("", "has no unit; give --unit knuckle_fr_acc_z=UNIT"),
-        ("qq", "has the unit 'qq', which is not known"),
+        ("V/m", "must be a motion of a point over a motion of the plate"),
+        ("", "has no unit; set --unit knuckle_fr_acc_z=UNIT"),
+        ("qq", "has the unknown unit 'qq'"),
     ],
 )
 def test_others_are_refused(tmp_path, unit, message):
@@ -92,7 +92,7 @@ def test_columns_of_parts_are_one_response(tmp_path, parts):
 def test_a_magnitude_alone_is_refused(tmp_path):
     rows = "\n".join(f"{f!r};{abs(h)!r}" for f, h in zip(LINES.tolist(), TRUTH.tolist(), strict=True))
     (tmp_path / "x.csv").write_text(f"Frequency [Hz];H magnitude [g/m]\n{rows}\n")
-    with pytest.raises(DataError, match="is a spectrum without a phase; needed is a frequency response"):
+    with pytest.raises(DataError, match="is a spectrum without a phase, must be a frequency response"):
         read_measured(tmp_path / "x.csv", (NAME,), Choice(channels={NAME: "H*"}))
 
 
@@ -103,7 +103,7 @@ def test_responses_over_unequal_lines_share_their_union(tmp_path):
     found, said = measured_frfs(both, {NAME: "H", "engine_acc_z": "K"}, Choice())
     assert found.frequency.size == LINES.size and np.isnan(found.response[1, :10]).all()
     np.testing.assert_array_equal(found.response[1, 10:], TRUTH[10:])
-    assert "engine_acc_z: no coherence beside it; all lines count alike" in said
+    assert "engine_acc_z: no coherence in the file; all lines have equal weight" in said
 
 
 def test_time_histories_give_the_response_of_the_system(tmp_path):

@@ -8,7 +8,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.records.named_columns import named_columns
-from vehicle.studies.sweeps.table import read_variations
+from vehicle.studies.sweeps.sweep_table import read_variations
 
 DISTANCE = np.arange(0.0, 5.0, 0.5)
 PROFILE = "Profilometer 7\nDistance [m];Left [mm];Right [mm]\n"
@@ -51,9 +51,9 @@ def test_the_curve_of_a_damper_test_in_its_own_units(tmp_path):
 @pytest.mark.parametrize(
     ("head", "message"),
     [
-        ("a [m];b [m]", "0 columns are called 'left'; needed is one \\[m\\]; found 'a' \\[m\\], 'b' \\[m\\]"),
-        ("left [m];Left [m]", "2 columns are called 'left'"),
-        ("left [s];b [m]", "column 'left' has the unit 's'; allowed are m, cm, mm"),
+        ("a [m];b [m]", "0 columns are named 'left', must be one \\[m\\]; found 'a' \\[m\\], 'b' \\[m\\]"),
+        ("left [m];Left [m]", "2 columns are named 'left'"),
+        ("left [s];b [m]", "column 'left' has the unit 's', must be one of m, cm, mm"),
         ("left;b", "column 'left' has the unit ''"),
     ],
 )

@@ -51,7 +51,7 @@ def test_comfort_reads_a_place_of_a_run(run, tmp_path, capsys):
     assert main(["--input", str(run)]) == 3
     said = capsys.readouterr().err
     assert "no column x; found " in said
-    assert "give --channel with one of seat_rail" in said
+    assert "set --channel to one of seat_rail" in said
     assert main(["--input", str(run), "--channel", "roof"]) == 3
     assert "no column roof_acc_x" in capsys.readouterr().err
 
@@ -61,7 +61,7 @@ def test_arrays_that_are_no_record_are_refused(tmp_path):
     with pytest.raises(ConfigurationError, match=r"own\.npz: no such file"):
         read_columns(path)
     path.write_bytes(b"PK no archive")
-    with pytest.raises(DataError, match=r"own\.npz: no file of arrays"):
+    with pytest.raises(DataError, match=r"own\.npz: cannot be read as npz"):
         read_columns(path)
     np.savez(path, x=SINE)
     with pytest.raises(DataError, match=r"own\.npz: no array 'time'; found x; needed are 'time"):
@@ -70,7 +70,7 @@ def test_arrays_that_are_no_record_are_refused(tmp_path):
     with pytest.raises(DataError, match=r"own\.npz: array 'x' has 3999 samples for 4000 times"):
         read_columns(path)
     np.savez(path, time=TIME[::-1], x=SINE)
-    with pytest.raises(DataError, match=r"own\.npz: sample 2: time 5\.998 s goes back behind the time .* of sample 1"):
+    with pytest.raises(DataError, match=r"own\.npz: sample 2: time 5\.998 s is before the time .* of sample 1"):
         read_columns(path)
 
 
@@ -87,7 +87,7 @@ def test_the_shaker_reads_the_plates_of_a_run(run):
 def test_arrays_beyond_the_memory_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
     np.savez_compressed(tmp_path / "own.npz", time=TIME, x=0.0 * TIME)  # zeros pack a thousand times smaller
     monkeypatch.setattr("vehicle.signals.records.npz_format.MEMORY_LIMIT", 60_000)
-    with pytest.raises(DataError, match=r"own\.npz: its arrays need .* GiB of memory; allowed"):
+    with pytest.raises(DataError, match=r"own\.npz: its arrays need .* GiB of memory, must be at most"):
         read_columns(tmp_path / "own.npz")
 
 

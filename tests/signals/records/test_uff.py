@@ -75,7 +75,7 @@ def test_steps_that_were_rounded_are_a_clock(tmp_path):
     (channel,) = read(tmp_path, function(np.ones(N), step=1.0 / 65536.0)).channels
     assert channel.rate == 65536.0 and "1.52588e-05 s is rounded: taken as a clock of 65536 Hz" in channel.remark
     (channel,) = read(tmp_path, function(np.ones(N), step=0.0)).channels
-    assert channel.rate is None and channel.remark == "the file tells no time step"
+    assert channel.rate is None and channel.remark == "no time step in the file"
 
 
 @pytest.mark.parametrize(
@@ -134,18 +134,21 @@ TEXT = function(np.linspace(1.0, 2.0, 50))
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (GOOD[:-60], "claims 200 bytes of data, the file holds"),
-        (TEXT[:-60], "has no end; the file was cut off"),
+        (GOOD[:-60], "claims 200 bytes of data, the file contains"),
+        (TEXT[:-60], "has no end; the file is truncated"),
         (TEXT[:300], "ends within its header|has no end"),
-        (function(np.ones(N), points=2_500_000), "claims 2500000 numbers, the file holds 8"),
+        (function(np.ones(N), points=2_500_000), "claims 2500000 numbers, the file contains 8"),
         (function(np.ones(N), points=2_500_000, binary=True, size=10_000_000), "claims 10000000 bytes of data"),
         (function(np.ones(N), points=-5), "with -5 points"),
-        (function(np.ones(N), points=6, binary=True), "32 bytes of data are told for 6 numbers"),
+        (function(np.ones(N), points=6, binary=True), "32 bytes of data stated for 6 numbers"),
         (GOOD.replace(b"\x00\x00\x80?", b"\x00\x00\xc0\x7f"), "not finite"),
         (GOOD.replace(b"58b     1", b"58b     3"), "byte order 3"),
-        (GOOD.replace(b"\x00\x00\x80?", b"\x80?"), "no end behind its 200 bytes of data|holds"),
-        (TEXT.replace(b"1.00000e+00", b"1.0x000e+00"), "holds what is no number"),
-        (b"    -1\n    15\n         1\n    -1\n", r"dataset 15 at byte 0 is no such dataset \(node \[1\] with 0 coord"),
+        (GOOD.replace(b"\x00\x00\x80?", b"\x80?"), "no end after its 200 bytes of data|not finite"),
+        (TEXT.replace(b"1.00000e+00", b"1.0x000e+00"), "has an invalid number"),
+        (
+            b"    -1\n    15\n         1\n    -1\n",
+            r"dataset 15 at byte 0 does not match its format \(node \[1\] with 0 coord",
+        ),
         (b"    -1\n   161\n         1\n    -1\n", r"no function, mode shape or node .* its datasets: 161 \(1\)"),
     ],
 )
@@ -166,7 +169,7 @@ def test_real_foreign_files():
     assert (response.unit, response.si_unit) == ("(1/N)*(m/s²)", "(m/s2)/(N)")
     catman = read_record(DATA / "time-history-not-all-columns-filled.uff").channels[0]
     assert (catman.unit, catman.rate, catman.values.size) == ("m/s²", 20000.0, 13)
-    with pytest.raises(DataError, match="claims 2508876 numbers, the file holds 42"):
+    with pytest.raises(DataError, match="claims 2508876 numbers, the file contains 42"):
         read_record(DATA / "dataset_milestone_in_header.uff")
 
 

@@ -204,7 +204,7 @@ def test_a_direction_in_the_axes_of_its_node_is_told_in_the_global_ones(tmp_path
     path = tmp_path / "turned.uff"
     path.write_bytes(data + (systems + dataset(15, node(12, (0.0, 0.0, 0.0), motion=5))).encode())
     (channel,) = read_record(path).channels
-    assert (channel.direction, channel.remark) == ("-Z", "+X of the node's own axes")
+    assert (channel.direction, channel.remark) == ("-Z", "+X of the local axes of the node")
 
 
 def test_real_foreign_files():
@@ -269,18 +269,18 @@ def test_what_is_written_comes_back_and_is_read_by_the_foreign_library(tmp_path)
     [
         (dataset(15, node(1, (1.0, 2.0, 3.0))[:-13]), r"dataset 15 at byte 0 .*node \[1\] with 2 coordinates"),
         (dataset(15, node(1, (1.0, 2.0, 3e35))), "node .1. with 3 coordinates"),
-        (dataset(82, f"{1:10d}{4:10d}{0:10d}", "NONE", f"{1:10d}{2:10d}"), "4 nodes are told, 2 are held"),
+        (dataset(82, f"{1:10d}{4:10d}{0:10d}", "NONE", f"{1:10d}{2:10d}"), "4 nodes stated, 2 present"),
         (
             dataset(18, f"{1:10d}{0:10d}{0:10d}{0:10d}{1:10d}", "x", "1 1 1 1 1 1", "1 1 1"),
-            "its three points lie in a line",
+            "its three points are on a line",
         ),
         (dataset(18, f"{1:10d}{2:10d}{0:10d}{0:10d}{1:10d}", "x", "0 0 0 1 0 0", "0 0 1"), "axis system 1 of type 2"),
         (dataset(2412, f"{1:10d}{91:10d}{1:10d}{1:10d}{7:10d}{3:10d}", f"{3:10d}"), "a line is missing or too short"),
         (dataset(55, *["NONE"] * 5, "1 2 2 8 2 3", "2 4 1 1", "5 1 0 0", "1", "1.0 2.0"), "a line is missing"),
         (dataset(55, *["NONE"] * 5, "1 2 2 8 2 3", "2 4 1 1", "5 1 0 0", "1", "1.0 x 2.0"), "no number in 'x'"),
-        (dataset(55, *["NONE"] * 5, "1 2 2 8 2 9", "2 4 1 1", "5 1 0 0", "1", "1 1 1"), "9 values a node"),
-        (dataset(55, *["NONE"] * 5, "1 2 2 8 2 3", "2 4 1 1", "5e40 1 0 0", "1", "1 1 1"), "beyond 1e.30"),
-        (units(0.0), "tells no factors of length and force"),
+        (dataset(55, *["NONE"] * 5, "1 2 2 8 2 9", "2 4 1 1", "5 1 0 0", "1", "1 1 1"), "9 values per node"),
+        (dataset(55, *["NONE"] * 5, "1 2 2 8 2 3", "2 4 1 1", "5e40 1 0 0", "1", "1 1 1"), "above 1e.30"),
+        (units(0.0), "has no valid factors of length and force"),
     ],
 )
 def test_damaged_geometry_is_refused(tmp_path, block, message):

@@ -12,7 +12,7 @@ from vehicle.errors import DataError
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records import hdf_format, matlab_format
 from vehicle.signals.records.channel import Channel, uniform_axis
-from vehicle.signals.records.frf import read_frf
+from vehicle.signals.records.frf_file import read_frf
 from vehicle.signals.records.geometry import Geometry
 from vehicle.signals.records.reader import read_columns, read_record
 from vehicle.signals.records.uff_writer import write
@@ -58,7 +58,7 @@ def test_a_universal_file_comes_back(tmp_path):
     assert speed.unit == "m/s"
     np.testing.assert_allclose(speed.values, 1e-3 * SINE, rtol=1e-15)
     gap = Channel(name="gap", values=np.where(TIME > 0.5, np.nan, SINE), axis=TIME)
-    with pytest.raises(DataError, match="gap has a missing value; UFF knows none"):
+    with pytest.raises(DataError, match="gap has a missing value, not supported by UFF"):
         write(path, (gap,), "test")
 
 

@@ -1,4 +1,4 @@
-"""Fronts against the definition, and against shapes whose knee, volume and distance are known."""
+"""Fronts against the definition, and against shapes with closed-form knee point, hypervolume and distance."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from vehicle.studies.optimisation.front import MARGIN, distance, ends, front, hy
 
 
 @pytest.mark.parametrize("goals", [1, 2, 3])
-def test_a_front_is_what_no_other_row_beats(goals):
+def test_a_front_consists_of_the_non_dominated_rows(goals):
     costs = np.random.default_rng(goals).integers(0, 12, size=(300, goals)).astype(float)
-    beaten = [any(np.all(other <= row) and np.any(other < row) for other in costs) for row in costs]
-    best = {tuple(row) for row, out in zip(costs, beaten, strict=True) if not out}
-    found = front(costs)
-    assert {tuple(costs[row]) for row in found} == best and len(found) == len(best)  # of equal rows one
-    assert np.all(np.diff(costs[found, 0]) >= 0.0)
+    dominated = [any(np.all(other <= row) and np.any(other < row) for other in costs) for row in costs]
+    best = {tuple(row) for row, out in zip(costs, dominated, strict=True) if not out}
+    rows = front(costs)
+    assert {tuple(costs[row]) for row in rows} == best and len(rows) == len(best)  # equal rows appear once
+    assert np.all(np.diff(costs[rows, 0]) >= 0.0)
 
 
 def test_ends_and_knee_of_a_corner():
@@ -24,12 +24,12 @@ def test_ends_and_knee_of_a_corner():
     assert ends(costs) == [0, 4] and knee(costs) == 2
     # The knee does not depend on the units of the columns.
     assert knee(costs * [1e3, 1e-6]) == 2
-    # Of cars that are equally good in one column the end is better in the other.
+    # Ties in one column are resolved by the other column.
     assert ends(np.array([[0.0, 2.0], [0.0, 1.0], [3.0, 0.0]])) == [1, 2]
 
 
 def test_hypervolume_of_a_straight_front():
-    # Below f0 + f1 = 1, within the reference point at 1 + m: its square less the triangle that no car reaches.
+    # The square up to the reference point at 1 + m less the triangle below f0 + f1 = 1.
     line = np.linspace(0.0, 1.0, 2001)
     exact = (1.0 + MARGIN) ** 2 - 0.5
     costs = np.column_stack([5.0 + 20.0 * line, -3.0 + 0.1 * (1.0 - line)])
@@ -47,7 +47,7 @@ def test_distance_of_a_shifted_front():
     assert distance(costs, costs) == 0.0
     # 0.1 along the normal, and the extents of both together are 1 + 0.1 / sqrt(2).
     shift = 0.1 / np.sqrt(2.0)
-    # ends have no foot
+    # larger at the ends
     validated(
         "Sweeps, tuning and optimisation", "distance of a shifted Pareto front", distance(costs, costs + shift),
         0.1 / (1.0 + shift), rel=0.05, source="closed form: shift along the normal over the extent",
@@ -55,12 +55,12 @@ def test_distance_of_a_shifted_front():
 
 
 def test_a_thinned_front_is_even():
-    # Most of the cars crowd at one end; the rows that are kept do not.
+    # Most of the cars crowd at one end; the selected rows do not.
     line = np.sort(np.random.default_rng(1).random(4000)) ** 3
     costs = np.column_stack([1e3 * line, 1.0 - line])
     rows = thinned(costs, [0, 3999], 17)
     gaps = np.diff(costs[rows, 0]) / 1e3
     assert len(rows) == 17 and rows[0] == 0 and rows[-1] == 3999
-    # Taking the farthest halves the gaps: none is more than twice another, but for the cars that there are.
+    # Selecting the farthest row halves the gaps, so the largest gap is about twice the smallest at most.
     assert gaps.max() < 2.1 * gaps.min()
     assert np.array_equal(thinned(costs[:5], [2], 17), np.arange(5))

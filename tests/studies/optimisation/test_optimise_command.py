@@ -16,7 +16,7 @@ from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.sweeps.case import SignalFile, table_cases
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 
 LOOSE = "damper.coulomb_friction=10"
 SKIP = 1.0
@@ -26,7 +26,7 @@ TRADE = ["--minimise", "comfort", "--minimise", "tyre_load"]
 @pytest.fixture(scope="module")
 def road(tmp_path_factory):
     path = tmp_path_factory.mktemp("roads") / "road.csv"
-    write_signal(path, random_road(rms=1e-3, seed=1, duration=3.0), ["a road"])
+    write_signal(path, random_road(rms=1e-3, seed=1, wheel="fl", duration=3.0), ["a road"])
     return path
 
 
@@ -51,25 +51,24 @@ DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "comfort [m/s2]", "tyre_load 
 
 
 def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
-    """One parameter: between the best damper for comfort and the best for the tyre each is a compromise."""
+    """Vary one parameter: each damper between the best for comfort and the best for the tyre is a compromise."""
     damping = np.linspace(500.0, 2500.0, 11)
     measure = ride_measure(load_vehicle(), ("comfort", "tyre_load"), SKIP)
     cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road, wheel="fl")], fixed=[LOOSE])
     results = evaluate(cases, measure)
     best = {}
     for name in measure.numbers:
-        values = np.array([one.values[name] for one in results])
+        values = np.array([result.values[name] for result in results])
         fine = np.linspace(damping[0], damping[-1], 2001)
         best[name] = float(fine[np.argmin(np.polynomial.Polynomial.fit(damping, values, 4)(fine))])
     front = rows_of(searched / "front.csv")
-    found = [float(row[DAMPING]) for row in front]
+    dampings = [float(row[DAMPING]) for row in front]
     # The curves are flat at their minima, and 40 cars are few: 4 % of damping is 0.1 % of comfort.
-    assert found[0] == pytest.approx(best["comfort"], rel=0.04) and found[-1] == pytest.approx(
-        best["tyre_load"], rel=0.04
-    )
-    assert found == sorted(found) and best["comfort"] < 0.9 * best["tyre_load"]
-    least = min(one.values["comfort"] for one in results)
-    assert float(front[0][COMFORT]) <= least * 1.0001
+    assert dampings[0] == pytest.approx(best["comfort"], rel=0.04)
+    assert dampings[-1] == pytest.approx(best["tyre_load"], rel=0.04)
+    assert dampings == sorted(dampings) and best["comfort"] < 0.9 * best["tyre_load"]
+    minimum = min(result.values["comfort"] for result in results)
+    assert float(front[0][COMFORT]) <= minimum * 1.0001
     assert next(row["name"] for row in front if row["name"]) == "best comfort"
 
 
@@ -78,22 +77,22 @@ def test_files_of_a_search(road, searched):
     assert (searched / "front.png").read_bytes()[:4] == b"\x89PNG"
     assert summary["cars"]["tried"] == 40 == len(rows_of(searched / "cars.csv")) - 1
     assert set(summary["points"]) == {"best comfort", "best tyre_load", "knee"}
-    # The car as it is: first of all, and with the value of its file.
+    # The unmodified car is the first row; its damping is that of its vehicle file.
     base = rows_of(searched / "cars.csv")[0]
     assert base[DAMPING] == "" and float(base[COMFORT]) == summary["base"]["comfort"]
     assert rows_of(searched / "cars.csv")[1][DAMPING] == "2250.0"
-    # A colleague takes the file of the knee, or its overrides, and gets its numbers.
+    # The vehicle file of the knee point and its overrides give its values.
     knee = summary["points"]["knee"]
-    (alone,) = evaluate(
+    (result,) = evaluate(
         table_cases([], [()], [SignalFile(path=road, wheel="fl")], vehicle=searched / knee["vehicle"]),
         ride_measure(load_vehicle(), ("comfort",), SKIP),
     )
-    assert alone.values["comfort"] == pytest.approx(knee["numbers"]["comfort"], rel=1e-9)
+    assert result.values["comfort"] == pytest.approx(knee["numbers"]["comfort"], rel=1e-9)
     damping = knee["parameters"]["damper.viscous"]
     assert knee["overrides"] == [LOOSE, f"front.damper.viscous={damping!r}"]
 
 
-def test_a_search_goes_on_where_it_ended(road, searched, tmp_path, capsys):
+def test_an_interrupted_search_is_continued(road, searched, tmp_path, capsys):
     folder = tmp_path / "out"
     shutil.copytree(searched, folder)
     lines = (folder / "cars.csv").read_text(encoding="utf-8").splitlines()
@@ -102,7 +101,7 @@ def test_a_search_goes_on_where_it_ended(road, searched, tmp_path, capsys):
     assert main(arguments(road, folder, *more)) == 2
     assert "holds finished runs; --resume goes on" in capsys.readouterr().err
     assert main(arguments(road, folder, *more, "--resume", "--search-seed", "2")) == 2
-    assert "holds another search" in capsys.readouterr().err
+    assert "contains another search" in capsys.readouterr().err
     assert main(arguments(road, folder, *more, "--resume")) == 0
     for name in ("cars.csv", "front.csv", "knee.toml"):
         assert (folder / name).read_bytes() == (searched / name).read_bytes()
@@ -111,15 +110,15 @@ def test_a_search_goes_on_where_it_ended(road, searched, tmp_path, capsys):
 def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     more = ["--tolerance", "damper.viscous=20%", "--tolerance", "damper.coulomb_friction=5", "--samples", "2"]
     folder = tmp_path / "out"
-    given = [*TRADE, *more, "--quantile", "1", "--cars", "8", "--beside", str(searched)]
-    assert main(arguments(road, folder, *given)) == 0
+    options = [*TRADE, *more, "--quantile", "1", "--cars", "8", "--beside", str(searched)]
+    assert main(arguments(road, folder, *options)) == 0
     said = capsys.readouterr().out
-    assert "each number: worst of 2 cars within the tolerances" in said
+    assert "values: worst of 2 cars within the tolerances" in said
     assert "knee: of 64 new cars " in said and " % are as good in comfort, " in said
-    made = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["made_cars"]
-    assert made["statistic"] == "worst of 2 cars" and made["new_cars"] == 64
+    sample = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["made_cars"]
+    assert sample["statistic"] == "worst of 2 cars" and sample["new_cars"] == 64
     # Two thirds to three quarters are expected to be no worse than the worst of two.
-    assert 0.3 < made["share_as_good"]["knee"]["comfort"] < 1.0
+    assert 0.3 < sample["share_as_good"]["knee"]["comfort"] < 1.0
     assert f"front of {searched}: hypervolume +" in said
     assert "8 cars, " in said and "knee: --set damper.coulomb_friction=10 --set front.damper.viscous=" in said
     for row in rows_of(folder / "front.csv"):
@@ -132,8 +131,8 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("more", "code", "said"),
     [
-        ([], 2, "nothing to optimise"),
-        (["--minimise", "comfrt"], 2, "no number 'comfrt' of focus; there are comfort, comfort_x"),
+        ([], 2, "no objective; add --minimise"),
+        (["--minimise", "comfrt"], 2, "focus has no quantity 'comfrt'; choose from comfort, comfort_x"),
         (
             ["--minimise", "comfort", "--vary", "damper.viscos=1:2"],
             2,
@@ -148,17 +147,17 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
         ),
         (["--minimise", "comfort", "--cars", "2"], 2, "--cars 2: must be at least 8"),
         (["--minimise", "comfort", "--samples", "4"], 2, "--samples: belongs to --tolerance PATH=SIZE"),
-        (["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "2"], 2, "--quantile 2: allowed are"),
+        (["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "2"], 2, "--quantile 2: must be 0.5"),
         (
             ["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "0.99", "--samples", "8"],
             2,
-            "--quantile 0.99: needs at least 128 cars, found --samples 8; give --samples 128",
+            "--quantile 0.99: needs at least 128 cars, found --samples 8; set --samples 128",
         ),
-        (["--minimise", "comfort", "--beside", "nowhere"], 3, "--beside nowhere: holds no front.csv with the columns"),
+        (["--minimise", "comfort", "--beside", "nowhere"], 3, "--beside nowhere: contains no front.csv with the "),
         (
             ["--minimise", "comfort", "--limit", "travel<=1e-9", "--cars", "8"],
             4,
-            "none of 8 cars keeps all limits; the ",
+            "0 of 8 cars satisfy all limits; the ",
         ),
     ],
 )

@@ -1,4 +1,4 @@
-"""How a sweep deals with its executor: how much it hands out, what it does when it breaks or runs another program."""
+"""Executors of a sweep: number of submitted tasks, broken executors, workers with another program."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import ClassVar
 
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.studies.sweeps import executors
-from vehicle.studies.sweeps.crew import FILL, PER_WORKER
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER
 from vehicle.studies.sweeps.executors import process_pool, workers_of
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.result import Result
 from vehicle.studies.sweeps.sweep import case_keys, sweep
 from vehicle.studies.sweeps.worker import carry_out
 
@@ -26,13 +26,13 @@ def many(count):
 
 
 class Slow(Executor):
-    """Finishes nothing while runs are still handed out to it; remembers how many it held."""
+    """Executor that finishes tasks only after half a second without submission; counts unfinished tasks."""
 
     def __init__(self, workers):
         self._max_workers = workers
         self.held: list[Future[list[Result]]] = []
         self.sizes: dict[Future[list[Result]], int] = {}
-        self.most = 0
+        self.maximum = 0
         self.quiet: Timer | None = None
 
     def submit(self, function, /, *arguments, **named):
@@ -41,19 +41,19 @@ class Slow(Executor):
         future: Future[list[Result]] = Future()
         self.held.append(future)
         self.sizes[future] = len(arguments[0])
-        self.most = max(self.most, sum(not one.done() for one in self.held))
+        self.maximum = max(self.maximum, sum(not task.done() for task in self.held))
         self.quiet = Timer(0.5, self.finish)
         self.quiet.start()
         return future
 
     def finish(self):
-        for one in list(self.held):
-            if not one.done():
-                one.set_result([Result(values={"peak": 1.0})] * self.sizes[one])
+        for task in list(self.held):
+            if not task.done():
+                task.set_result([Result(values={"peak": 1.0})] * self.sizes[task])
 
 
 class Fails(Executor):
-    """Every run ends in an error, or is cancelled."""
+    """Executor whose tasks all fail with an error, or are cancelled."""
 
     def __init__(self, error=None):
         self.error = error
@@ -68,31 +68,31 @@ class Fails(Executor):
         return future
 
 
-def test_what_is_handed_out_follows_the_workers():
+def test_submitted_tasks_are_proportional_to_the_workers():
     executor = Slow(3)
     assert not sweep(many(300), Peak(), executor=executor).failed
-    assert executor.most == 3 * PER_WORKER
+    assert executor.maximum == 3 * PER_WORKER
     with ThreadPoolExecutor(5) as threads:
         assert workers_of(threads) == 5
     assert workers_of(Fails()) is None
 
 
-def test_an_executor_that_is_given_stays_open():
+def test_an_executor_of_the_caller_stays_open():
     with ThreadPoolExecutor(1) as threads:
         first = sweep(many(1), Peak(), executor=threads)
         assert sweep(many(1), Peak(), executor=threads).text() == first.text()
         assert not first.failed
 
 
-def test_a_given_executor_that_breaks_is_told_and_rows_are_kept(tmp_path):
+def test_a_broken_executor_of_the_caller_is_an_error_and_rows_are_stored(tmp_path):
     sweep(many(2), Peak(), executor=ThreadPoolExecutor(1), folder=tmp_path)
-    with pytest.raises(SimulationError, match="Give a function that makes the executor"):
+    with pytest.raises(SimulationError, match="Pass a function that returns an executor"):
         sweep(many(3), Peak(), executor=Fails(BrokenProcessPool("killed")), folder=tmp_path)
     assert (tmp_path / "rows.jsonl").read_text(encoding="utf-8").count("\n") == 2
 
 
-def test_a_scheduler_that_is_gone_is_told():
-    with pytest.raises(SimulationError, match="the executor gave up its runs"):
+def test_cancelled_tasks_are_an_error():
+    with pytest.raises(SimulationError, match="the executor cancelled its runs"):
         sweep(many(2), Peak(), executor=lambda: Fails())
 
 
@@ -103,24 +103,24 @@ def test_an_interruption_keeps_the_rows(tmp_path):
     cases = many(FILL + 2)
     with pytest.raises(KeyboardInterrupt):
         sweep(cases, Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=interrupt)
-    # Those of the first task.
+    # Rows of the first task.
     assert (tmp_path / "rows.jsonl").read_text(encoding="utf-8").count("\n") == FILL
     counted: list[float] = []
     table = sweep(cases, Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path, progress=counted.append)
     assert counted == [0.5, 1.0] and not table.failed
 
 
-def test_a_worker_with_another_program_is_refused():
+def test_a_worker_with_another_program_is_rejected():
     cases = many(1)
     assert not carry_out(cases, Peak(), program_digest())[0].reason
     with pytest.raises(ConfigurationError, match="the workers have another program"):
         carry_out(cases, Peak(), "another")
-    # It is about the worker, not about the run, so it is no row.
+    # An error of the worker, not of the run, is not a row.
     with pytest.raises(ConfigurationError, match="another program"):
         sweep(cases, Peak(), executor=Fails(ConfigurationError("another program")))
 
 
-def test_processes_that_do_not_start_are_told_why(monkeypatch):
+def test_processes_that_do_not_start_are_an_error(monkeypatch):
     class NoProcesses(Fails):
         def __init__(self, *arguments, **named):
             super().__init__(BrokenProcessPool("terminated abruptly"))
@@ -132,12 +132,12 @@ def test_processes_that_do_not_start_are_told_why(monkeypatch):
 
 @dataclass(frozen=True)
 class Counting(ShortRoad):
-    """Counts how often it is identified."""
+    """Road that records the calls of `identity`."""
 
-    asked: ClassVar[list[str]] = []
+    calls: ClassVar[list[str]] = []
 
     def identity(self):
-        self.asked.append(self.name)
+        self.calls.append(self.name)
         return super().identity()
 
 
@@ -145,14 +145,14 @@ def test_a_shared_input_is_identified_once():
     road = Counting()
     keys = case_keys(grid({"damper.viscous": [1.0, 2.0, 3.0]}, [road]), Peak())
     assert len(set(keys)) == 3
-    assert road.asked == ["short"]
+    assert road.calls == ["short"]
 
 
-def test_the_key_tells_the_source_of_a_measure():
-    def made(text):
+def test_the_key_contains_the_source_of_a_measure():
+    def measure_with(text):
         return type("Measured", (Peak,), {"__repr__": lambda self: text})()
 
     cases = many(1)
-    # A class without source is told by its repr alone; one with source by both.
-    assert case_keys(cases, made("a")) != case_keys(cases, made("b"))
-    assert case_keys(cases, made(repr(Peak()))) != case_keys(cases, Peak())
+    # A class without source is identified by its repr; a class with source by both.
+    assert case_keys(cases, measure_with("a")) != case_keys(cases, measure_with("b"))
+    assert case_keys(cases, measure_with(repr(Peak()))) != case_keys(cases, Peak())

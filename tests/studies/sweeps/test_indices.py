@@ -1,4 +1,4 @@
-"""Samples over ranges, and indices against closed forms."""
+"""Samples within ranges, and sensitivity indices against closed forms."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ def test_sobol_indices_of_ishigami():
     v1, v2 = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0
     v13 = b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
     total = v1 + v2 + v13
-    found = sobol_indices(ANGLES, ishigami(sobol_sample(ANGLES, 2048, seed=3)))
-    assert found.paths == ("x0", "x1", "x2")
-    # Three half widths of the interval: one case in hundreds of millions, were it normal; and they are small.
+    sobol = sobol_indices(ANGLES, ishigami(sobol_sample(ANGLES, 2048, seed=3)))
+    assert sobol.paths == ("x0", "x1", "x2")
+    # Three half widths of the interval: probability below 1e-8 for a normal distribution.
     for name, value, error, exact in (
-        ("first", found.first, found.first_error, [v1 / total, v2 / total, 0.0]),
-        ("total", found.total, found.total_error, [(v1 + v13) / total, v2 / total, v13 / total]),
+        ("first", sobol.first, sobol.first_error, [v1 / total, v2 / total, 0.0]),
+        ("total", sobol.total, sobol.total_error, [(v1 + v13) / total, v2 / total, v13 / total]),
     ):
         for number in range(3):
             validated(
@@ -41,7 +41,7 @@ def test_sobol_indices_of_ishigami():
                 source="closed form: Ishigami and Homma 1990",
             )  # fmt: skip
         assert np.all(error < 0.1)
-    assert 0.0 < found.drift < 0.1
+    assert 0.0 < sobol.drift < 0.1
 
 
 def test_a_failed_run_costs_its_base_point():
@@ -49,10 +49,10 @@ def test_a_failed_run_costs_its_base_point():
     y = ishigami(points)
     whole = sobol_indices(ANGLES, y)
     y[[7, 8, 1003]] = np.nan
-    found = sobol_indices(ANGLES, y)
-    assert (found.base, found.left_out, found.scramblings) == (512, 2, 16)
-    assert np.all(np.abs(found.total - whole.total) < 0.02) and not np.array_equal(found.total, whole.total)
-    # A whole scrambling may fail too; of one alone there is no interval.
+    sobol = sobol_indices(ANGLES, y)
+    assert (sobol.base, sobol.left_out, sobol.scramblings) == (512, 2, 16)
+    assert np.all(np.abs(sobol.total - whole.total) < 0.02) and not np.array_equal(sobol.total, whole.total)
+    # A whole scrambling may also fail; an interval needs at least two.
     y[: 32 * 5] = np.nan
     assert sobol_indices(ANGLES, y).scramblings == 15
 
@@ -61,8 +61,8 @@ def test_intervals_of_ishigami_cover_as_stated():
     exact = np.array([0.5576, 0.2437])
     inside = []
     for seed in range(40):
-        found = sobol_indices(ANGLES, ishigami(sobol_sample(ANGLES, 128, seed=seed)))
-        inside.append(np.abs(found.total[[0, 2]] - exact) < found.total_error[[0, 2]])
+        sobol = sobol_indices(ANGLES, ishigami(sobol_sample(ANGLES, 128, seed=seed)))
+        inside.append(np.abs(sobol.total[[0, 2]] - exact) < sobol.total_error[[0, 2]])
     # 76 of 80 expected; a bootstrap over the points covers all. 69 or fewer: one in a thousand for 95 %.
     assert 70 <= np.sum(inside) <= 79
 
@@ -76,24 +76,24 @@ def test_a_small_sample_has_a_wide_interval():
 
 def test_morris_effects_of_a_linear_function_are_its_slopes():
     points = morris_sample(UNIT, 20, seed=1)
-    found = morris_effects(UNIT, points, points @ np.array([3.0, -1.0, 0.0]))
-    # Effects are counted over the whole range, which is 2 wide.
+    effects = morris_effects(UNIT, points, points @ np.array([3.0, -1.0, 0.0]))
+    # Effects refer to the whole range, whose width is 2.
     validated(
-        "Sweeps, tuning and optimisation", "Morris effects of a linear function", found.mean_size,
+        "Sweeps, tuning and optimisation", "Morris effects of a linear function", effects.mean_size,
         np.array([6.0, 2.0, 0.0]), abs=1e-9, source="closed form: slope times range",
     )  # fmt: skip
-    np.testing.assert_allclose(found.mean, [6.0, -2.0, 0.0], atol=1e-9)
-    np.testing.assert_allclose(found.scatter, 0.0, atol=1e-9)
-    bent = morris_effects(UNIT, points, points[:, 0] * points[:, 1])
-    assert np.all(bent.scatter[:2] > 0.1)
+    np.testing.assert_allclose(effects.mean, [6.0, -2.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(effects.scatter, 0.0, atol=1e-9)
+    bilinear = morris_effects(UNIT, points, points[:, 0] * points[:, 1])
+    assert np.all(bilinear.scatter[:2] > 0.1)
 
 
 def test_a_latin_hypercube_fills_the_box():
     box = [Range(path="a", low=10.0, high=20.0), Range(path="b", low=-1.0, high=0.0)]
     points = latin_hypercube(box, 64, seed=5)
-    for column, one in enumerate(box):
-        # One point in each of 64 equal slices, which a random sample would miss.
-        slices = np.floor((points[:, column] - one.low) / (one.high - one.low) * 64).astype(int)
+    for column, bounds in enumerate(box):
+        # One point in each of 64 equal slices, unlike in a random sample.
+        slices = np.floor((points[:, column] - bounds.low) / (bounds.high - bounds.low) * 64).astype(int)
         assert sorted(slices) == list(range(64))
     assert np.array_equal(points, latin_hypercube(box, 64, seed=5))
     assert not np.array_equal(points, latin_hypercube(box, 64, seed=6))
@@ -104,13 +104,13 @@ def test_bad_arguments():
         Range(path="a", low=1.0, high=1.0)
     with pytest.raises(ConfigurationError, match="found 100, must be a power of two"):
         sobol_sample(UNIT, 100)
-    with pytest.raises(DataError, match="found 7, needed is a multiple of 5"):
+    with pytest.raises(DataError, match="found 7, must be a multiple of 5"):
         sobol_indices(UNIT, np.arange(7.0))
     with pytest.raises(DataError, match=r"1 of 4 are missing \(failed runs\)"):
         morris_effects(UNIT, np.zeros((4, 3)), [1.0, 2.0, np.nan, 3.0])
-    with pytest.raises(DataError, match="1 of 2 base points have a failed run, allowed is half"):
+    with pytest.raises(DataError, match="1 of 2 base points have a failed run, must be at most half"):
         sobol_indices(UNIT, [1.0, 2.0, np.nan, 3.0, 4.0, *range(5)])
-    with pytest.raises(DataError, match="all are equal"):
+    with pytest.raises(DataError, match="all values are equal"):
         sobol_indices(UNIT, np.ones(5))
 
 
@@ -119,5 +119,5 @@ def test_without_salib_the_extra_is_named(monkeypatch):
         raise ImportError(name)
 
     monkeypatch.setattr(importlib, "import_module", without)
-    with pytest.raises(MissingPartError, match=r"needs SALib, of the extra 'sensitivity'"):
+    with pytest.raises(MissingPartError, match=r"needs SALib of the extra 'sensitivity'"):
         indices.sobol_sample(UNIT, 8)

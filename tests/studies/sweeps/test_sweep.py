@@ -1,4 +1,4 @@
-"""Sweeps: the same table from any number of workers, rows that survive, failures as rows, executors."""
+"""Sweeps: tables independent of the number of workers, stored rows, failed rows, executors."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.studies.sweeps.pieces import Peak, ShortRoad, grid, threads
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps import executors
 from vehicle.studies.sweeps.case import SignalFile, table_cases
-from vehicle.studies.sweeps.crew import DIED
+from vehicle.studies.sweeps.dispatcher import DIED
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
 from vehicle.studies.sweeps.sweep import case_keys, sweep
@@ -35,7 +35,7 @@ def two_by_two(engine="reduced", **changes):
 
 
 def in_threads():
-    """One worker in this process: the quickest executor."""
+    """Return an executor with one worker thread in this process, the fastest executor."""
     return ThreadPoolExecutor(1)
 
 
@@ -53,7 +53,7 @@ def test_grid_and_table_put_the_cases_in_order():
 
 
 def test_numbers_are_those_of_the_run():
-    source = random_road(rms=5e-4, seed=3, duration=3.0, lower_band_edge=2.0)
+    source = random_road(rms=5e-4, seed=3, wheel="fr", duration=3.0, lower_band_edge=2.0)
     case = grid({"damper.coulomb_friction": [80.0]}, [source], engine="reduced")
     measure = ComfortMeasure(skip=1.0)
     table = sweep(case, measure, executor=in_threads)
@@ -61,15 +61,15 @@ def test_numbers_are_those_of_the_run():
     (swept,) = [result.values for result in table.results]
     values = measure(run)
     assert set(values) == set(swept) == {*measure.units, *WAVE_NAMES}
-    # A sweep marches with a longer step (`tests/studies/sweeps/test_evaluation.py`).
+    # A sweep uses a longer time step (`tests/studies/sweeps/test_case_evaluation.py`).
     assert swept["comfort_overall"] == pytest.approx(values["comfort_overall"], rel=2e-3)
     rate = 1.0 / run.recording.timestep
     later, limit = run["damper_fr_velocity"][round(rate) :], run.car.vehicle.damper.slip_velocity
     assert values["slip_share_fr"] == pytest.approx(float((abs(later) > limit).mean()), abs=1e-12)
-    # As in summary.json, of the whole run, and above the same velocity as the share.
+    # The first slip refers to the whole run, as in summary.json, with the slip velocity of the share.
     first = run.time[abs(run["damper_fr_velocity"]) > limit][0]
     assert values["first_slip_fr"] == pytest.approx(float(first), abs=1e-12) and first < 1.0
-    # Comfort leaves out the first second, so it is near that of the whole run and not the same.
+    # Comfort excludes the first second, so it is near but not equal to the comfort of the whole run.
     assert values["comfort_overall"] == pytest.approx(run.comfort().overall, rel=0.3)
     assert values["comfort_overall"] != pytest.approx(run.comfort().overall, rel=1e-3)
     squares = sum(values[f"comfort_{axis}"] ** 2 for axis in "xyz")
@@ -92,8 +92,8 @@ def test_one_and_two_workers_make_the_same_table_bit_for_bit(tmp_path):
     assert lines[0].startswith("input,damper.coulomb_friction,comfort_x [m/s2],")
     assert lines[0].endswith("seat_rail_weighted_overall [m/s2],engine,failed because")
     assert ",first_slip_fl [s],seat_rail_weighted_x [m/s2]," in lines[0]
-    made = json.loads((tmp_path / "1" / "sweep.json").read_text(encoding="utf-8"))
-    assert made["runs"] == 4 and made["failed"] == [] and made["engines_asked"] == ["reduced"]
+    origin = json.loads((tmp_path / "1" / "sweep.json").read_text(encoding="utf-8"))
+    assert origin["runs"] == 4 and origin["failed"] == [] and origin["engines_asked"] == ["reduced"]
 
 
 def test_a_failed_run_is_a_row_with_its_reason():
@@ -104,7 +104,7 @@ def test_a_failed_run_is_a_row_with_its_reason():
     assert not good.reason and good.values["peak"] > 0.0
     assert [case.label for case, _ in table.failed] == [cases[0].label]
     assert math.isnan(table.column("peak")[0]) and table.column("peak")[1] == good.values["peak"]
-    with pytest.raises(ConfigurationError, match="no column 'peek'; the table has peak"):
+    with pytest.raises(ConfigurationError, match="no column 'peek'; choose from peak"):
         table.column("peek")
 
 
@@ -113,11 +113,11 @@ def test_finished_rows_are_not_computed_again(tmp_path):
     seen: list[float] = []
     first = sweep(cases[:2], Peak(), executor=in_threads, folder=tmp_path)
     whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path, progress=seen.append)
-    # Of what is computed now, so that the time left is that of the runs that are left.
+    # The fraction refers to the runs of this call, so the remaining time can be extrapolated.
     assert seen == [0.5, 1.0]
     assert [r.values for r in whole.results[:2]] == [r.values for r in first.results]
     assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 4
-    # Another measure is another number.
+    # Another measure has other rows.
     sweep(cases, ComfortMeasure(skip=0.0), executor=in_threads, folder=tmp_path)
     assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 8
 
@@ -149,7 +149,7 @@ def test_the_key_tells_car_input_engine_and_measure(tmp_path):
     file.write_text("time [s],displacement [m]\n0,0\n", encoding="utf-8")
     other = tmp_path / "car.toml"
     other.write_bytes((ROOT / "vehicle/model/vehicles/focus/vehicle.toml").read_bytes())
-    signal = random_road(rms=1e-4, seed=1, duration=1.0)
+    signal = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.0)
     variants = [
         case,
         *grid({"damper.viscous": [2001.0]}, [ShortRoad()]),
@@ -182,8 +182,8 @@ def test_a_killed_worker_takes_nothing_with_it(tmp_path):
 
 SCRIPT = """
 from pathlib import Path
-from tests.studies.sweeps.pieces import Peak, ShortRoad
-from tests.studies.sweeps.pieces import grid
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad
+from tests.studies.sweeps.sweep_samples import grid
 from vehicle.studies.sweeps.sweep import sweep
 
 if __name__ == "__main__":
@@ -194,18 +194,18 @@ if __name__ == "__main__":
 
 
 def running(marker):
-    """Processes whose environment holds a marker."""
-    found = []
-    for place in Path("/proc").glob("[0-9]*"):
+    """Return the ids of processes whose environment contains a marker."""
+    ids = []
+    for folder in Path("/proc").glob("[0-9]*"):
         try:
             if (
-                marker.encode() in (place / "environ").read_bytes()
-                and "State:\tZ" not in (place / "status").read_text()
+                marker.encode() in (folder / "environ").read_bytes()
+                and "State:\tZ" not in (folder / "status").read_text()
             ):
-                found.append(int(place.name))
+                ids.append(int(folder.name))
         except OSError:
             continue
-    return found
+    return ids
 
 
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="looks for processes in /proc")
@@ -232,26 +232,26 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
     )
     counted: list[float] = []
     table = sweep(cases, Peak(), executor=in_threads, folder=folder, progress=counted.append)
-    # Two workers finish in any order: at most the tasks in their hands are missing, and the one beyond.
+    # Two workers finish in any order: at most the submitted tasks and the additional case are missing.
     assert 1 <= len(counted) <= kept
     assert not table.failed
 
 
-def test_an_executor_of_ones_own():
-    make = executor_factory("tests.studies.sweeps.pieces:threads", 1)
+def test_a_user_defined_executor():
+    make = executor_factory("tests.studies.sweeps.sweep_samples:threads", 1)
     table = sweep(two_by_two(), Peak(), executor=make)
-    alone = sweep(two_by_two(), Peak(), executor=in_threads)
-    assert [r.values for r in table.results] == [r.values for r in alone.results]
+    expected = sweep(two_by_two(), Peak(), executor=in_threads)
+    assert [r.values for r in table.results] == [r.values for r in expected.results]
     assert isinstance(threads(), ThreadPoolExecutor)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("dusk://host:1", "allowed are dask://host:port and module:factory"),
+        ("dusk://host:1", "must be dask://host:port or module:factory"),
         ("nowhere.at_all:make", "No module named 'nowhere'"),
-        ("tests.studies.sweeps.pieces:missing", "has no attribute 'missing'"),
-        ("threads", "allowed are dask://host:port and module:factory"),
+        ("tests.studies.sweeps.sweep_samples:missing", "has no attribute 'missing'"),
+        ("threads", "must be dask://host:port or module:factory"),
     ],
 )
 def test_bad_executors(text, message):
@@ -260,11 +260,11 @@ def test_bad_executors(text, message):
 
 
 def test_a_factory_must_return_an_executor():
-    with pytest.raises(ConfigurationError, match=r"returned str, needed is a concurrent\.futures\.Executor"):
-        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.pieces:no_executor", 1))
+    with pytest.raises(ConfigurationError, match=r"returned str, must be a concurrent\.futures\.Executor"):
+        sweep(two_by_two(), Peak(), executor=executor_factory("tests.studies.sweeps.sweep_samples:no_executor", 1))
 
 
-def test_jobs_below_one_are_refused():
+def test_jobs_below_one_are_rejected():
     with pytest.raises(ConfigurationError, match="--jobs 0: must be at least 1"):
         executor_factory(None, 0)
 
@@ -274,12 +274,12 @@ def test_without_dask_the_extra_is_named(monkeypatch):
         raise ImportError(name)
 
     monkeypatch.setattr("importlib.import_module", without)
-    with pytest.raises(MissingPartError, match=r"needs Dask, of the extra 'cluster' \(pip install distributed\)"):
+    with pytest.raises(MissingPartError, match=r"needs Dask of the extra 'cluster' \(pip install distributed\)"):
         executor_factory("dask://host:8786", 1)
 
 
 def test_a_dask_cluster_makes_the_same_table():
-    """A real scheduler with two workers in processes of their own."""
+    """Use a real scheduler with two worker processes."""
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2,
@@ -291,17 +291,17 @@ def test_a_dask_cluster_makes_the_same_table():
     ) as cluster:
         address = cluster.scheduler_address.removeprefix("tcp://")
         table = sweep(two_by_two(), Peak(), executor=executor_factory(f"dask://{address}", 1))
-    alone = sweep(two_by_two(), Peak(), executor=partial(executors.process_pool, 1))
-    assert table.text() == alone.text()
+    expected = sweep(two_by_two(), Peak(), executor=partial(executors.process_pool, 1))
+    assert table.text() == expected.text()
     assert not table.failed
 
 
-def test_a_cluster_that_does_not_answer_is_named(monkeypatch):
+def test_a_cluster_without_response_is_named(monkeypatch):
     distributed = pytest.importorskip("distributed")
 
     def nobody(address, **options):
         raise OSError("Timed out trying to connect")
 
     monkeypatch.setattr(distributed, "Client", nobody)
-    with pytest.raises(ConfigurationError, match="dask://nowhere:1: no scheduler answers there"):
+    with pytest.raises(ConfigurationError, match="dask://nowhere:1: no response from a scheduler"):
         executor_factory("dask://nowhere:1", 1)()

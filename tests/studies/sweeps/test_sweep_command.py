@@ -9,16 +9,16 @@ import pytest
 from vehicle import Car, Road
 from vehicle.commands.sweep import every_combination, main
 from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.table import read_variations
+from vehicle.studies.sweeps.sweep_table import read_variations
 
 
 @pytest.fixture
 def signal(tmp_path):
     from vehicle.signals.excitation.random_road import random_road
 
-    road = random_road(rms=3e-4, seed=1, duration=3.0)
+    road = random_road(rms=3e-4, seed=1, wheel="fl", duration=3.0)
     path = tmp_path / "road.csv"
-    lines = [f"{t:.3f},{z:.9g}" for t, z in zip(road.time, road.displacement["fr"], strict=True)]
+    lines = [f"{t:.3f},{z:.9g}" for t, z in zip(road.time, road.displacement["fl"], strict=True)]
     path.write_text("time [s],displacement [m]\n" + "\n".join(lines) + "\n", encoding="utf-8")
     return path
 
@@ -49,7 +49,7 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     error = float(rows[0]["comfort_error [-]"]) * comfort[0]
     assert float(first["standard_error [m/s2]"]) == pytest.approx(error, rel=1e-4)
     assert float(second["standard_error_of_difference [m/s2]"]) > 0.0
-    # A second time it is refused, goes on, or starts anew.
+    # A second call is rejected, or continues with --resume.
     again = [*arguments, "--vary", "bushings.suspension_mount.stiffness.z=7e5"]
     assert main(again) == 2
     assert "holds finished runs; --resume goes on, --force starts anew" in capsys.readouterr().err
@@ -71,8 +71,8 @@ def test_a_table_of_variations(tmp_path):
     ("arguments", "message", "code"),
     [
         ([], "give either --vary", 2),
-        (["--vary", "damper.viscous"], "needed is PATH=V1,V2", 2),
-        (["--vary", "damper.viscous=1,,2"], "needed is PATH=V1,V2", 2),
+        (["--vary", "damper.viscous"], "must be PATH=V1,V2", 2),
+        (["--vary", "damper.viscous=1,,2"], "must be PATH=V1,V2", 2),
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
         (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: allowed is 0 s to less than road, 3 s", 2),
         (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: allowed is 0 s to", 2),
@@ -80,12 +80,12 @@ def test_a_table_of_variations(tmp_path):
         (["--vary", "damper.viscous=1000", "--jobs", "0"], "--jobs 0: must be at least 1", 2),
         (["--vary", "damper.viscous=1000", "--set", "damper.vicsous=1"], "the nearest is front.damper.viscous", 2),
         (["--vary", "damper.vicsous=1000"], "varied parameter damper.vicsous=1000: no parameter damper.vicsous", 2),
-        (["--vary", "damper.viscous=1000", "--resume", "--force"], "give one of them", 2),
-        (["--vary", "damper.viscous=1000", "--executor", "here"], "allowed are dask://host:port", 2),
+        (["--vary", "damper.viscous=1000", "--resume", "--force"], "set only one of them", 2),
+        (["--vary", "damper.viscous=1000", "--executor", "here"], "must be dask://host:port", 2),
         (["--table", "missing.csv"], "cannot be read", 3),
         (["--vary", "damper.viscous=1000", "--executor", "..:x"], "--executor ..:x: TypeError", 2),
         (["--vary", "damper.viscous=1000", "--executor", "json:nothing"], "has no attribute 'nothing'", 2),
-        (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; give all as [x, y, z]", 2),
+        (["--vary", "bushings.tyre.stiffness=1e5"], "is a vector; set all components as [x, y, z]", 2),
     ],
 )
 def test_bad_usage(arguments, message, code, signal, tmp_path, capsys):
@@ -98,8 +98,8 @@ def test_bad_tables(tmp_path, signal, capsys):
     file = tmp_path / "variations.csv"
     for text, message in (
         ("a\n", "at least one row"),
-        ("a,b\n1\n", "row 1: 1 cells, the header has 2"),
-        ("a,b,a\n1,2,3\n", "column a stands there more than once"),
+        ("a,b\n1\n", "row 1: found 1 cells, must be 2"),
+        ("a,b,a\n1,2,3\n", "repeated column a; remove"),
         ("a\n" + "1" * 200_000 + "\n", "cannot be read (field larger than field limit"),
     ):
         file.write_text(text, encoding="utf-8")

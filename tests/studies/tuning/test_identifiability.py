@@ -1,4 +1,4 @@
-"""Covariance and open directions of Jacobians that are known."""
+"""Covariance and unidentifiable directions of given Jacobians."""
 
 import numpy as np
 import pytest
@@ -19,24 +19,24 @@ def test_covariance_is_the_inverse_of_the_normal_matrix():
 def test_spread_counts_in_half_widths():
     # Orthogonal columns: the standard error of u_b is 1 / 3, a sixth of its half width of 2.
     assert worst_direction(np.diag([5.0, 3.0]), [A, B]) is None
-    # Now 1 / 0.5 = 2, one half width: beyond the limit, and b alone.
-    found = worst_direction(np.diag([5.0, 0.5]), [A, B])
-    assert found is not None
-    assert (found.path, found.partners, found.held_at) == ("b", (), 2.0)
-    assert found.spread == pytest.approx(1.0)
+    # Now 1 / 0.5 = 2, one half width: above the limit, without partners.
+    held = worst_direction(np.diag([5.0, 0.5]), [A, B])
+    assert held is not None
+    assert (held.path, held.partners, held.held_at) == ("b", (), 2.0)
+    assert held.spread == pytest.approx(1.0)
     assert WIDEST < 1.0
 
 
-def test_limit_is_half_of_what_the_bounds_say():
+def test_limit_is_half_the_deviation_that_follows_from_the_bounds():
     # A value of which only the bounds are known has the standard deviation 1 / sqrt(3) of a half width.
-    for factor, told in ((0.99, True), (1.01, False)):
+    for factor, identified in ((0.99, True), (1.01, False)):
         error = factor * 0.5 / np.sqrt(3.0)
-        assert (worst_direction(np.array([[1.0 / error], [0.0]]), [A]) is None) is told
+        assert (worst_direction(np.array([[1.0 / error], [0.0]]), [A]) is None) is identified
 
 
 def test_equal_columns_are_one_direction():
-    found = worst_direction(np.array([[4.0, 2.0], [2.0, 1.0], [8.0, 4.0]]), [A, B])
-    assert found is not None
-    # In half widths both columns are equal: neither can be told apart from the other.
-    assert {found.path, *found.partners} == {"a", "b"}
-    assert found.spread == np.inf
+    held = worst_direction(np.array([[4.0, 2.0], [2.0, 1.0], [8.0, 4.0]]), [A, B])
+    assert held is not None
+    # In half widths both columns are equal: only the sum of both parameters is identifiable.
+    assert {held.path, *held.partners} == {"a", "b"}
+    assert held.spread == np.inf

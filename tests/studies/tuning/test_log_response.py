@@ -10,10 +10,10 @@ from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, log_deviat
 def test_magnitude_and_phase_of_the_ratio():
     turned = 2.0 * np.exp(1j * np.radians([170.0, -170.0, 10.0]))
     base = np.exp(1j * np.radians([-170.0, 170.0, 0.0]))
-    found = log_ratio(turned, base)
-    np.testing.assert_allclose(found.real, np.log(2.0))
-    # 340 degrees apart are -20: turns that both have in common, or that add to a whole one, drop out.
-    np.testing.assert_allclose(np.degrees(found.imag), [-20.0, 20.0, 10.0])
+    logarithm = log_ratio(turned, base)
+    np.testing.assert_allclose(logarithm.real, np.log(2.0))
+    # A phase difference of 340 degrees is -20: full turns drop out.
+    np.testing.assert_allclose(np.degrees(logarithm.imag), [-20.0, 20.0, 10.0])
 
 
 def test_undefined_where_either_is():
@@ -34,6 +34,6 @@ def test_deviation_is_that_of_an_averaged_estimate():
 
 
 def test_floor_and_limit():
-    found = log_deviation([1.0, LEAST_COHERENCE, 0.99 * LEAST_COHERENCE, np.nan], 8.0)
-    assert found[0] == FLOOR
-    assert np.isfinite(found[1]) and np.isnan(found[2:]).all()
+    deviation = log_deviation([1.0, LEAST_COHERENCE, 0.99 * LEAST_COHERENCE, np.nan], 8.0)
+    assert deviation[0] == FLOOR
+    assert np.isfinite(deviation[1]) and np.isnan(deviation[2:]).all()

@@ -19,15 +19,16 @@ TASKS = {
 
 
 def parser() -> Parser:
-    """The options of the command."""
-    found = command_parser(
+    """Return the parser of the options."""
+    parser = command_parser(
         "body", "Body models: import one from finite elements or a modal test, build, show, compare, participation."
     )
-    tasks = found.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
+    tasks = parser.add_subparsers(dest="task", required=True, metavar="|".join(TASKS))
     for name, task in TASKS.items():
         task.add(tasks)
         tasks.choices[name].epilog = EXIT_CODES
-    return found
+        tasks.choices[name].add_version()
+    return parser
 
 
 def _job(options: argparse.Namespace) -> None:

@@ -1,4 +1,4 @@
-"""`python -m vehicle body build`: the frame of a body design on the points of a car."""
+"""`python -m vehicle body build`: compute the frame of a body design on the points of a car."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 
 def add(tasks: Any) -> None:
-    """The options."""
+    """Add the parser of the task with its options."""
     built = tasks.add_parser("build", help="compute the frame of a body design on the points of a car")
-    built.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
-    built.add_argument(
+    design = built.add_argument_group("the design")
+    design.add_argument("--design", type=Path, metavar="FILE.toml", help="body design; that of the vehicle by default")
+    design.add_argument(
         "--fit",
         action="store_true",
         help="fit the section factors of the design again, from its nominal sections, to what is published of the body "
@@ -32,7 +33,7 @@ def add(tasks: Any) -> None:
 
 
 def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
-    """The design with section factors that were fitted on this car."""
+    """Return the design with section factors fitted on this car; print the factors."""
     from vehicle.model.flexbody.body_frame import body_frame
     from vehicle.model.flexbody.node_masses import NodeProperties
     from vehicle.model.flexbody.section_fit import STAGES, fit_factors
@@ -49,7 +50,7 @@ def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Compute the model, write it and print what it is."""
+    """Compute the body model from its design, write it, and print its properties."""
     from vehicle.model.flexbody.body_design import read_design
     from vehicle.model.flexbody.body_frame import design_superelement
     from vehicle.model.flexbody.body_model import body_file

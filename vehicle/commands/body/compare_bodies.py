@@ -1,4 +1,4 @@
-"""`python -m vehicle body compare`: two models of a body."""
+"""`python -m vehicle body compare`: compare the modes of two body models."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 FILES = ("mac.csv", "mac.png")
 
 MOST = 40
-"""Modes of each body in the picture; of more, their frequencies could not be read."""
+"""Maximum number of modes of each body in the picture; more labels would not be readable."""
 
 
 def add(tasks: Any) -> None:
-    """The options."""
+    """Add the parser of the task with its options."""
     compared = tasks.add_parser("compare", help="two models of a body: frequencies and MAC at the points of the car")
     compared.add_argument("file", type=Path, metavar="FILE", help="body model, .toml or .npz")
-    compared.add_argument("other", type=Path, metavar="OTHER", help="the one that it is compared with")
+    compared.add_argument("other", type=Path, metavar="OTHER", help="other body model, .toml or .npz")
     extra_output_options(compared, ", ".join(FILES))
     vehicle_options(compared)
     message_options(compared)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Print frequencies and MAC at the points of the car, and write files where asked for."""
+    """Print frequencies and MAC at the points of the car; with --output write them as files."""
     import numpy as np
 
     from vehicle.model.flexbody.superelement import attached_nodes
@@ -43,39 +43,41 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     if options.output is not None:
         output_folder_of(options, options.output)
     models = [model_of(file, options, vehicle) for file in (options.file, options.other)]
-    places = vehicle.composition.attachments()
+    points = vehicle.composition.attachments()
     shapes = []
     for model in models:
-        nodes = attached_nodes(model, places)
-        shapes.append(np.array([model.shape_at(nodes[place]).T for place in places.values()]).transpose(1, 0, 2))
+        nodes = attached_nodes(model, points)
+        shapes.append(np.array([model.shape_at(nodes[point]).T for point in points.values()]).transpose(1, 0, 2))
     likeness = mac(*shapes)
     if options.output is not None:
-        _write_files(options, models, likeness, f"MAC of the shapes at {len(places)} points of the car")
+        _write_files(options, models, likeness, f"MAC of the shapes at {len(points)} points of the car")
     print(
-        f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(places)} points of the car"
+        f"{'mode':>4} {'Hz':>8}   {'mode':>4} {'Hz':>8} {'change':>8} {'MAC':>6}   at {len(points)} points of the car"
     )
     for i, row in enumerate(likeness):
         j = int(row.argmax())
-        one, other = models[0].frequencies[i], models[1].frequencies[j]
-        change = 100.0 * (other / one - 1.0)
-        print(f"{i + 1:>4} {one:>8.3f}   {j + 1:>4} {other:>8.3f} {change:>+7.2f}% {row[j]:>6.3f}")
+        frequency, other = models[0].frequencies[i], models[1].frequencies[j]
+        change = 100.0 * (other / frequency - 1.0)
+        print(f"{i + 1:>4} {frequency:>8.3f}   {j + 1:>4} {other:>8.3f} {change:>+7.2f}% {row[j]:>6.3f}")
 
 
 def _write_files(
-    options: argparse.Namespace, models: list[Superelement], likeness: npt.NDArray[np.float64], about: str
+    options: argparse.Namespace, models: list[Superelement], likeness: npt.NDArray[np.float64], title: str
 ) -> None:
-    """All MAC as a table, and as a picture of the first modes."""
+    """Write the MAC matrix as a table, and a picture of its first modes."""
     from vehicle.runs.comparison.pictures import plot_mac
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
 
     rows, columns = (model.frequencies for model in models)
-    table = [f"# {about}; rows: {options.file.name}, columns: {options.other.name}"]
-    table.append("mode,frequency [Hz]" + "".join(f",mode_{j + 1} {one:.9g} Hz [-]" for j, one in enumerate(columns)))
-    for i, (one, row) in enumerate(zip(rows, likeness, strict=True)):
-        table.append(f"{i + 1},{one:.9g}," + ",".join(f"{value:.6g}" for value in row))
-    title = f"down: {options.file.name}\nacross: {options.other.name}"
-    most = f"; the first {MOST} modes" if max(likeness.shape) > MOST else ""
-    shown = [(title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
-    with output_folder(options.output, force=options.force) as place:
-        write_text(place / FILES[0], "\n".join(table) + "\n")
-        write_whole(place / FILES[1], lambda file: plot_mac(file, shown, f"{about}{most}"))
+    table = [f"# {title}; rows: {options.file.name}, columns: {options.other.name}"]
+    table.append(
+        "mode,frequency [Hz]" + "".join(f",mode_{j + 1} {frequency:.9g} Hz [-]" for j, frequency in enumerate(columns))
+    )
+    for i, (frequency, row) in enumerate(zip(rows, likeness, strict=True)):
+        table.append(f"{i + 1},{frequency:.9g}," + ",".join(f"{value:.6g}" for value in row))
+    axes_title = f"down: {options.file.name}\nacross: {options.other.name}"
+    note = f"; the first {MOST} modes" if max(likeness.shape) > MOST else ""
+    shown = [(axes_title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
+    with output_folder(options.output, force=options.force) as folder:
+        write_text(folder / FILES[0], "\n".join(table) + "\n")
+        write_whole(folder / FILES[1], lambda file: plot_mac(file, shown, f"{title}{note}"))

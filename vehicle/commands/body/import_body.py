@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.body.model_file import output_options, require_output, write
 from vehicle.commands.body.show_body import report
 from vehicle.commands.options import message_options, vehicle_options
+from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 
@@ -38,10 +39,14 @@ REFUSED = {
 }
 
 
+MATRICES, FILES, MODES, UNITS = "stiffness and mass matrices", "files beside the matrices", "modes", "units"
+"""Titles of the groups of options that act on one type of source."""
+
+
 def add(tasks: Any) -> None:
-    """The options."""
-    taken = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
-    taken.add_argument(
+    """Add the parser of the task with its options."""
+    parser = tasks.add_parser("import", help="make a body model of matrices, computed modes or a modal test")
+    parser.add_argument(
         "file",
         type=Path,
         metavar="FILE",
@@ -49,85 +54,110 @@ def add(tasks: Any) -> None:
         " Harwell-Boeing, FILE.mat:K, text with --mass, --dofs, --nodes;"
         " modes as .frd of CalculiX or a universal file (datasets 55, 2414)",
     )
-    taken.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
-    taken.add_argument(
-        "--dofs",
+    parser.add_argument("--name", help="name of the body; that of the file by default")
+    output_options(parser)
+    _add_matrix_options(parser)
+    modes = parser.scoped_group(MODES, needs="modes; the file holds stiffness and mass", active=None)
+    modes.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
+    modes.add_argument(
+        "--residual",
         type=Path,
         metavar="FILE",
-        help="of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
+        help="residual stiffness of the attachments beyond the modes, a table point,x [N/m],y [N/m],z [N/m], or in m/N",
     )
-    taken.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
-    taken.add_argument(
-        "--length-unit",
-        choices=LENGTHS,
-        help="unit of length of matrices and .frd; m by default. A universal file states its own units (dataset 164)",
+    units = parser.scoped_group(
+        UNITS, needs="matrices or .frd; a universal file states its own units (dataset 164)", active=None
     )
+    units.add_argument("--length-unit", choices=LENGTHS, help="unit of length of matrices and .frd; m by default")
     follows = ", ".join(f"{mass} with {length}" for length, mass in FOLLOWING.items())
-    taken.add_argument(
+    units.add_argument(
         "--mass-unit",
         choices=MASSES,
         help=f"unit of mass of matrices and .frd; by default that of consistent units with N (lbf) and s: {follows}; "
         "a stiffness in N/mm belongs to masses in t",
     )
-    taken.add_argument(
+    _add_model_options(parser)
+    vehicle_options(parser)
+    message_options(parser)
+
+
+def _add_matrix_options(parser: Parser) -> None:
+    """Add the options that act on stiffness and mass matrices."""
+    files = parser.scoped_group(FILES, needs="stiffness and mass in files that are named one by one", active=None)
+    files.add_argument("--mass", type=Path, metavar="FILE", help="mass matrix that belongs to a stiffness matrix")
+    files.add_argument(
+        "--dofs",
+        type=Path,
+        metavar="FILE",
+        help="degrees of freedom of the rows of K and M: node,direction (1 to 6), or the mapping file of ANSYS",
+    )
+    files.add_argument("--nodes", type=Path, metavar="FILE", help="table node,x,y,z; deck with *NODE; .bdf with GRID")
+    matrices = parser.scoped_group(MATRICES, needs="stiffness and mass; the file holds modes", active=None)
+    matrices.add_argument(
+        "--method",
+        choices=METHODS,
+        default=METHODS[0],
+        help="reduction: free-free, modes of the free body and residual flexibility; rubin, in addition modes of its "
+        "points with the mass that moves with them; craig-bampton, modes of the body held at its points; free-free by "
+        "default",
+    )
+    more = parser.scoped_group(
+        "modes of the points",
+        needs="--method rubin or craig-bampton",
+        active=lambda options: options.method != METHODS[0],
+    )
+    more.add_argument(
+        "--attachment-modes",
+        type=float,
+        metavar="HZ",
+        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 5 times --up-to by default",
+    )
+
+
+def _add_model_options(parser: Parser) -> None:
+    """Add the options of the position, the modes and the points of the body model."""
+    frame = parser.add_argument_group("position in the vehicle")
+    frame.add_argument(
         "--axes",
         default="x,y,z",
         metavar="X,Y,Z",
         help="the source's names of the vehicle's x (to the rear), y (to the driver's right), z (up): -x,-y,z of a "
         "source with x forward and y to the left; x,y,z by default",
     )
-    taken.add_argument(
+    frame.add_argument(
         "--origin", default="0,0,0", metavar="X,Y,Z", help="source's origin in the vehicle frame [m]; 0,0,0 by default"
     )
-    taken.add_argument(
-        "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode kept [Hz]; 100 by default"
+    model = parser.add_argument_group("modes of the model")
+    model.add_argument(
+        "--up-to", type=float, default=100.0, metavar="HZ", help="highest mode of the model [Hz]; 100 by default"
     )
-    taken.add_argument(
-        "--method",
-        choices=METHODS,
-        default=METHODS[0],
-        help="of matrices: free-free, modes of the free body, those above static; rubin adds modes of its points, with "
-        "the mass that moves with them; craig-bampton, modes of the body held at its points; free-free by default",
-    )
-    taken.add_argument(
-        "--attachment-modes",
-        type=float,
-        metavar="HZ",
-        help="highest mode that rubin adds, or that craig-bampton keeps [Hz]; 5 times --up-to by default",
-    )
-    taken.add_argument(
+    model.add_argument(
         "--damping", type=float, default=0.02, metavar="RATIO", help="modal damping ratio; 0.02 by default"
     )
-    taken.former("--tolerance", "--tolerance: the farthest node of a point is given by --point-distance MM")
-    taken.former("--map", "--map: the table of nodes for points of the car is given by --point-nodes FILE")
-    taken.add_argument(
-        "--point-distance", type=float, default=1.0, metavar="MM", help="farthest node of a point [mm]; 1"
+    points = parser.add_argument_group("points of the car")
+    parser.former("--tolerance", "--tolerance: the farthest node of a point is given by --point-distance MM")
+    parser.former("--map", "--map: the table of nodes for points of the car is given by --point-nodes FILE")
+    points.add_argument(
+        "--point-distance",
+        type=float,
+        default=1.0,
+        metavar="MM",
+        help="maximum distance of a point from its node [mm]; 1 by default",
     )
-    taken.add_argument(
+    points.add_argument(
         "--spread",
         type=float,
         default=0.0,
         metavar="MM",
-        help="nodes within this radius carry a point together [mm]; 0",
+        help="radius of the nodes that carry a point together [mm]; 0 by default",
     )
-    taken.add_argument(
+    points.add_argument(
         "--point-nodes", type=Path, metavar="FILE", help="table point,node: nodes chosen for points of the car"
     )
-    taken.add_argument("--modal-mass", type=float, metavar="KG", help="modal mass of shapes that come without one [kg]")
-    taken.add_argument(
-        "--residual",
-        type=Path,
-        metavar="FILE",
-        help="beside modes: what attachments give way beyond them, a table point,x [N/m],y [N/m],z [N/m], or in m/N",
-    )
-    taken.add_argument("--name", help="name of the body; that of the file by default")
-    output_options(taken)
-    vehicle_options(taken)
-    message_options(taken)
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Read the source, write the model and print what it is."""
+    """Read the source, write the body model, and print its properties."""
     from vehicle.model.flexbody.sources.body_units import require_first_mode, require_mass, require_size, units_of
     from vehicle.model.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.model.flexbody.sources.residual_table import read_residuals
@@ -135,7 +165,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
     require_output(options)
     _check_numbers(options)
-    places = vehicle.composition.attachments()
+    points = vehicle.composition.attachments()
     near = {
         "tolerance": 1e-3 * options.point_distance,
         "spread": 1e-3 * options.spread,
@@ -143,40 +173,43 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     }
     origin = _origin(options.origin)
     matrices = _matrices(options)
-    if matrices is None and options.method != METHODS[0]:
-        raise ConfigurationError(f"--method {options.method}: needs stiffness and mass; {options.file} holds modes")
-    if matrices is not None and options.residual:
-        raise ConfigurationError(f"--residual {options.residual}: follows from stiffness and mass; leave it out")
+    idle: tuple[str, ...] = (MODES,) if matrices is not None else (MATRICES, FILES)
+    if matrices is not None and options.file.suffix == ".sti":
+        idle = (MODES, FILES)
+    elif matrices is None and options.file.suffix != ".frd":
+        idle = (MATRICES, FILES, UNITS)
+    for title in idle:
+        refuse_idle(options, title)
     units, weight = units_of(options.length_unit, options.mass_unit), _vehicle_mass(vehicle)
     notices = []
     if matrices is not None:
         body = matrices.scaled(*units.sizes).placed(options.axes, origin)
         body = replace(body, source=f"{body.source}, {units.words}")
         notices.append(units.words)
-        require_size(body.positions, places, units)
+        require_size(body.positions, points, units)
         require_mass(body.mass_properties().mass, weight.mass, units)
-        found = interfaces(body, places, **near)
-        modes = modes_of_matrices(body, options.up_to, found, options.method, options.attachment_modes)
+        attached = interfaces(body, points, **near)
+        modes = modes_of_matrices(body, options.up_to, attached, options.method, options.attachment_modes)
         require_first_mode(float(modes.frequencies[0]), units)
     else:
         from vehicle.model.flexbody.sources.mode_shapes import normalised
 
-        given = _given_modes(options, units, weight.mass, places).placed(options.axes, origin)
+        shapes = _given_modes(options, units, weight.mass, points).placed(options.axes, origin)
         notices += [units.words] if options.file.suffix == ".frd" else []
-        found = interfaces(given.body, places, **near)
-        residual = read_residuals(options.residual, places) if options.residual else {}
-        modes = normalised(given, weight, options.modal_mass, options.up_to, residual)
-    model = superelement_of(modes, found, name=options.name or options.file.stem, damping=options.damping)
+        attached = interfaces(shapes.body, points, **near)
+        residual = read_residuals(options.residual, points) if options.residual else {}
+        modes = normalised(shapes, weight, options.modal_mass, options.up_to, residual)
+    model = superelement_of(modes, attached, name=options.name or options.file.stem, damping=options.damping)
     write(options, model)
     print("\n".join([*(f"note: {notice}" for notice in (*notices, *modes.notices)), *report(model, vehicle)]))
     print("points of the car")
-    for place in found:
-        which = f"{place.nodes} nodes, the nearest" if place.nodes > 1 else "a node"
-        print(f"  {place.name:<28} {which} {1e3 * place.distance:.2f} mm away")
+    for interface in attached:
+        which = f"{interface.nodes} nodes, the nearest" if interface.nodes > 1 else "a node"
+        print(f"  {interface.name:<28} {which} {1e3 * interface.distance:.2f} mm away")
 
 
 def _matrices(options: argparse.Namespace) -> Any:
-    """K and M in the units of the source; None where the file holds modes."""
+    """Read the stiffness and mass matrices in the units of the source; None for a file of modes."""
     file: Path = options.file
     if file.suffix.lower() in REFUSED:
         raise DataError(f"{file}: {REFUSED[file.suffix.lower()]}.")
@@ -188,42 +221,38 @@ def _matrices(options: argparse.Namespace) -> Any:
 
     if not is_bulk_data(file):
         if options.mass is None:
+            if options.file.suffix in (".mtx", ".mat"):
+                raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs too")
             return None
         if options.nodes is None:
-            raise ConfigurationError("--mass: a stiffness and a mass matrix need --nodes too, where their nodes are")
+            raise ConfigurationError("--mass: the positions of the nodes are missing; set --nodes too")
     from vehicle.model.flexbody.sources.matrix_files import read_matrices
 
     return read_matrices(file, options.mass, options.dofs, options.nodes)
 
 
-def _given_modes(options: argparse.Namespace, units: Units, mass: float, places: Mapping[str, Point]) -> GivenModes:
-    """The modes of a file: of CalculiX in the stated units, of a universal file in its own."""
+def _given_modes(options: argparse.Namespace, units: Units, mass: float, points: Mapping[str, Point]) -> GivenModes:
+    """Read modes: from CalculiX (.frd) in the units of the options, or from a universal file."""
     from vehicle.model.flexbody.sources.body_units import require_level, require_size
     from vehicle.model.flexbody.sources.frd import read_frd
     from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
     from vehicle.signals.records.reader import read_record
 
     if options.file.suffix == ".frd":
-        given = read_frd(options.file, *units.sizes)
-        require_size(given.body.positions, places, units)
-        require_level(given.vectors, given.modal_mass, mass, units)
-        return given
-    if options.file.suffix in (".mtx", ".mat"):
-        raise ConfigurationError(f"{options.file}: a stiffness matrix needs --mass, --nodes and --dofs beside it")
-    given = modes_of_measurement(read_record(options.file))
-    for name, value in (("--length-unit", options.length_unit), ("--mass-unit", options.mass_unit)):
-        if value is not None:
-            raise ConfigurationError(f"{name} {value}: {options.file} states its own units (dataset 164); leave it out")
-    return given
+        modes = read_frd(options.file, *units.sizes)
+        require_size(modes.body.positions, points, units)
+        require_level(modes.vectors, modes.modal_mass, mass, units)
+        return modes
+    return modes_of_measurement(read_record(options.file))
 
 
 def _vehicle_mass(vehicle: Vehicle) -> MassProperties:
-    """Mass properties of the trimmed body in the vehicle file."""
+    """Return the mass properties of the trimmed body in the vehicle file."""
     from vehicle.model.flexbody.mass_properties import MassProperties
     from vehicle.model.flexbody.rigid_body import rigid_body
 
-    own = rigid_body(vehicle.body)
-    return MassProperties(mass=own.mass, cog=own.cog, inertia=own.inertia)
+    body = rigid_body(vehicle.body)
+    return MassProperties(mass=body.mass, cog=body.cog, inertia=body.inertia)
 
 
 def _origin(text: str) -> tuple[float, float, float]:
@@ -232,17 +261,15 @@ def _origin(text: str) -> tuple[float, float, float]:
         if not all(map(math.isfinite, (x, y, z))):
             raise ValueError
     except ValueError:
-        raise ConfigurationError(f"--origin {text}: needed are three numbers in metres, as 1.2,0,0.35") from None
+        raise ConfigurationError(f"--origin {text}: must be three numbers in metres, as 1.2,0,0.35") from None
     return x, y, z
 
 
 def _check_numbers(options: argparse.Namespace) -> None:
-    """The numbers of an import; NaN is in none of the ranges."""
+    """Check the numeric options of an import; NaN is outside every range."""
     from vehicle.model.flexbody.superelement_checks import HIGHEST_DAMPING, LARGEST_TOLERANCE
 
-    most = 1e3 * LARGEST_TOLERANCE
-    if options.attachment_modes is not None and options.method == METHODS[0]:
-        raise ConfigurationError("--attachment-modes: --method free-free has none; choose rubin or craig-bampton")
+    limit = 1e3 * LARGEST_TOLERANCE
     for name, value, allowed, text in (
         ("--up-to", options.up_to, 0.0 < options.up_to < math.inf, "a frequency above 0 Hz"),
         (
@@ -255,8 +282,8 @@ def _check_numbers(options: argparse.Namespace) -> None:
         (
             "--point-distance",
             options.point_distance,
-            0.0 < options.point_distance <= most,
-            f"above 0, up to {most:g} mm",
+            0.0 < options.point_distance <= limit,
+            f"above 0, up to {limit:g} mm",
         ),
         ("--spread", options.spread, 0.0 <= options.spread < math.inf, "0 mm or a radius"),
         (
@@ -267,4 +294,4 @@ def _check_numbers(options: argparse.Namespace) -> None:
         ),
     ):
         if not allowed:
-            raise ConfigurationError(f"{name} {value:g}: allowed is {text}")
+            raise ConfigurationError(f"{name} {value:g}: must be {text}")

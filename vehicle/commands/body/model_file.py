@@ -1,4 +1,4 @@
-"""Body models as files that a command reads and writes."""
+"""Files of body models: options, checks, reading and writing."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 
 
 def output_options(task: Any) -> None:
-    """Where a model is written."""
+    """Add --output and --force, the file of the body model."""
     task.add_argument("--output", type=Path, required=True, metavar="FILE", help="body model to write, .toml or .npz")
     task.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
 def require_output(options: argparse.Namespace) -> None:
-    """Refuse an output that cannot be written, before the work.
+    """Check the output file before the computation.
 
     Raises:
-        ConfigurationError: its name, an input, an existing file without --force or of somebody else.
+        ConfigurationError: another ending, an input file, an existing file without --force or of the user.
         OutputError: its folder cannot be written.
     """
     if options.output.suffix not in (".toml", ".npz"):
@@ -35,7 +35,7 @@ def require_output(options: argparse.Namespace) -> None:
 
 
 def write(options: argparse.Namespace, model: Superelement) -> None:
-    """Write a model to the output."""
+    """Write a body model to the file of --output."""
     from vehicle.model.flexbody.superelement_file import write_superelement
     from vehicle.runs.output.folder import write_whole
 
@@ -43,7 +43,7 @@ def write(options: argparse.Namespace, model: Superelement) -> None:
 
 
 def model_of(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
-    """The model of a file; that of the vehicle where none is given."""
+    """Read a body model from a file; by default return that of the vehicle."""
     from vehicle.model.flexbody.body_model import body_model
     from vehicle.model.flexbody.superelement_file import read_superelement
 

@@ -1,4 +1,4 @@
-"""`python -m vehicle body participation`: which body modes make a place loud at a frequency, and what drives them."""
+"""`python -m vehicle body participation`: contributions of the body modes to a response at a frequency."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
-    from vehicle.engines.linear.participation import Participation
+    from vehicle.engines.linear.mode_participation import Participation
     from vehicle.model.parameters.vehicle import Vehicle
 
 FILES = ("participation.csv", "attachments.csv", "participation.png")
@@ -27,7 +27,7 @@ UNIT = "m/s2/m"
 
 
 def add(tasks: Any) -> None:
-    """The options."""
+    """Add the parser of the task with its options."""
     asked = tasks.add_parser(
         "participation", help="which body modes make a place loud at a frequency, and which attachments drive them"
     )
@@ -60,10 +60,10 @@ def add(tasks: Any) -> None:
 
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
-    """Compute, write and print it."""
+    """Compute, write and print the contributions."""
     import numpy as np
 
-    from vehicle.engines.linear.participation import participation
+    from vehicle.engines.linear.mode_participation import participation
     from vehicle.runs.car import Car
 
     if options.at is not None and not 0.0 < options.at < math.inf:
@@ -81,51 +81,52 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
     over = of(band)
     at = round(float(band[np.abs(over.total).argmax()]), 2) if options.at is None else options.at
-    found = of([at])
-    modes = len(found.mode_frequency)
+    result = of([at])
+    modes = len(result.mode_frequency)
     if options.mode is not None and not 1 <= options.mode <= modes:
         raise ConfigurationError(f"--mode {options.mode}: the body has modes 1 to {modes}")
-    mode = int(found.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
-    about = f"{vehicle.name}: {options.response} per displacement of the plate {wheel}, dampers {options.damper}"
-    about += f", tyres {vehicle.driving.words}"
+    mode = int(result.shares[6:, 0].argmax()) if options.mode is None else options.mode - 1
+    caption = f"{vehicle.name}: {options.response} per displacement of the plate {wheel}, dampers {options.damper}"
+    caption += f", tyres {vehicle.driving.words}"
     if options.output is not None:
-        _write(options, over, found, mode, about)
+        _write(options, over, result, mode, caption)
     if options.json:
-        print(json.dumps(_numbers(options, found, wheel), indent=2, allow_nan=False))
+        print(json.dumps(_numbers(options, result, wheel), indent=2, allow_nan=False))
     else:
-        print("\n".join(_report(found, mode, about)))
+        print("\n".join(_report(result, mode, caption)))
 
 
-def _named(found: Participation) -> list[str]:
-    """Names of the contributions, those of modes with their frequencies."""
-    modes = [f"{f:.2f} Hz" for f in found.mode_frequency]
-    return [*found.names[:6], *(f"{name}, {f}" for name, f in zip(found.names[6:], modes, strict=True))]
+def _named(result: Participation) -> list[str]:
+    """Return the names of the contributions; names of modes include the frequency."""
+    modes = [f"{f:.2f} Hz" for f in result.mode_frequency]
+    return [*result.names[:6], *(f"{name}, {f}" for name, f in zip(result.names[6:], modes, strict=True))]
 
 
-def _report(found: Participation, mode: int, about: str) -> list[str]:
-    """The two tables as text, the largest first."""
+def _report(result: Participation, mode: int, caption: str) -> list[str]:
+    """Return both tables as text, largest contributions first."""
     import numpy as np
 
-    total, own = found.total[0], found.contributions[:, 0]
+    total, contributions = result.total[0], result.contributions[:, 0]
     lines = [
-        f"{about}, {found.frequency[0]:g} Hz: {abs(total):.4g} m/s² per m, phase {np.degrees(np.angle(total)):.0f} deg",
-        "share: the part in phase with the sum; a negative one works against it",
+        f"{caption}, {result.frequency[0]:g} Hz: {abs(total):.4g} m/s² per m, "
+        f"phase {np.degrees(np.angle(total)):.0f} deg",
+        "share: part in phase with the sum; a negative share reduces the sum",
         f"{'share':>9} {'(m/s²)/m':>10} {'to sum':>8}  contribution",
     ]
-    names, shares = _named(found), found.shares[:, 0]
+    names, shares = _named(result), result.shares[:, 0]
     small = [i for i in range(len(names)) if abs(shares[i]) < SHOWN]
     for i in sorted(set(range(len(names))) - set(small), key=lambda i: -abs(shares[i])):
-        turned = np.degrees(np.angle(own[i] / total))
-        lines.append(f"{_percent(shares[i])} {abs(own[i]):>10.4g} {turned:>+5.0f} deg  {names[i]}")
+        turned = np.degrees(np.angle(contributions[i] / total))
+        lines.append(f"{_percent(shares[i])} {abs(contributions[i]):>10.4g} {turned:>+5.0f} deg  {names[i]}")
     if small:
         lines.append(f"{_percent(shares[small].sum())} {'':>10} {'':>9}  the other {len(small)}")
     if np.abs(shares).sum() > CANCEL:
         lines.append("the place is quiet here: its response is the small difference of contributions that cancel")
     lines.append(f"what drives {names[6 + mode]}: share of the force on the mode")
-    drivers = found.attachment_shares[mode, :, 0]
+    drivers = result.attachment_shares[mode, :, 0]
     small = [i for i in range(len(drivers)) if abs(drivers[i]) < SHOWN]
     for i in sorted(set(range(len(drivers))) - set(small), key=lambda i: -abs(drivers[i])):
-        lines.append(f"{_percent(drivers[i])}  {found.attachments[i]}")
+        lines.append(f"{_percent(drivers[i])}  {result.attachments[i]}")
     if small:
         lines.append(f"{_percent(drivers[small].sum())}  the other {len(small)}")
     return lines
@@ -135,15 +136,15 @@ def _percent(share: float) -> str:
     return f"{100 * share:>+z7.1f} %"
 
 
-def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> dict[str, Any]:
-    """Both tables in plain numbers."""
+def _numbers(options: argparse.Namespace, result: Participation, wheel: str) -> dict[str, Any]:
+    """Return both tables as plain numbers."""
     import numpy as np
 
-    total, phase = found.total[0], np.degrees(np.angle(found.contributions[:, 0] / found.total[0]))
-    frequencies = [None] * 6 + [float(one) for one in found.mode_frequency]
+    total, phase = result.total[0], np.degrees(np.angle(result.contributions[:, 0] / result.total[0]))
+    frequencies = [None] * 6 + [float(frequency) for frequency in result.mode_frequency]
     return {
-        "place": found.place,
-        "frequency_hz": float(found.frequency[0]),
+        "place": result.channel,
+        "frequency_hz": float(result.frequency[0]),
         "wheel": wheel,
         "damper": options.damper,
         "magnitude": abs(total),
@@ -153,29 +154,29 @@ def _numbers(options: argparse.Namespace, found: Participation, wheel: str) -> d
             {
                 "name": name,
                 "frequency_hz": frequency,
-                "share": float(found.shares[i, 0]),
-                "magnitude": float(abs(found.contributions[i, 0])),
+                "share": float(result.shares[i, 0]),
+                "magnitude": float(abs(result.contributions[i, 0])),
                 "phase_to_sum_deg": float(phase[i]),
             }
-            for i, (name, frequency) in enumerate(zip(found.names, frequencies, strict=True))
+            for i, (name, frequency) in enumerate(zip(result.names, frequencies, strict=True))
         ],
         "attachments": [
-            {"mode": n + 1, "share": dict(zip(found.attachments, shares, strict=True))}
-            for n, shares in enumerate(found.attachment_shares[:, :, 0].tolist())
+            {"mode": n + 1, "share": dict(zip(result.attachments, shares, strict=True))}
+            for n, shares in enumerate(result.attachment_shares[:, :, 0].tolist())
         ],
     }
 
 
-def _write(options: argparse.Namespace, over: Participation, found: Participation, mode: int, about: str) -> None:
-    """Both tables and the picture."""
+def _write(options: argparse.Namespace, over: Participation, result: Participation, mode: int, caption: str) -> None:
+    """Write both tables and the picture."""
     import numpy as np
 
     from vehicle.drawing.rendering.participation_plot import plot_participation
-    from vehicle.engines.linear.participation import in_phase
+    from vehicle.engines.linear.mode_participation import in_phase
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
     from vehicle.signals.records.text_format import write_table
 
-    at, keys = found.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
+    at, keys = result.frequency[0], ["body_x", "body_y", "body_z", "body_rx", "body_ry", "body_rz"]
     keys += [f"mode_{n + 1}" for n in range(len(over.mode_frequency))]
     heads, columns = ["frequency [Hz]"], [over.frequency]
     for key, values, share in zip(
@@ -187,13 +188,13 @@ def _write(options: argparse.Namespace, over: Participation, found: Participatio
             heads.append(f"{key}_share [%]")
             columns.append(100.0 * share)
     names = _named(over)
-    comments = [about, *(f"{key}: {name}" for key, name in zip(keys, names, strict=True))]
-    rows = [f"# {about}, {at:g} Hz: share of each attachment in the force on each mode", "attachment"]
-    rows[1] += "".join(f",mode_{n + 1} [%]" for n in range(len(found.modal_forces)))
-    for name, shares in zip(found.attachments, found.attachment_shares[:, :, 0].T, strict=True):
-        rows.append(",".join([f'"{name}"' if "," in name else name, *(f"{100.0 * one:.6g}" for one in shares)]))
-    order = np.argsort(-np.abs(found.shares[:, 0]))
-    drivers = found.attachment_shares[mode, :, 0]
+    comments = [caption, *(f"{key}: {name}" for key, name in zip(keys, names, strict=True))]
+    rows = [f"# {caption}, {at:g} Hz: share of each attachment in the force on each mode", "attachment"]
+    rows[1] += "".join(f",mode_{n + 1} [%]" for n in range(len(result.modal_forces)))
+    for name, shares in zip(result.attachments, result.attachment_shares[:, :, 0].T, strict=True):
+        rows.append(",".join([f'"{name}"' if "," in name else name, *(f"{100.0 * share:.6g}" for share in shares)]))
+    order = np.argsort(-np.abs(result.shares[:, 0]))
+    drivers = result.attachment_shares[mode, :, 0]
     with output_folder(options.output, force=options.force) as folder:
         write_whole(folder / FILES[0], lambda file: write_table(file, heads, columns, comments))
         write_text(folder / FILES[1], "\n".join(rows) + "\n")
@@ -205,8 +206,8 @@ def _write(options: argparse.Namespace, over: Participation, found: Participatio
                 over.frequency,
                 {names[i]: in_phase(over.contributions)[i] for i in order},
                 at,
-                {names[i]: float(found.shares[i, 0]) for i in order},
-                (names[6 + mode], dict(zip(found.attachments, drivers.tolist(), strict=True))),
-                about,
+                {names[i]: float(result.shares[i, 0]) for i in order},
+                (names[6 + mode], dict(zip(result.attachments, drivers.tolist(), strict=True))),
+                caption,
             ),
         )

@@ -1,4 +1,4 @@
-"""What `body show --output` writes: tables of modes, attachments and residuals, and a picture of the shapes."""
+"""Files of `body show --output`: tables of modes, attachments and residuals, and a picture of the shapes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     """Write the files.
 
     Args:
-        folder: where to; it is made.
-        force: replace what was written there before.
+        folder: folder of the files; it is made.
+        force: replace files of an earlier run.
         model: the body model.
-        levels: shapes at attachments and places over their mean in the body [-]: name to (modes, 3).
+        levels: normalised mode shapes at attachments and output points [-]: name to (modes, 3).
     """
     import numpy as np
 
@@ -30,11 +30,13 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
         modes.append(f'{i + 1},{frequency:.9g},{ratio:.6g},"{model.mode_names[i]}"')
     taking = ["# shape at each attachment and place over its mean in the body, sqrt(m) Phi"]
     taking.append("attachment,axis" + "".join(f",mode_{number + 1} [-]" for number in range(count)))
-    for name, own in levels.items():
-        taking += [f"{name},{axis}," + ",".join(f"{one:.6g}" for one in own[:, i]) for i, axis in enumerate("xyz")]
+    for name, values in levels.items():
+        taking += [
+            f"{name},{axis}," + ",".join(f"{value:.6g}" for value in values[:, i]) for i, axis in enumerate("xyz")
+        ]
     pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
     residuals = ["attachment" + "".join(f",{'xyz'[i]}{'xyz'[j]} [m/N]" for i, j in pairs)]
-    residuals += [name + "".join(f",{own[i, j]:.6g}" for i, j in pairs) for name, own in model.residual.items()]
+    residuals += [name + "".join(f",{values[i, j]:.6g}" for i, j in pairs) for name, values in model.residual.items()]
     # A place is a node of the picture where it is one of the model.
     shown = [index for index, node in enumerate(model.nodes) if node in levels]
     titles = [
@@ -44,12 +46,12 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     ]
     more = f"; the first {MOST} of {count} modes" if count > MOST else ""
     caption = f"grey: at rest; colour: displacement, each mode at its own scale; dots: attachments and places{more}"
-    with output_folder(folder, force=force) as place:
+    with output_folder(folder, force=force) as output:
         for name, lines in (("modes.csv", modes), ("attachments.csv", taking), ("residuals.csv", residuals)):
-            write_text(place / name, "\n".join(lines) + "\n")
+            write_text(output / name, "\n".join(lines) + "\n")
         if count:
             write_whole(
-                place / "shapes.png",
+                output / "shapes.png",
                 lambda file: plot_body(
                     file,
                     model.positions,

@@ -1,4 +1,4 @@
-"""What `body show --json` prints: a body model in plain numbers and texts, SI units."""
+"""Output of `body show --json`: a body model in plain numbers and texts, SI units."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
 
 
 def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], bare: list[str] | None) -> dict[str, Any]:
-    """A model as the printed tables have it, unrounded.
+    """Return the content of the printed tables, unrounded.
 
     Args:
         model: the body model.
-        vehicle: the car that its mass properties stand against.
-        levels: shapes at attachments and places over their mean in the body [-]: name to (modes, 3).
-        bare: attachments without residual flexibility; None of a model that is not on this car.
+        vehicle: the car, with the mass properties for comparison.
+        levels: normalised mode shapes at attachments and output points [-]: name to (modes, 3).
+        bare: attachments without residual flexibility; None if the model does not fit this car.
 
     Returns:
         Inertia as the tensor about the CoG, its elements off the diagonal minus the products; participation |shape|
@@ -46,7 +46,7 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
             for frequency, ratio, name in modes
         ],
         "on_this_car": bare is not None,
-        "participation": {name: np.linalg.norm(one, axis=1).tolist() for name, one in levels.items()},
-        "residual_m_per_n": {name: np.asarray(own).tolist() for name, own in model.residual.items()},
+        "participation": {name: np.linalg.norm(shape, axis=1).tolist() for name, shape in levels.items()},
+        "residual_m_per_n": {name: np.asarray(flexibility).tolist() for name, flexibility in model.residual.items()},
         "without_residual": bare,
     }

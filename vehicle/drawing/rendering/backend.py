@@ -1,7 +1,8 @@
-"""What a film needs from the machine: an off-screen OpenGL library and an ffmpeg with H.264, checked before a run.
+"""Requirements of a film: an off-screen OpenGL library and an ffmpeg with H.264, checked before a run.
 
-`choose_backend` wants to be called before `import mujoco`: MuJoCo reads MUJOCO_GL when it is imported, and PyOpenGL
-settles on one platform. `python -m vehicle.drawing.rendering.backend` tells whether films can be made.
+Call `choose_backend` before `import mujoco`: MuJoCo reads MUJOCO_GL when it is imported, and PyOpenGL uses one platform
+until the process ends. `python -m vehicle.drawing.rendering.backend` exits with 0 if films can be made, else it prints
+the reason.
 """
 
 from __future__ import annotations
@@ -16,12 +17,13 @@ from functools import cache
 
 from vehicle.errors import MissingPartError
 
-BACKENDS = ("osmesa", "egl")
-"""In order of preference: OSMesa renders on the processor and gives the same picture on every machine."""
+BACKENDS = ("osmesa", "egl", "glfw")
+"""OpenGL backends of MuJoCo, preferred ones first: OSMesa renders on the processor, the same picture on every machine;
+EGL needs a driver, GLFW also a display (or Windows, macOS)."""
 
 ENCODER = "libx264"
 PATIENCE = 120.0
-"""Longest wait [s] for a probe; importing MuJoCo and opening a context takes about one second."""
+"""Maximum time of a probe [s]; importing MuJoCo and opening a context takes about one second."""
 
 PROBE = """
 import mujoco
@@ -34,17 +36,22 @@ with mujoco.Renderer(model, 16, 16) as renderer:
 """
 
 
+def variables(backend: str) -> dict[str, str]:
+    """Return the environment variables that select a backend; MuJoCo uses GLFW without PyOpenGL."""
+    return {"MUJOCO_GL": backend} | ({} if backend == "glfw" else {"PYOPENGL_PLATFORM": backend})
+
+
 @cache
 def probe(backend: str) -> str | None:
-    """Render one tiny picture in a process of its own, since a missing library may end the process.
+    """Render a picture of 16 x 16 pixels in a new process, since a missing library may end the process.
 
     Args:
         backend: value of MUJOCO_GL.
 
     Returns:
-        None if it works, else the last line that the process said.
+        None if the backend works, else the last line of the error output.
     """
-    environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
+    environment = {**os.environ, **variables(backend)}
     command = [sys.executable, "-c", PROBE]
     with tempfile.TemporaryDirectory() as folder:  # MuJoCo writes its log into the working folder
         try:
@@ -60,19 +67,19 @@ def probe(backend: str) -> str | None:
 
 
 def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
-    """Choose the OpenGL backend and write it into MUJOCO_GL and PYOPENGL_PLATFORM.
+    """Choose the OpenGL backend and set MUJOCO_GL and PYOPENGL_PLATFORM.
 
-    A working choice of the user comes first, then OSMesa, then EGL. Where PyOpenGL is loaded already, only its platform
+    A working choice of the user comes first, then OSMesa, EGL, GLFW. If PyOpenGL is loaded already, only its platform
     can be used.
 
     Args:
-        probe: gives None for a backend that works, else the reason why not.
+        probe: function that returns None for a backend that works, else the reason.
 
     Returns:
-        "osmesa" or "egl".
+        "osmesa", "egl" or "glfw".
 
     Raises:
-        MissingPartError: neither works; names the package to install.
+        MissingPartError: no backend works; the message names the package to install.
     """
     chosen = os.environ.get("MUJOCO_GL", "").strip().lower()
     candidates = [chosen] if chosen in BACKENDS else []
@@ -84,32 +91,29 @@ def choose_backend(probe: Callable[[str], str | None] = probe) -> str:
     for name in candidates:
         reason = probe(name)
         if reason is None:
-            os.environ["MUJOCO_GL"] = os.environ["PYOPENGL_PLATFORM"] = name
+            os.environ.update(variables(name))
             return name
         reasons[name] = reason
-    found = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
+    failures = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
     raise MissingPartError(
-        f"video: no off-screen OpenGL library works on this machine ({found}). "
+        f"video: no off-screen OpenGL library works on this machine ({failures}). "
         "Install OSMesa, on Debian: apt-get install libosmesa6; or run without --video"
     )
 
 
 def find_ffmpeg() -> str:
-    """Find an ffmpeg program that encodes H.264: the one on PATH, else the one of the imageio-ffmpeg package.
-
-    Returns:
-        Path of the program.
+    """Return the path of an ffmpeg program that encodes H.264: first on PATH, then in the imageio-ffmpeg package.
 
     Raises:
-        MissingPartError: there is none, or none with the encoder.
+        MissingPartError: there is no ffmpeg, or no ffmpeg with the encoder.
     """
-    found = [path for path in (shutil.which("ffmpeg"), _bundled_ffmpeg()) if path is not None]
-    for path in found:
+    programs = [path for path in (shutil.which("ffmpeg"), _bundled_ffmpeg()) if path is not None]
+    for path in programs:
         if _encodes(path):
             return path
-    what = f"found {', '.join(found)} without the encoder {ENCODER}" if found else "no ffmpeg program was found"
+    fault = f"found {', '.join(programs)} without the encoder {ENCODER}" if programs else "no ffmpeg program was found"
     raise MissingPartError(
-        f"video: {what}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
+        f"video: {fault}. Install ffmpeg, on Debian: apt-get install ffmpeg, or the Python package imageio-ffmpeg; "
         "or run without --video"
     )
 
@@ -124,7 +128,7 @@ def _bundled_ffmpeg() -> str | None:
 
 
 def _encodes(path: str) -> bool:
-    """Whether a program lists the encoder."""
+    """True if an ffmpeg program lists the encoder."""
     command = [path, "-hide_banner", "-encoders"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
@@ -134,20 +138,17 @@ def _encodes(path: str) -> bool:
 
 
 def require_film() -> str:
-    """Check everything that a film needs, before anything is simulated.
-
-    Returns:
-        The chosen OpenGL backend.
+    """Check ffmpeg and OpenGL before the simulation, and return the chosen OpenGL backend.
 
     Raises:
-        MissingPartError: something is missing; names it and how to install it.
+        MissingPartError: one of them is missing; the message says how to install it.
     """
     find_ffmpeg()
     return choose_backend()
 
 
 def film_available() -> str | None:
-    """Reason why no film can be made on this machine; None where it can."""
+    """Return the reason why this machine cannot make films; None if it can."""
     try:
         require_film()
     except MissingPartError as error:

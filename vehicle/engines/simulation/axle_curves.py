@@ -1,4 +1,4 @@
-"""Curves and slopes of an axle on its rig: over wheel travel, in the design position, under load."""
+"""Curves and slopes of an axle on a kinematics rig: over wheel travel, in the design position, under load."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.engines.simulation.axle_statics import AxleStatics, Vector, WheelPose
 
 SMALL = 1e-3
-"""Travel [m] to both sides over which slopes in the design position are taken."""
+"""Travel [m] to both sides for the central differences of the slopes in the design position."""
 
 SLOPES = {
     "load_n": "wheel_rate_n_per_m",
@@ -20,41 +20,41 @@ SLOPES = {
     "patch_lateral_m": "patch_lateral_per_m",
     "strut_length_m": "spring_ratio",
 }
-"""Quantity of a pose to the name of its slope over the wheel travel."""
+"""Names of the slopes over the wheel travel, by the field of `WheelPose`."""
 
 
 def travel_curve(
     axle: AxleStatics, travels: Sequence[float], *, opposite: bool = False, load: Vector | None = None
 ) -> list[WheelPose]:
-    """Poses of the right wheel over its travel.
+    """Compute the poses of the right wheel over its travel.
 
     Args:
-        axle: with two wheels, right and left.
-        travels: of the right wheel [m], upwards; ascending.
-        opposite: the left wheel goes down where the right one goes up, and its load is turned round.
+        axle: axle with two wheels, right and left.
+        travels: ascending travels of the right wheel [m], upwards positive.
+        opposite: True to move the left wheel by the negative travel and to reverse its load.
         load: force [N] and moment [N m] on each wheel at its contact point, in the axes of the car, (6,).
 
     Raises:
-        SimulationError: as of `AxleStatics.solve`.
+        SimulationError: the axle has no equilibrium at a travel; see `AxleStatics.solve`.
     """
     other = -1.0 if opposite else 1.0
     loads = None if load is None else np.array([load, other * load])
-    # From the design position outwards, so that every solution begins at its neighbour.
-    found = {}
+    # Start at the design position, so that every solution begins at a neighbouring one.
+    poses = {}
     for part in ([z for z in travels[::-1] if z < 0.0], [z for z in travels if z >= 0.0]):
         for z in part:
-            found[z] = axle.solve([z, other * z], loads)[0]
-    return [found[z] for z in travels]
+            poses[z] = axle.solve([z, other * z], loads)[0]
+    return [poses[z] for z in travels]
 
 
 def design_slopes(axle: AxleStatics, *, opposite: bool = False, load: Vector | None = None) -> dict[str, float | None]:
-    """Slopes over the wheel travel in the design position, by central differences over 1 mm.
+    """Compute slopes over the wheel travel in the design position, by central differences over 1 mm.
 
     Args:
-        axle, opposite, load: as of `travel_curve`.
+        axle, opposite, load: see `travel_curve`.
 
     Returns:
-        By the names in `SLOPES`; None for what ideal joints do not have.
+        Slope by the names in `SLOPES`; None for a quantity that is not defined with ideal joints.
     """
     other = -1.0 if opposite else 1.0
     loads = None if load is None else np.array([load, other * load])

@@ -1,4 +1,4 @@
-"""What an axle consists of: the bodies that hang together with its wheels, what ties and springs them."""
+"""Parts of an axle: the bodies connected to its wheels, with their connections, springs and dampers."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ from vehicle.names import AXES
 Vector = npt.NDArray[np.float64]
 
 HELD = ("world", "body")
-"""Bodies that do not move; an axle is what hangs together with its wheels without passing through them."""
+"""Fixed bodies on the rig; an axle contains the bodies connected to its wheels by paths that avoid these."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Bent:
-    """A law over displacement that is a curve: -F(at + x) in place of preload - K x; `at` is where the car stands."""
+    """Nonlinear law over displacement: -F(at + x) in place of preload - K x; `at` is the operating point [m]."""
 
     curve: Curve
     at: float
 
     def force(self, displacement: float) -> tuple[float, float]:
-        """Force [N] of the element, and its stiffness there [N/m]."""
+        """Return the force [N] of the element and its tangent stiffness [N/m]."""
         x = self.at + displacement
         return -float(self.curve.force(x)), float(self.curve.slope(x))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Tie:
-    """A bushing or a ball joint.
+    """Bushing or ball joint.
 
     Attributes:
         moving, carrier: sites of the moving part and of the carrier, in whose axes the law acts.
-        stiffness: K [N/m], (3,); None where it is an ideal joint.
+        stiffness: K [N/m], (3,); None for an ideal joint.
         preload: force in the design position [N], (3,).
         twist: rotational stiffness [N m/rad].
-        torque: in the design position [N m], (3,).
-        bent: axes whose law is a curve.
-        directions: those of the law in the axes of the carrier, a row each, (3, 3); None where they are these.
+        torque: torque in the design position [N m], (3,).
+        bent: nonlinear laws by axis.
+        directions: directions of the law in the axes of the carrier, a row each, (3, 3); None for these axes.
     """
 
     moving: int
@@ -59,7 +59,7 @@ class Tie:
     directions: Vector | None = None
 
     def pull(self, gap: Vector) -> tuple[Vector, Vector]:
-        """Force [N] and stiffness [N/m] of a bushing at a displacement r [m], along its axes."""
+        """Return the force [N] and stiffness [N/m] of a bushing at a displacement r [m], along its axes."""
         assert self.stiffness is not None
         force, stiffness = self.preload - self.stiffness * gap, self.stiffness.copy()
         for axis, law in self.bent.items():
@@ -69,7 +69,7 @@ class Tie:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Spring:
-    """A spring between two sites: stiffness [N/m], length in the design position [m] and force there [N]."""
+    """Spring between two sites: stiffness [N/m], length in the design position [m] and force there [N]."""
 
     lower: int
     upper: int
@@ -79,7 +79,7 @@ class Spring:
     bent: Bent | None = None
 
     def pull(self, extension: float) -> tuple[float, float]:
-        """Force [N] and stiffness [N/m] at an extension from the design position [m]."""
+        """Return the force [N] and stiffness [N/m] at an extension from the design position [m]."""
         if self.bent is not None:
             return self.bent.force(extension)
         return self.preload - self.stiffness * extension, self.stiffness
@@ -87,14 +87,14 @@ class Spring:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Strut:
-    """A damper at rest on its slide joint: constant force of gas and valves [N], extension positive, and its stop."""
+    """Damper at rest on its slide joint: constant force of gas and valves [N], extension positive, and bump stop."""
 
     joint: int
     rest: float
     stop: Curve | None
 
     def pull(self, position: float) -> tuple[float, float]:
-        """Force [N] on the joint and stiffness [N/m] at its position [m]."""
+        """Return the force [N] on the joint and the stiffness [N/m] at its position [m]."""
         if self.stop is None:
             return -self.rest, 0.0
         return -self.rest - float(self.stop.force(position)), float(self.stop.slope(position))
@@ -102,16 +102,16 @@ class Strut:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class AxleParts:
-    """The parts of an axle.
+    """Parts of an axle.
 
     Attributes:
         wheels: ids of the bodies of the wheels.
-        bodies: ids of all its bodies.
-        columns: velocity coordinates of these.
-        ties: its bushings and ball joints, without those to the ground.
-        springs: its springs between two points.
-        joints: its joints with a spring.
-        struts: its dampers.
+        bodies: ids of all bodies of the axle.
+        columns: velocity coordinates of the bodies.
+        ties: bushings and ball joints, without the ground contacts.
+        springs: springs between two points.
+        joints: ids of the joints with a spring.
+        struts: dampers.
         standing: force [N] and torque [N m] of the ground on each wheel in the design position, without the vertical
             load, (wheels, 6).
     """
@@ -127,23 +127,23 @@ class AxleParts:
 
 
 def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *, ideal: bool = False) -> AxleParts:
-    """Find the parts of an axle in a compiled and trimmed car.
+    """Find the parts of an axle in a compiled car in static equilibrium.
 
     Args:
         model: the car.
-        preload: force of every constraint row [N], torques of the rotations behind them [N m], as of the trim.
+        preload: static force of every constraint row [N], then the torques of the rotations [N m]; see `StaticTrim`.
         wheels: bodies of the wheels of the axle.
-        ideal: every connection to be an ideal ball joint.
+        ideal: True to replace every connection by an ideal ball joint.
 
     Returns:
         The parts.
 
     Raises:
-        ConfigurationError: nothing ties a wheel to the body.
+        ConfigurationError: the wheels have no connection.
     """
-    kinds = [mujoco.mjtEq(kind) for kind in model.eq_type]
+    kinds = [mujoco.mjtEq(equality_type) for equality_type in model.eq_type]
     connect, tendon = mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_TENDON
-    rows = np.cumsum([0, *(3 if kind == connect else 1 for kind in kinds)])
+    rows = np.cumsum([0, *(3 if equality_type == connect else 1 for equality_type in kinds)])
     names = [str(model.equality(index).name) for index in range(model.neq)]
     laws = {name: _law(model, name) for name in names}
     ends = {
@@ -151,10 +151,10 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
         for index, name in enumerate(names)
         if kinds[index] == connect
     }
-    turning = [name for name in ends if laws[name].size and laws[name][12] > 0.0]
-    torques = dict(zip(turning, preload[preload.size - 3 * len(turning) :].reshape(-1, 3), strict=True))
+    rotational = [name for name in ends if laws[name].size and laws[name][12] > 0.0]
+    torques = dict(zip(rotational, preload[preload.size - 3 * len(rotational) :].reshape(-1, 3), strict=True))
     numbers = [model.body(name).id for name in wheels]
-    bodies = _hanging_together(model, numbers, list(ends.values()))
+    bodies = _connected_bodies(model, numbers, list(ends.values()))
     standing, ties, springs = np.zeros((len(numbers), 6)), [], []
     for index, name in enumerate(names):
         law = laws[name]
@@ -164,22 +164,22 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             if not bodies & {moving, carrier}:
                 continue
             if model.body_mocapid[carrier] >= 0:
-                # A tyre on its plate: the horizontal force and the torque with which the car was set down stay.
+                # A tyre on its plate keeps the horizontal force and the torque of the static trim.
                 standing[numbers.index(moving)] = [*force[:2], 0.0, *torque]
                 continue
             soft = law.size > 0 and not ideal
             curves = {axis: _curve(model, f"{name}/{letter}") for axis, letter in enumerate(AXES)} if soft else {}
-            one, other = ends[name]
+            sites = ends[name]
             way = numeric(model, f"directions/{name}") if soft else None
             ties.append(
                 Tie(
-                    moving=one,
-                    carrier=other,
+                    moving=sites[0],
+                    carrier=sites[1],
                     stiffness=law[:3] if soft else None,
                     preload=force,
                     twist=float(law[12]) if soft else 0.0,
                     torque=torque,
-                    bent={axis: _standing(one, force[axis]) for axis, one in curves.items() if one is not None},
+                    bent={axis: _standing(curve, force[axis]) for axis, curve in curves.items() if curve is not None},
                     directions=None if way is None else way.reshape(3, 3),
                 )
             )
@@ -212,49 +212,50 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             for joint in range(model.njnt)
             if np.max(model.jnt_stiffness[joint]) > 0.0 and int(model.jnt_bodyid[joint]) in bodies
         ),
-        struts=tuple(one for one in _struts(model) if int(model.jnt_bodyid[one.joint]) in bodies),
+        struts=tuple(strut for strut in _struts(model) if int(model.jnt_bodyid[strut.joint]) in bodies),
         standing=standing,
     )
 
 
 def _curve(model: mujoco.MjModel, name: str) -> Curve | None:
-    """The curve of an element; None of a linear one."""
+    """Return the force curve of an element; None for a linear law."""
     points = numeric(model, f"table/{name}")
     return None if points is None else Curve.through(*points.reshape(2, -1))
 
 
 def _standing(curve: Curve, preload: float) -> Bent:
-    """A curve where it carries a static force [N]."""
+    """Return a curve with the operating point at which it carries a static force [N]."""
     return Bent(curve=curve, at=curve.position(-preload))
 
 
 def _struts(model: mujoco.MjModel) -> list[Strut]:
+    """Return all dampers of the model."""
     dampers = [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
     numbers = model_numbers(model)
-    rest = unpack([numbers[f"actuator/{model.actuator(index).name}"] for index in dampers])["rest_force"]
+    rest_forces = unpack([numbers[f"actuator/{model.actuator(index).name}"] for index in dampers])["rest_force"]
     return [
         Strut(
             joint=int(model.actuator_trnid[index, 0]),
             rest=float(force),
             stop=_curve(model, str(model.actuator(index).name)),
         )
-        for index, force in zip(dampers, rest, strict=True)
+        for index, force in zip(dampers, rest_forces, strict=True)
     ]
 
 
 def _law(model: mujoco.MjModel, name: str) -> Vector:
-    """Numbers of a law; empty where the connection is ideal."""
-    found = numeric(model, f"law/{name}")
-    return np.zeros(0) if found is None else found
+    """Return the parameters of a law; an empty array for an ideal connection."""
+    parameters = numeric(model, f"law/{name}")
+    return np.zeros(0) if parameters is None else parameters
 
 
-def _hanging_together(model: mujoco.MjModel, wheels: Sequence[int], ends: Sequence[tuple[int, int]]) -> set[int]:
-    """Bodies that hang together with the wheels by joints and connections, without the held ones."""
+def _connected_bodies(model: mujoco.MjModel, wheels: Sequence[int], ends: Sequence[tuple[int, int]]) -> set[int]:
+    """Return the bodies connected to the wheels by joints and connections, without the fixed bodies."""
     links = [(body, int(model.body_parentid[body])) for body in range(1, model.nbody)]
-    links += [(int(model.site_bodyid[one]), int(model.site_bodyid[other])) for one, other in ends]
+    links += [(int(model.site_bodyid[first]), int(model.site_bodyid[second])) for first, second in ends]
     stop = {model.body(name).id for name in HELD} | {b for b in range(model.nbody) if model.body_mocapid[b] >= 0}
-    found, new = set(wheels), set(wheels)
+    connected, new = set(wheels), set(wheels)
     while new:
-        new = {b for link in links for a, b in (link, link[::-1]) if a in found and b not in found | stop}
-        found |= new
-    return found
+        new = {b for link in links for a, b in (link, link[::-1]) if a in connected and b not in connected | stop}
+        connected |= new
+    return connected

@@ -1,4 +1,4 @@
-"""Kinematics and compliance of an axle: the body is held, the wheels are lifted, everything else is in equilibrium.
+"""Kinematics and compliance of an axle: fixed body, prescribed wheel travel, all other parts in equilibrium.
 
 The position q of the parts of the axle satisfies
 
@@ -6,9 +6,9 @@ The position q of the parts of the axle satisfies
 
 with the forces f_e of bushings, springs and the stabilizer at large displacements (r and angle in the axes of the
 carrier, which turn with it), forces F and moments M on the wheels at their contact points, the ideal joints c, and the
-vertical loads N that hold the wheel centres at their heights. Newton's method with K = sum of J' K_e J: the geometric
-stiffness that is left out costs iterations, not accuracy. With ideal connections all of them are joints, and the least
-motion that satisfies the constraints is taken: forces do not matter then.
+vertical loads N that hold the wheel centres at their heights. Newton's method with K = sum of J' K_e J: omitting the
+geometric stiffness costs iterations, not accuracy. With ideal connections all connections are joints, and the solution
+is the minimum-norm motion that satisfies the constraints, independent of forces.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from vehicle.model.parameters.composition import PlacedWheel
 Vector = npt.NDArray[np.float64]
 
 ITERATIONS = 100
-"""Newton steps at most for one position."""
+"""Maximum number of Newton steps for a position."""
 TOLERANCE = 1e-10
-"""Largest step of a coordinate [m or rad] that ends the iteration."""
+"""Maximum step of a coordinate [m or rad] at convergence."""
 
 CONDITION = 1e-12
 """Smallest singular value of the system, as a share of the largest, that counts as resistance or as a constraint."""
@@ -37,16 +37,16 @@ CONDITION = 1e-12
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WheelPose:
-    """How a wheel stands against its design position; a wheel on the left as its mirror image.
+    """Displacement of a wheel from its design position; left wheels are mirrored.
 
     Attributes:
-        wheel_travel_m: of the wheel centre, upwards [m].
-        lateral_m, longitudinal_m: of the wheel centre, outwards and to the rear [m].
-        patch_lateral_m, patch_longitudinal_m: of the contact point, a point of the wheel, likewise [m].
-        camber_deg: top outwards [deg].
-        toe_deg: front inwards [deg].
-        load_n: its vertical load [N]; nan for ideal connections.
-        strut_length_m: change of the distance between the seats of its spring [m].
+        wheel_travel_m: displacement of the wheel centre, upwards [m].
+        lateral_m, longitudinal_m: displacement of the wheel centre, outwards and to the rear [m].
+        patch_lateral_m, patch_longitudinal_m: displacement of the contact point, which is fixed to the wheel [m].
+        camber_deg: camber, top outwards [deg].
+        toe_deg: toe, front inwards [deg].
+        load_n: vertical load [N]; nan for ideal connections.
+        strut_length_m: change of the distance between the seats of the nearest spring [m].
     """
 
     wheel_travel_m: float
@@ -61,7 +61,7 @@ class WheelPose:
 
 
 class AxleStatics:
-    """The parts of an axle in a compiled and trimmed car."""
+    """Static equilibrium of an axle of a compiled car, over wheel travel and loads."""
 
     def __init__(
         self,
@@ -72,15 +72,15 @@ class AxleStatics:
         ideal: bool = False,
         standing: bool = False,
     ) -> None:
-        """Find the parts; arguments as of `axle_parts`.
+        """Find the parts of the axle.
 
         Args:
             model: the car.
-            preload: as of the trim.
-            wheels: of the axle.
-            ideal: every connection to be an ideal ball joint.
-            standing: the wheels stand, with the horizontal force and the torque of tyres that were set down; else
-                their patches roll freely.
+            preload: static forces of the rows; see `StaticTrim`.
+            wheels: wheels of the axle.
+            ideal: True to replace every connection by an ideal ball joint.
+            standing: True to keep the horizontal force and the torque of the tyres at rest; False for freely rolling
+                contact points.
         """
         self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
         self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
@@ -94,17 +94,17 @@ class AxleStatics:
         ]
 
     def solve(self, travel: Sequence[float], loads: Vector | None = None) -> list[WheelPose]:
-        """Equilibrium with the wheel centres at given heights, from the last one found.
+        """Solve the equilibrium for a travel of each wheel, starting from the last solution.
 
         Args:
-            travel: of each wheel [m], upwards.
+            travel: travel of each wheel [m], upwards.
             loads: force [N] and moment [N m] on each wheel at its contact point, (wheels, 6); none by default.
 
         Returns:
-            Where each wheel stands.
+            Pose of each wheel.
 
         Raises:
-            SimulationError: there is no such position, or the parts are not held.
+            SimulationError: the iteration does not converge, or the linkage cannot reach the travel.
         """
         model, data = self.model, self.data
         loads = self.ground if loads is None else self.ground + loads
@@ -121,15 +121,15 @@ class AxleStatics:
             )[0]
             step, reactions = (scale * solution)[:count], (scale * solution)[count:]
             full = np.zeros(model.nv)
-            # A fifth of a radian at a time at the most: the linear step of a turned part is no better than that.
+            # The linear step is accurate for rotations of up to about 0.2 rad.
             full[self.columns] = step * min(1.0, 0.2 / max(np.max(np.abs(step)), 1e-300))
             mujoco.mj_integratePos(model, data.qpos, full, 1.0)
             if np.max(np.abs(step)) < TOLERANCE:
                 break
         else:
             raise SimulationError(
-                f"axle: no position with wheel travels {[round(1e3 * value, 3) for value in travel]} mm; ask for less, "
-                "in smaller steps"
+                f"axle: no position with wheel travels {[round(1e3 * value, 3) for value in travel]} mm; reduce the "
+                "travel and its steps"
             )
         mujoco.mj_fwdPosition(model, data)
         _, _, gaps = self._constraints(travel)
@@ -144,37 +144,37 @@ class AxleStatics:
         return [self._pose(index, float(load)) for index, load in enumerate(loads_now)]
 
     def _length(self, spring: Spring) -> tuple[float, Vector]:
-        """Length of a spring [m] and its derivative by the coordinates, (columns,)."""
-        place, bodies = self.data.site_xpos, self.model.site_bodyid
-        line = place[spring.upper] - place[spring.lower]
+        """Return the length of a spring [m] and its derivative by the coordinates, (columns,)."""
+        positions, bodies = self.data.site_xpos, self.model.site_bodyid
+        line = positions[spring.upper] - positions[spring.lower]
         length = float(np.linalg.norm(line))
-        upper, lower = (self.jacobian(int(bodies[site]), place[site])[0] for site in (spring.upper, spring.lower))
+        upper, lower = (self.jacobian(int(bodies[site]), positions[site])[0] for site in (spring.upper, spring.lower))
         return length, (line / length) @ (upper - lower)
 
     def jacobian(self, body: int, point: Vector) -> tuple[Vector, Vector]:
-        """Of a point of a body: displacement and rotation, (3, columns) each."""
+        """Return the Jacobians of displacement and rotation at a point of a body, (3, columns) each."""
         moved, turned = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
         mujoco.mj_jac(self.model, self.data, moved, turned, point, body)
         return moved[:, self.columns], turned[:, self.columns]
 
     def _relative(self, tie: Tie) -> tuple[Vector, Vector, Vector, Vector]:
-        """Displacement r [m] and sin(angle) n of the moving part against the carrier in its axes, and Jacobians."""
+        """Return displacement r [m] and sin(angle) n of the moving part in axes of the carrier, and Jacobians."""
         data, bodies = self.data, self.model.site_bodyid
-        one, other = tie.moving, tie.carrier
-        # Forces along the directions of the law, turns about the axes of the car.
-        frame = data.site_xmat[other].reshape(3, 3)
-        own = frame if tie.directions is None else frame @ tie.directions.T
-        # Seen from the carrier: its own point is the one that lies under the moving part.
-        moved, turned = self.jacobian(int(bodies[one]), data.site_xpos[one])
-        carried, rotated = self.jacobian(int(bodies[other]), data.site_xpos[one])
-        gap = own.T @ (data.site_xpos[one] - data.site_xpos[other])
-        relative = frame.T @ data.site_xmat[one].reshape(3, 3)
+        moving, carrier = tie.moving, tie.carrier
+        # Forces act along the directions of the law, torques about the axes of the carrier.
+        frame = data.site_xmat[carrier].reshape(3, 3)
+        law_frame = frame if tie.directions is None else frame @ tie.directions.T
+        # The Jacobian of the carrier is that of its point under the moving part.
+        moved, turned = self.jacobian(int(bodies[moving]), data.site_xpos[moving])
+        carried, rotated = self.jacobian(int(bodies[carrier]), data.site_xpos[moving])
+        gap = law_frame.T @ (data.site_xpos[moving] - data.site_xpos[carrier])
+        relative = frame.T @ data.site_xmat[moving].reshape(3, 3)
         # sin(angle) n, the law of the runs (`vehicle.engines.simulation.rotations`).
         angle = 0.5 * np.array([relative[i, j] - relative[j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
-        return gap, angle, own.T @ (moved - carried), frame.T @ (turned - rotated)
+        return gap, angle, law_frame.T @ (moved - carried), frame.T @ (turned - rotated)
 
     def _forces(self, loads: Vector) -> tuple[Vector, Vector]:
-        """Generalised force and stiffness of the elements at the present position."""
+        """Return the generalised force and stiffness of the elements at the present position."""
         model, data = self.model, self.data
         mujoco.mj_fwdPosition(model, data)
         count = self.columns.size
@@ -207,8 +207,8 @@ class AxleStatics:
         for joint in self.parts.joints:
             column = int(np.flatnonzero(self.columns == model.jnt_dofadr[joint])[0])
             rate = float(np.ravel(model.jnt_stiffness[joint])[0])
-            place = model.jnt_qposadr[joint]
-            force[column] += rate * (model.qpos_spring[place] - data.qpos[place])
+            position = model.jnt_qposadr[joint]
+            force[column] += rate * (model.qpos_spring[position] - data.qpos[position])
             stiffness[column, column] += rate
         for index, (wheel, load) in enumerate(zip(self.wheels, loads, strict=True)):
             moved, turned = self.jacobian(wheel, self.places(index)[1])
@@ -216,7 +216,7 @@ class AxleStatics:
         return force, stiffness
 
     def _constraints(self, travel: Sequence[float]) -> tuple[Vector, Vector, Vector]:
-        """Jacobian, directions of the reactions and gaps of the ideal joints and, last, of the heights of the wheels.
+        """Return Jacobian, reaction directions and gaps of the ideal joints, followed by those of the wheel heights.
 
         The height is that of the wheel centre, its reaction the load on the contact point.
         """
@@ -235,12 +235,13 @@ class AxleStatics:
         return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
 
     def places(self, index: int) -> tuple[Vector, Vector]:
-        """Where the centre of a wheel and its contact point, a point of the wheel, are now [m]."""
+        """Return the present positions of the centre of a wheel and of its contact point [m]."""
         position, frame = self.data.xpos[self.wheels[index]], self.data.xmat[self.wheels[index]].reshape(3, 3)
         center, patch = (position + frame @ offset for offset in self.offsets[index])
         return center, patch
 
     def _pose(self, index: int, load: float) -> WheelPose:
+        """Return the pose of a wheel."""
         center, patch = (now - then for now, then in zip(self.places(index), self.at_rest[index], strict=True))
         side = float(np.sign(self.at_rest[index][0][1]))
         # Outwards; along y in the design position.
@@ -258,7 +259,7 @@ class AxleStatics:
         )
 
     def _shortened(self, index: int) -> float:
-        """Change of the length of the spring that stands nearest to a wheel [m]; nan where the axle has none."""
+        """Return the change of length of the spring nearest to a wheel [m]; nan for an axle without springs."""
         away = [
             float(np.linalg.norm(self.data.site_xpos[spring.lower] - self.data.xpos[self.wheels[index]]))
             for spring in self.parts.springs

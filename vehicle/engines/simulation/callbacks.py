@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None]:
     """Install the callbacks of one simulation for the time of a `with` block.
 
-    Callbacks are global to the process: they are refused while others are installed, they check which model calls
-    them, and they never outlive the block, so that no other model meets them.
+    Callbacks are global to the process. Installing them while others are installed is an error, they act on a single
+    model, and they are removed at the end of the block.
 
     Args:
-        rows: of the model that will be stepped inside the block.
-        compiled: their compiled form, to be installed instead; it acts on the states that it is attached to,
+        rows: rows of the model that is stepped inside the block.
+        compiled: compiled form of the callbacks, installed in place of the Python form; it acts on attached states,
             and is detached from them at the end.
 
     Raises:
@@ -44,7 +44,7 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
     mujoco.set_mjcb_act_bias(rows.actuator_bias if compiled is None else compiled.bias)
     log = mujoco.MjLogConfig.get()
     written = (log.logto_console, log.logto_file)
-    # MuJoCo would print its warnings and append them to a file in the user's folder; the run reads its counters.
+    # MuJoCo would print warnings and append them to a file in the working folder; the run reads the counters instead.
     _write_log(log, console=False, file=False)
     try:
         yield
@@ -58,7 +58,7 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
 
 
 def _write_log(log: mujoco.MjLogConfig, *, console: bool, file: bool) -> None:
-    """Switch where MuJoCo writes its messages."""
+    """Switch the console and file output of MuJoCo's messages."""
     log.logto_console, log.logto_file = console, file
     mujoco.MjLogConfig.set(log)
 
@@ -70,7 +70,7 @@ def compiled_rows(rows: Rows) -> CompiledRows:
         rows: rows of a prepared model, before the run; the callbacks work on their records.
 
     Returns:
-        The callbacks, attached to no state yet.
+        Compiled callbacks without an attached state.
 
     Raises:
         MissingPartError: numba cannot be imported, or the installed MuJoCo does not fit its declarations.

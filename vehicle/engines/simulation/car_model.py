@@ -1,4 +1,4 @@
-"""A car ready to be stepped: assembled, compiled and trimmed."""
+"""Compiled model of a car in static equilibrium."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarModel:
-    """Compiled model of a car with its preloads; the model is as generated, `prepare_model` comes with a run.
+    """Compiled model of a car with its preloads, as generated; `prepare_model` changes only models of runs.
 
     Attributes:
         vehicle: parameters.
-        superelement: flexible body with the masses that are fixed to it.
-        spec: specification the model was compiled from.
-        origins: where each body frame sits in the design position [m], by body name.
-        model: compiled and trimmed model.
-        static: its preloads and loads.
+        superelement: flexible body including the masses fixed to it.
+        spec: MJCF specification of the model.
+        origins: origin of each body frame in the design position [m], by body name.
+        model: compiled model with the unstrained positions of its joint springs.
+        static: preloads and static loads.
     """
 
     vehicle: Vehicle
@@ -42,18 +42,18 @@ class CarModel:
 
 
 def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
-    """Assemble, compile and trim a car.
+    """Assemble and compile a car, and compute its static equilibrium.
 
     Args:
         vehicle: parameters.
-        trimmed_body: superelement of its body.
+        trimmed_body: superelement of the body.
 
     Returns:
         The car model.
 
     Raises:
-        ConfigurationError: no such car can be; the message names the parameter.
-        SimulationError: MuJoCo refuses the model, or the car is not held.
+        ConfigurationError: the car is physically impossible; the message names the parameter.
+        SimulationError: MuJoCo rejects the model, or the car can move without resistance.
     """
     require_body_modes(vehicle, trimmed_body)
     assembly = assemble(vehicle, trimmed_body)

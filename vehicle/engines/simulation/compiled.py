@@ -1,7 +1,7 @@
-"""MuJoCo's callbacks and the stepping loop as compiled code: how they find their records, and only their own model.
+"""Compiled code of MuJoCo's callbacks and of the stepping loop.
 
-`mjData.userdata` of a simulation holds the address of its records, as the compiler holds them, and a stamp. This module
-imports numba at its head: it is loaded only by a run that compiles.
+`mjData.userdata` of a simulation contains the address of its records in compiled form and a stamp. The callbacks act on
+a state only if the stamp and the address of the model match. Import this module lazily: it imports numba.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ numba = numba_module()
 types, intrinsic = numba.types, numba.extending.intrinsic
 
 USER_SIZE = 2
-"""Numbers of userdata that the callbacks need: address of the records, stamp."""
+"""Length of the userdata that the callbacks read: address of the records, stamp."""
 
 
 def _address_as_void_pointer(typing_context: Any, address: Any) -> Any:
-    """An integer address as a pointer."""
+    """Convert an integer address to a pointer."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
@@ -42,12 +42,12 @@ def _address_as_void_pointer(typing_context: Any, address: Any) -> Any:
 
 
 def _call_step(typing_context: Any, function: Any, model: Any, data: Any) -> Any:
-    """Call a C function `void f(mjModel*, mjData*)` that is known by its address."""
+    """Call a C function `void f(mjModel*, mjData*)` by its address."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         pointer = ir.IntType(8).as_pointer()
-        kind = ir.FunctionType(ir.VoidType(), [pointer, pointer])
-        target = builder.inttoptr(arguments[0], kind.as_pointer())
+        signature_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        target = builder.inttoptr(arguments[0], signature_type.as_pointer())
         builder.call(target, [builder.inttoptr(argument, pointer) for argument in arguments[1:]])
         return context.get_dummy_value()
 
@@ -60,19 +60,19 @@ as_pointer, call_step = intrinsic(_address_as_void_pointer), intrinsic(_call_ste
 
 @numba.njit
 def words(address, size):  # type: ignore[no-untyped-def]
-    """Whole numbers at an address."""
+    """Return an array of 64-bit integers at an address."""
     return numba.carray(as_pointer(address), size, numba.int64)
 
 
 @numba.njit
 def vector(address, size):  # type: ignore[no-untyped-def]
-    """Numbers at an address."""
+    """Return an array of 64-bit floats at an address."""
     return numba.carray(as_pointer(address), size, numba.float64)
 
 
 @numba.njit
 def record_address(model, data, user_size, user_data, mark):  # type: ignore[no-untyped-def]
-    """Address of the records of the simulation that a callback is called for; 0 where the model is another's."""
+    """Return the address of the records of a simulation; 0 for a model without records."""
     if words(model + user_size, 1)[0] < USER_SIZE:
         return 0
     user = vector(words(data + user_data, 1)[0], USER_SIZE)
@@ -84,7 +84,7 @@ def record_address(model, data, user_size, user_data, mark):  # type: ignore[no-
 
 @numba.njit
 def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
-    """The fields over the rows, where they lie now."""
+    """Return the fields of mjData over the rows at their present addresses."""
     n, o = t.rows, t.efc
     return Efc(
         vector(words(data + o[0], 1)[0], n * velocities).reshape(n, velocities),
@@ -100,23 +100,30 @@ def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
 
 @functools.cache
 def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any]:
-    """`mjcb_control`, `mjcb_act_gain`, `mjcb_act_bias` as C functions.
+    """Compile `mjcb_control`, `mjcb_act_gain` and `mjcb_act_bias` as C functions.
 
-    They close over the offsets of `nuserdata` in mjModel and `userdata` in mjData and over the stamp, for these are the
-    key of the compiler's cache.
+    The functions close over the offsets of `nuserdata` in mjModel and `userdata` in mjData and over the stamp, because
+    closure values are the key of the compiler's cache.
     """
 
     def control(model: int, data: int) -> None:
         address = record_address(model, data, user_size, user_data, mark)
         if address == 0:
             return
-        one = simulation_at(address)
-        if numba.carray(as_pointer(data + one.ticket.row_count), 1, numba.int32)[0] != one.ticket.rows:
-            # Other rows than those the records were made for: the guard of the run finds a state that is not finite.
-            one.fields.qfrc_applied[:] = np.nan
+        simulation = simulation_at(address)
+        if numba.carray(as_pointer(data + simulation.ticket.row_count), 1, numba.int32)[0] != simulation.ticket.rows:
+            # The number of rows differs from the records: make the state invalid, so that the run stops.
+            simulation.fields.qfrc_applied[:] = np.nan
             return
-        efc = rows_at(data, one.ticket, one.fields.qvel.shape[0])
-        rewrite(vector(data + one.ticket.time, 1)[0], one.fields, efc, one.layout, one.weights, one.state)
+        efc = rows_at(data, simulation.ticket, simulation.fields.qvel.shape[0])
+        rewrite(
+            vector(data + simulation.ticket.time, 1)[0],
+            simulation.fields,
+            efc,
+            simulation.layout,
+            simulation.weights,
+            simulation.state,
+        )
 
     def gain(model: int, data: int, index: int) -> float:
         return 0.0
@@ -125,8 +132,8 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
         address = record_address(model, data, user_size, user_data, mark)
         if address == 0:
             return 0.0
-        one = simulation_at(address)
-        return damper_force(index, one.fields, one.layout, one.state)
+        simulation = simulation_at(address)
+        return damper_force(index, simulation.fields, simulation.layout, simulation.state)
 
     word = types.intp
     law = types.float64(word, word, types.int32)
@@ -139,10 +146,10 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
 
 @functools.cache
 def _loop(mark: int) -> Any:
-    """The compiled loop; `mark` makes the compiler's cache notice a change of the sources."""
+    """Compile the stepping loop; `mark` invalidates the compiler's cache after a change of the sources."""
 
     def advance(address: int, first: int, last: int, row: int) -> int:
-        """Take the steps first..last and return the number of poses that were kept."""
+        """Take the steps first..last and return the number of stored poses."""
         loop = loop_at(address)
         order, s, b = loop.order, loop.sources, loop.samples
         posed = 0 if mark else -1
@@ -154,7 +161,7 @@ def _loop(mark: int) -> Any:
                 posed += 1
             call_step(order.step, order.model, order.data)
             if recorded:
-                # The constraint forces live in the arena, where each step may put them elsewhere.
+                # The constraint forces are in the arena, at an address that may change in each step.
                 solved = vector(words(order.data + order.force_offset, 1)[0], b.solved.shape[1])
                 keep_sample(row, order.half, order, s, solved, b)
                 row += 1
@@ -165,13 +172,13 @@ def _loop(mark: int) -> Any:
 
 
 class CompiledRows:
-    """The compiled callbacks of one simulation; they work on the records of its rows.
+    """Compiled callbacks of a simulation, working on the records of its rows.
 
     Args:
-        rows: of a model with `nuserdata` of at least two.
+        rows: rows of a model with `nuserdata` of at least two.
 
     Raises:
-        MissingPartError: a structure of MuJoCo is not as declared.
+        MissingPartError: a structure of MuJoCo differs from its declaration.
         SimulationError: the model has no user data.
     """
 
@@ -181,23 +188,23 @@ class CompiledRows:
             raise SimulationError(f"the model has {model.nuserdata} user data, compiled callbacks need {USER_SIZE}")
         self.rows, self.model, self.offsets = rows, model, offsets()
         efc = np.array([self.offsets.pointers[f"efc_{name}"] for name in Efc._fields], dtype=np.int64)
-        own = self.offsets
-        self.ticket = Ticket(model._address, rows.layout.row_count, own.row_count, own.time, efc)
+        located = self.offsets
+        self.ticket = Ticket(model._address, rows.layout.row_count, located.row_count, located.time, efc)
         self.attached: list[tuple[mujoco.MjData, Simulation, npt.NDArray[np.int64]]] = []
-        functions = _callbacks(own.user_size, own.pointers["userdata"], stamp())
+        functions = _callbacks(located.user_size, located.pointers["userdata"], stamp())
         self.control, self.gain, self.bias = (function.ctypes for function in functions)
 
     def attach(self, data: mujoco.MjData) -> None:
-        """Let the callbacks act on a state of the model, with the present state of the rows."""
+        """Make the callbacks act on a state of the model, with the present state of the rows."""
         rows = self.rows
         simulation = Simulation(self.ticket, rows.fields(data), rows.layout, rows.weights, rows.state)
         memory = packed(simulation)
         data.userdata[:USER_SIZE] = memory.ctypes.data, stamp()
-        # The memory holds addresses of these arrays.
+        # Keep references: the memory contains addresses of these arrays.
         self.attached.append((data, simulation, memory))
 
     def detach(self) -> None:
-        """Leave no address behind in a state."""
+        """Clear the addresses in all attached states."""
         for data, _, _ in self.attached:
             data.userdata[:USER_SIZE] = 0.0
         self.attached.clear()
@@ -207,7 +214,7 @@ class CompiledRows:
         self.control(model._address, data._address)
 
     def step(self, data: mujoco.MjData) -> None:
-        """Take one step of an attached state by the address of `mj_step`, as the compiled loop does."""
+        """Take a step of an attached state by the address of `mj_step`, like the compiled loop."""
         step = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.offsets.step)
         step(self.model._address, data._address)
 
@@ -215,7 +222,7 @@ class CompiledRows:
         """Return the function that takes the steps first..last of an attached state.
 
         Args:
-            loop: records of the run; the addresses in its order are set here.
+            loop: records of the run; this method sets the addresses in `loop.order`.
 
         Returns:
             Function of the first and the last step and of the first row in the buffers; it returns the number of
@@ -226,9 +233,9 @@ class CompiledRows:
         memory = packed(loop)
 
         def advance(first: int, last: int, row: int) -> int:
-            # The closure keeps the arrays whose addresses the memory holds.
+            # The closure keeps the arrays alive whose addresses the memory contains.
             return int(compiled(memory.ctypes.data, first, last, row)) if loop else 0
 
-        # No step at all: compiling is no part of the time of the run.
+        # Compile now, with an empty range of steps, so that the measured time of the run excludes it.
         advance(1, 0, 0)
         return advance

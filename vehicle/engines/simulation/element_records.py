@@ -1,7 +1,7 @@
-"""The elements of a car as records that compiled code takes: in which rows they are, and the constants of their laws.
+"""Records of the elements of a car for compiled code: constraint rows of each element and constants of its law.
 
-Arrays are contiguous, of 64 bits, with the number of dimensions that their types say: `Vector` and `Index` one, `Table`
-and `Indices` two, `Tables3` three.
+Arrays are contiguous, of 64 bits. The types name their dimensions: `Vector` and `Index` one, `Table` and `Indices` two,
+`Tables3` three.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ Settings = npt.NDArray[Any]
 
 
 class Bushings(NamedTuple):
-    """The n elements with a law along three axes.
+    """Elements with a force law along three axes, n of them.
 
     Attributes:
-        rows: rows of their translations; (n, 3).
-        carriers: body whose axes the law follows; (n,).
+        rows: constraint rows of the translations; (n, 3).
+        carriers: id of the body in whose axes the law acts; (n,).
         stiffness, damping: K [N/m] and B [N s/m]; (n, 3).
         branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s]; (n, 3).
         further: further numbers of the laws, padded with zeros; (n, those of the longest law).
-        averaged: 1 where the stiffness is averaged over three steps; (n,).
-        one_sided: positions of the k elements that do not pull along z; (k,).
-        oblique: elements whose rows follow directions of their own; (k,).
-        directions: these directions in the axes of the carrier, a row each, P row by row; (k, 9).
+        averaged: 1 for a stiffness averaged over three steps; (n,).
+        one_sided: indices of the k elements that only push along z; (k,).
+        oblique: indices of the elements with oblique directions; (k,).
+        directions: direction matrices P of these elements in the axes of the carrier, row by row; (k, 9).
     """
 
     rows: Indices
@@ -49,13 +49,13 @@ class Bushings(NamedTuple):
 
 
 class Rotations(NamedTuple):
-    """The m elements that resist rotations.
+    """Elements with a rotational stiffness, m of them.
 
     Attributes:
-        sites: of the moving part and of the carrier; (m, 2).
+        sites: sites on the moving part and on the carrier; (m, 2).
         stiffness: K_rot [N m/rad]; (m,).
-        turning: element, velocity coordinate, and 1 or -1 where it turns the moving part or the carrier; a row each.
-        nodes: element and side (0 moving, 1 carrier) of the k at nodes whose rotation is known; (k, 2).
+        turning: rows of element, velocity coordinate, and 1 or -1 if it rotates the moving part or the carrier.
+        nodes: element and side (0 moving, 1 carrier) of the k nodes with rotational mode shapes; (k, 2).
         shapes: rotations of these nodes in the modes, about x of all modes, y, z [rad m^-1 kg^-1/2]; (k, 3 modes).
     """
 
@@ -67,13 +67,13 @@ class Rotations(NamedTuple):
 
 
 class Springs(NamedTuple):
-    """The s main springs.
+    """Main springs, s of them.
 
     Attributes:
-        rows: (s,). stiffness: [N/m]; (s,). lengths: in the design position [m]; (s,).
+        rows: constraint rows; (s,). stiffness: [N/m]; (s,). lengths: lengths in the design position [m]; (s,).
         sites: lower and upper site; (s, 2).
         shapes: modal shapes at the upper seats, x of all modes, y, z; (s, 3 modes).
-        dofs: what moves the ends: spring, end (0 lower, 1 upper), velocity coordinate, its tree; a row each.
+        dofs: rows of spring, end (0 lower, 1 upper), velocity coordinate that moves the end, and its tree.
     """
 
     rows: Index
@@ -85,14 +85,14 @@ class Springs(NamedTuple):
 
 
 class Dampers(NamedTuple):
-    """The w dampers.
+    """Dampers, w of them.
 
     Attributes:
         laws: records of `vehicle.model.laws.damper`; (w,).
         rows, frictions: equality and friction rows; (w,).
         dofs, places: velocity and position coordinates; (w,).
-        valves: further friction rows, one for each steeper piece of a damper's curve, and which damper that is.
-        pieces: their e [N s/m], m [m/s] and limit [N], as of `vehicle.model.laws.curve`; a row each.
+        valves: further friction row of each steeper segment of a damper curve, and the index of its damper.
+        pieces: rows of e [N s/m], m [m/s] and limit [N] of these segments; see `vehicle.model.laws.curve`.
     """
 
     laws: Records
@@ -105,14 +105,14 @@ class Dampers(NamedTuple):
 
 
 class Controls(NamedTuple):
-    """The k controlled dampers among the w.
+    """Controlled dampers, k of the w dampers.
 
     Attributes:
-        dampers: which they are; (k,).
-        laws: records of `vehicle.model.laws.semi_active`; (k,).
-        sites: of the sensors, on the wheel and on the body; (k, 2).
-        shapes: modal shapes there, x of all modes, y, z; (2 k, 3 modes).
-        dofs: what moves them: control, sensor (0 wheel, 1 body), velocity coordinate, its tree; a row each.
+        dampers: indices among the dampers; (k,).
+        laws: records of `vehicle.model.laws.control_laws`; (k,).
+        sites: sites of the sensors, on the wheel and on the body; (k, 2).
+        shapes: modal shapes at the sensors, x of all modes, y, z; (2 k, 3 modes).
+        dofs: rows of control, sensor (0 wheel, 1 body), velocity coordinate that moves the sensor, and its tree.
     """
 
     dampers: Index
@@ -123,13 +123,13 @@ class Controls(NamedTuple):
 
 
 class Tables(NamedTuple):
-    """The t laws over displacement that are curves (`vehicle.model.laws.curve`): F(at + x) - F(at) in place of K x.
+    """Nonlinear laws over displacement (`vehicle.model.laws.curve`), t of them: F(at + x) - F(at) in place of K x.
 
     Attributes:
-        kinds: 0 an axis of a bushing, 1 a spring, 2 the stop of a damper; (t,).
-        elements, axes: which one of its kind, and its axis; (t,).
-        at: displacement in the design position [m], with the tangent K there in the record of the element; (t,).
-        edges, slopes, offsets: upper edges (the last infinite), slopes and offsets of the pieces; (t, pieces).
+        kinds: 0 for an axis of a bushing, 1 for a spring, 2 for the bump stop of a damper; (t,).
+        elements, axes: index among the elements of this type, and axis; (t,).
+        at: displacement at the operating point [m]; the record of the element contains the tangent K there; (t,).
+        edges, slopes, offsets: upper edges (the last infinite), slopes and offsets of the segments; (t, segments).
     """
 
     kinds: Index
@@ -142,15 +142,15 @@ class Tables(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """The flexible body and the rows at its g nodes.
+    """Flexible body and constraint rows at its g nodes.
 
     Attributes:
-        body: its id. size: number of modes.
-        first_velocity, first_position: where the modal coordinates begin.
-        turns: velocity coordinates that turn the body; (3,).
-        rows: rows that touch a flexible node; (3, g).
+        body: id of the body. size: number of modes.
+        first_velocity, first_position: indices of the first modal coordinate.
+        turns: velocity coordinates that rotate the body; (3,).
+        rows: constraint rows of the connections at the nodes; (3, g).
         node_shapes: signed shapes of these nodes in body axes [kg^-1/2]; (3, g modes).
-        mode_shapes: the same, a row for each mode: x of all nodes, y, z; (modes, 3 g).
+        mode_shapes: signed shapes with a row for each mode: x of all nodes, y, z; (modes, 3 g).
     """
 
     body: int
@@ -164,22 +164,21 @@ class Modes(NamedTuple):
 
     @property
     def velocities(self) -> slice:
-        """Columns of the modal coordinates."""
+        """Return the velocity coordinates of the modes."""
         return slice(self.first_velocity, self.first_velocity + self.size)
 
     @property
     def positions(self) -> slice:
-        """Their generalised positions."""
+        """Return the generalised positions of the modes."""
         return slice(self.first_position, self.first_position + self.size)
 
 
 class ModalSpace(NamedTuple):
-    """The n modal coordinates that the callbacks integrate themselves (`vehicle.engines.simulation.modal_space`), or
-    none.
+    """Modal coordinates that the callbacks integrate (`vehicle.engines.simulation.modal_space`), n of them or 0.
 
     Attributes:
-        mass, stiffness, damping, rest: of the modes as a step has them, and where their springs rest; (n,).
-        spread: S, modal coordinates by the r that the model holds; (n, r).
+        mass, stiffness, damping, rest: modal parameters weighted for the step, and unstrained positions; (n,).
+        spread: S, modal coordinates by the r coordinates of the model; (n, r).
     """
 
     mass: Vector
@@ -190,18 +189,19 @@ class ModalSpace(NamedTuple):
 
 
 class Rolling(NamedTuple):
-    """The w tyres that roll, and the hold of the course; none where the tyres stand.
+    """Rolling tyres, w of them, and the course control; empty arrays on a shaker.
 
     Attributes:
-        tyres, plates: positions among the bushings, and among the plates; (w,).
-        sites, hubs: points of the hubs at the patches, and the hubs; (w,).
+        tyres, plates: indices among the bushings, and among the plates; (w,).
+        sites, hubs: sites of the hubs at the contact points, and ids of the hubs; (w,).
         spins: velocity coordinates about the axles; (w,).
         arms: wheel centre from the patch in the axes of the hub [m]; (w, 3).
-        speeds, trails, inertias: V [m/s], trail [m], inertia of what turns about the axle [kg m2]; (w,).
-        dofs: what moves the hubs: wheel, velocity coordinate, its tree; a row each.
-        course: velocity coordinates of the trimmed body along x, y and in yaw, positions along x and y; (5,) or none.
-        rest: these positions at rest; (2,).
-        hold: stiffness and damping of the hold along x, y and in yaw, and how far behind the body its y acts; (7,).
+        speeds, trails, inertias: V [m/s], trail [m], inertia of the rotating parts about the axle [kg m2]; (w,).
+        dofs: rows of wheel, velocity coordinate that moves its hub, and its tree.
+        course: velocity coordinates of the body along x, y and in yaw, positions along x and y; (5,) or empty.
+        rest: positions along x and y at rest; (2,).
+        hold: stiffness and damping of the course control along x, y and in yaw, and distance of the lateral force
+            behind the body; (7,).
     """
 
     tyres: Index
@@ -219,7 +219,7 @@ class Rolling(NamedTuple):
     hold: Vector
 
     def course_rows(self, size: int) -> Table:
-        """What the hold resists over the velocity coordinates: x, y and yaw; (3, size)."""
+        """Return the Jacobian of the displacements that the course control resists: x, y and yaw; (3, size)."""
         rows = np.zeros((3, size))
         rows[np.arange(3), self.course[:3]] = 1.0
         rows[1, self.course[2]] = self.hold[6]
@@ -227,13 +227,13 @@ class Rolling(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """The elements of a car in its rows.
+    """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling: see there.
+        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
-        tyres: positions among the bushings of those on a plate, in the order of the plates; (t,).
-        reach: where rows with explicit forces are not zero: first row, number of rows (3 or 1), first column, end.
+        tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
+        reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
         row_count, velocity_count: number of constraint rows, and of velocity coordinates.
     """
 

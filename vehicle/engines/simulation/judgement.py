@@ -1,4 +1,4 @@
-"""What a finished run says about itself: whether its numbers are numbers, and whether its energy balance closes."""
+"""Checks of a run: size of the recording before it, finite values and energy balance after it."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from vehicle.engines.simulation.recording import Energies, Recording
 from vehicle.errors import ConfigurationError, SimulationError
 
 LARGEST = 1e8
-"""Largest value of a channel: forces of cars are below 1e6 N, accelerations below 1e5 m/s2."""
+"""Maximum value of a channel: forces of cars are below 1e6 N, accelerations below 1e5 m/s2."""
 
 RESIDUAL_WARNED = 1e-2
 """Energy residual above which a run warns; the shipped inputs are between 1e-4 and 3e-4, a bump below 1e-3."""
 
 RESIDUAL_FAILED = 5e-2
-"""Energy residual above which a run fails: a level that is 2.5 % wrong everywhere would give it."""
+"""Energy residual above which a run fails: a level error of 2.5 % in all signals corresponds to it."""
 
 ENERGY_ROUND_OFF = 1e-7
-"""Energy [J] that may be missing in any run: round-off of the weight's potential energy, 1e4 J, over many sums."""
+"""Energy residual [J] accepted in any run: round-off of the potential energy of the weight, 1e4 J."""
 
 BALANCED_RATE = 100.0
-"""Rate of the samples [Hz] from which their powers can be integrated: the high input has a residual of 2e-4 from
+"""Minimum sample rate [Hz] for an integration of the powers: the high input has a residual of 2e-4 from
 samples at 1 kHz and of 1e-3 at this rate."""
 
 
 def require_samples(samples: float, channels: int) -> None:
-    """Refuse a run whose recording would be a single sample, or would not fit into this machine, before it begins.
+    """Reject a run with a recording of a single sample, or with one that exceeds the memory, before it starts.
 
-    Memory: every sample of every channel, 8 bytes; what is computed from them goes by blocks. Half the machine at most.
+    Memory: 8 bytes for every sample of every channel, at most half of the memory; evaluations work in blocks.
 
     Raises:
-        ConfigurationError: naming what is needed and what there is.
+        ConfigurationError: the message contains the required and the available amount.
     """
     if samples < 1.0 - 1e-6:
         raise ConfigurationError(
@@ -48,10 +48,10 @@ def require_samples(samples: float, channels: int) -> None:
 
 
 def require_finite(recording: Recording) -> None:
-    """Refuse a recording with a value that is no number, or beyond every car.
+    """Reject a recording with a value that is not finite or above `LARGEST`.
 
     Raises:
-        SimulationError: naming the channel, the time and the value.
+        SimulationError: the message contains channel, time and value.
     """
     for name, values in recording.channels.items():
         # One pass over the channel: NaN and infinity fail the comparison too.
@@ -64,20 +64,20 @@ def require_finite(recording: Recording) -> None:
 
 
 def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
-    """Sentences about the energy balance of a run.
+    """Check the energy balance of a run and return warnings.
 
-    What is missing counts against the work of the plates or what was dissipated, whichever is more: plates that end
-    lower than they began take back the work of lifting the car, and the sum may be next to nothing.
+    The residual is relative to the larger of the work of the plates and the dissipated energy: plates that end lower
+    than they began recover the work of lifting the car, and the sum may be near zero.
 
     Args:
-        energies: the balance.
-        rate: of the samples that it was summed from [Hz].
+        energies: energy balance of the run.
+        rate: rate of the samples in the sums [Hz].
 
     Returns:
         Warnings.
 
     Raises:
-        SimulationError: more than `RESIDUAL_FAILED` of the work is missing.
+        SimulationError: the residual exceeds `RESIDUAL_FAILED`.
     """
     missing = abs(energies.work_in - energies.dissipated - energies.stored)
     work, lost = abs(energies.work_in), energies.dissipated

@@ -1,6 +1,6 @@
-"""The element laws as constraint rows: what `mjcb_control` writes before MuJoCo solves. One source for both forms.
+"""Element laws as constraint rows, written by `mjcb_control` before MuJoCo solves.
 
-MuJoCo answers a quadratic row with f = D (aref - J a). The callback rewrites each row of an element so that, with
+The force of a quadratic row of MuJoCo is f = D (aref - J a). The callback rewrites each row of an element so that, with
 the explicit part f0 given to the generalised forces,
 
     f = f0 - D J a,    f0 = preload - K r - B r' - f2,    D = B h/2 + beta K h2 + branch,
@@ -13,8 +13,8 @@ sticking is exact. With c = (2/pi) Fd eps it is a line through zero, clamped at 
 published Fd (2/pi) atan(eps v), without its tail (`vehicle.model.laws.friction`).
 Every steeper piece of the curve of a damper, clamp(e (v - m), e w), is a friction row too (`vehicle.model.laws.curve`).
 It has no jump, so that it is centred like the viscous one: D = e h/2, aref = -2 (v - m)/h, second order, at any slope.
-The two forces of a bushing are opposite and act each at the point of its own part, in the axes of the carrier; the
-moment r x f of their distance r is left out, which changes no frequency by more than 0.05 %.
+The two forces of a bushing are opposite and act at the points of their parts, in the axes of the carrier; the
+moment r x f of their distance r is neglected, which changes no frequency by more than 0.05 %.
 Rotations need no rows: their torques are given explicitly (`vehicle.engines.simulation.rotations`).
 
 Modal coordinates q of the flexible body move node n by d = R Phi_n q, R being the rotation of the body. They enter a
@@ -23,7 +23,8 @@ without the second part the body would miss the torque d x F of every force at a
 through the displaced seat: n = (x_up + d - x_low) / length, r = length - L0, J = n' (J_up + R Phi - [d]x - J_low).
 Without d in n, the transverse stiffness F / length of a loaded spring would not act on the modes.
 
-The functions are compiled (`vehicle.engines.simulation.compiled`), or run as they stand where there is no compiler.
+The functions are compiled for runs (`vehicle.engines.simulation.compiled`). Single states of trim and linearisation are
+evaluated in Python: that takes less time than loading the compiler.
 """
 
 from __future__ import annotations
@@ -43,12 +44,12 @@ from vehicle.model.laws.damper import friction_limit
 from vehicle.model.laws.friction import slope_at_rest
 
 EMPTY_ROW = 1e-9
-"""Impedance [kg] of a row without damping and stiffness: small against every mass, and not zero."""
+"""Impedance [kg] of a row without damping and stiffness: nonzero, and small against every mass."""
 
 
 @jitable
 def bent(k: int, displacement: float, stiffness: float, t: Tables, s: State) -> float:
-    """What a curve has beside the tangent at its operating point, F(at + x) - F(at) - K x [N]."""
+    """Return the difference of a curve from the tangent at its operating point, F(at + x) - F(at) - K x [N]."""
     s.stretch[k] = t.at[k] + displacement
     force: float = curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
     force -= curve_force(t.at[k], t.edges[k], t.slopes[k], t.offsets[k])
@@ -57,29 +58,29 @@ def bent(k: int, displacement: float, stiffness: float, t: Tables, s: State) -> 
 
 @jitable
 def stops(d: Fields, e: Layout, s: State) -> None:
-    """Forces of the stops of dampers on their joints, known with the positions; after the forces of the rows."""
+    """Add the forces of bump stops on the joints of their dampers; call this after `generalised_forces`."""
     t = e.tables
     for k in range(t.kinds.shape[0]):
         if t.kinds[k] == 2:
-            dof, place = e.dampers.dofs[t.elements[k]], e.dampers.places[t.elements[k]]
-            s.stretch[k] = d.qpos[place]
+            dof, position = e.dampers.dofs[t.elements[k]], e.dampers.places[t.elements[k]]
+            s.stretch[k] = d.qpos[position]
             d.qfrc_applied[dof] -= curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
 
 
 @jitable
 def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """Main springs: the line through the displaced seat, its derivatives, and the elastic force."""
-    own, m = e.springs, e.modes
-    modes, column, place, turn = m.size, m.first_velocity, m.first_position, d.xmat[m.body]
-    for spring in range(own.rows.shape[0]):
-        row = own.rows[spring]
+    """Write the rows of the main springs: direction through the displaced seat, its derivatives, elastic force."""
+    main_springs, m = e.springs, e.modes
+    modes, column, position, turn = m.size, m.first_velocity, m.first_position, d.xmat[m.body]
+    for spring in range(main_springs.rows.shape[0]):
+        row = main_springs.rows[spring]
         ends, line = s.ends[2 * spring : 2 * spring + 2], s.line[spring]
         for i in range(3):
-            ends[0, i] = d.site_xpos[own.sites[spring, 0], i]
-            ends[1, i] = d.site_xpos[own.sites[spring, 1], i]
+            ends[0, i] = d.site_xpos[main_springs.sites[spring, 0], i]
+            ends[1, i] = d.site_xpos[main_springs.sites[spring, 1], i]
             for j in range(3):
                 for k in range(modes):
-                    ends[1, i] += turn[3 * i + j] * own.shapes[spring, j * modes + k] * d.qpos[place + k]
+                    ends[1, i] += turn[3 * i + j] * main_springs.shapes[spring, j * modes + k] * d.qpos[position + k]
             line[i] = ends[1, i] - ends[0, i]
         length = np.sqrt(line[0] * line[0] + line[1] * line[1] + line[2] * line[2])
         for i in range(3):
@@ -89,29 +90,36 @@ def springs(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         for j in range(3):
             along = line[0] * turn[j] + line[1] * turn[3 + j] + line[2] * turn[6 + j]
             for k in range(modes):
-                efc.J[row, column + k] += along * own.shapes[spring, j * modes + k]
-        s.explicit[row] = c.preload[row] - own.stiffness[spring] * (length - own.lengths[spring])
+                efc.J[row, column + k] += along * main_springs.shapes[spring, j * modes + k]
+        s.explicit[row] = c.preload[row] - main_springs.stiffness[spring] * (length - main_springs.lengths[spring])
         for k in range(e.tables.kinds.shape[0]):
             if e.tables.kinds[k] == 1 and e.tables.elements[k] == spring:
-                s.explicit[row] -= bent(k, length - own.lengths[spring], own.stiffness[spring], e.tables, s)
+                s.explicit[row] -= bent(
+                    k, length - main_springs.lengths[spring], main_springs.stiffness[spring], e.tables, s
+                )
         efc.D[row] = c.spring_impedance[spring]
         efc.aref[row] = 0.0
-    for entry in range(own.dofs.shape[0]):
-        spring, end, dof, tree = own.dofs[entry, 0], own.dofs[entry, 1], own.dofs[entry, 2], own.dofs[entry, 3]
+    for entry in range(main_springs.dofs.shape[0]):
+        spring, end, dof, tree = (
+            main_springs.dofs[entry, 0],
+            main_springs.dofs[entry, 1],
+            main_springs.dofs[entry, 2],
+            main_springs.dofs[entry, 3],
+        )
         line, point, centre, motion = s.line[spring], s.ends[2 * spring + end], d.subtree_com[tree], d.cdof[dof]
-        # MuJoCo refers the motion of a tree to its centre of mass.
+        # `cdof` is relative to the centre of mass of the tree.
         x, y, z = point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]
         velocity = (
             line[0] * (motion[3] + motion[1] * z - motion[2] * y)
             + line[1] * (motion[4] + motion[2] * x - motion[0] * z)
             + line[2] * (motion[5] + motion[0] * y - motion[1] * x)
         )
-        efc.J[own.rows[spring], dof] += (2 * end - 1) * velocity
+        efc.J[main_springs.rows[spring], dof] += (2 * end - 1) * velocity
 
 
 @jitable
 def oblique_rows(d: Fields, efc: Efc, e: Layout) -> None:
-    """Rows along directions of their own, P R' (J, r, r'), instead of the axes of the world."""
+    """Rotate the rows of oblique elements from world axes into their directions: P R' (J, r, r')."""
     b = e.bushings
     for k in range(b.oblique.shape[0]):
         n = b.oblique[k]
@@ -138,7 +146,7 @@ def oblique_rows(d: Fields, efc: Efc, e: Layout) -> None:
 
 @jitable
 def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
-    """Residual and rate of every element in its own axes, with the velocity of the plates taken off."""
+    """Compute residual and rate of every element in element axes, relative to the velocity of the plates."""
     b = e.bushings
     for n in range(b.rows.shape[0]):
         for i in range(3):
@@ -161,7 +169,7 @@ def local_axes(d: Fields, efc: Efc, e: Layout, s: State) -> None:
 
 @jitable
 def advance_branches(time: float, c: Weights, s: State) -> None:
-    """Carry the Maxwell branches over the step that has just been completed."""
+    """Advance the Maxwell branches over the completed step."""
     last = s.last_time[0]
     if time == last:
         return
@@ -178,9 +186,9 @@ def advance_branches(time: float, c: Weights, s: State) -> None:
 
 @jitable
 def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """f0 = preload - K r - B r' - f2, turned into world axes; impedance and reference of the rows.
+    """Write f0 = preload - K r - B r' - f2 in world axes, and impedance and reference of the rows.
 
-    The known part of the branch force is f2 + beta (f2(+h) - 2 f2 + f2(-h)) without what the acceleration adds.
+    The explicit part of the branch force is f2 + beta (f2(+h) - 2 f2 + f2(-h)) without the share of the acceleration.
     """
     b = e.bushings
     for n in range(b.rows.shape[0]):
@@ -218,10 +226,10 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
 
 @jitable
 def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """One-sided contacts give max(0, f0 - D J a) along z: a row that would pull at the last J a is empty now.
+    """Limit one-sided contacts to max(0, f0 - D J a) along z: clear a row that would pull at the last J a.
 
-    The force is continuous, so a row that is wrong for one step changes a velocity by h2 at most: second order.
-    Carriers are the ground and the plates, which do not turn: rows are element axes.
+    The force is continuous, so a row in the wrong state for a step changes a velocity by h2 at most: second order.
+    Carriers are the ground and the plates, which do not rotate: rows are along element axes.
     """
     b = e.bushings
     for k in range(b.one_sided.shape[0]):
@@ -235,7 +243,7 @@ def lift_off(efc: Efc, e: Layout, c: Weights, s: State) -> None:
 
 @jitable
 def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """Ball joints without a law: MuJoCo's own reference, which it made before it knew of the modal coordinates."""
+    """Write the reference of ideal ball joints by MuJoCo's formula, from residuals that include the modes."""
     for n in range(e.joints.shape[0]):
         for i in range(3):
             row = e.joints[n, i]
@@ -245,35 +253,35 @@ def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
 
 @jitable
 def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """Viscous, friction and valve rows of the dampers."""
-    own = e.dampers
-    for n in range(own.rows.shape[0]):
-        efc.D[own.rows[n]] = c.damper_impedance[n]
-        efc.aref[own.rows[n]] = 0.0
-        row, sliding = own.frictions[n], d.qvel[own.dofs[n]]
-        limit = friction_limit(own.laws[n], sliding)
-        efc.D[row] = max(slope_at_rest(limit, own.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
+    """Write viscous, friction and valve rows of the dampers."""
+    damper_rows = e.dampers
+    for n in range(damper_rows.rows.shape[0]):
+        efc.D[damper_rows.rows[n]] = c.damper_impedance[n]
+        efc.aref[damper_rows.rows[n]] = 0.0
+        row, sliding = damper_rows.frictions[n], d.qvel[damper_rows.dofs[n]]
+        limit = friction_limit(damper_rows.laws[n], sliding)
+        efc.D[row] = max(slope_at_rest(limit, damper_rows.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
         efc.aref[row] = -sliding / c.timestep
         efc.frictionloss[row] = limit
     for n in e.controls.dampers:
-        efc.D[own.rows[n]] = max(0.5 * c.timestep * s.coefficient[n], EMPTY_ROW)
-    for n in range(own.valves.shape[0]):
-        row, damper = own.valves[n, 0], own.valves[n, 1]
+        efc.D[damper_rows.rows[n]] = max(0.5 * c.timestep * s.coefficient[n], EMPTY_ROW)
+    for n in range(damper_rows.valves.shape[0]):
+        row, damper = damper_rows.valves[n, 0], damper_rows.valves[n, 1]
         efc.D[row] = c.valve_impedance[n]
-        efc.aref[row] = -2.0 * (d.qvel[own.dofs[damper]] - own.pieces[n, 1]) / c.timestep
-        efc.frictionloss[row] = own.pieces[n, 2]
+        efc.aref[row] = -2.0 * (d.qvel[damper_rows.dofs[damper]] - damper_rows.pieces[n, 1]) / c.timestep
+        efc.frictionloss[row] = damper_rows.pieces[n, 2]
 
 
 @jitable
 def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
-    """R = 1 / D, and the explicit forces of the rows on the coordinates that they reach, J' f0."""
+    """Set R = 1 / D and the generalised force J' f0 of the explicit forces."""
     total = d.qfrc_applied
     total[:] = 0.0
     for row in range(efc.D.shape[0]):
         efc.R[row] = 1.0 / efc.D[row]
     for entry in range(e.reach.shape[0]):
         row, rows, first, last = e.reach[entry, 0], e.reach[entry, 1], e.reach[entry, 2], e.reach[entry, 3]
-        # Views spare the inner loop the look for negative indices.
+        # Views avoid the check for negative indices in the inner loop.
         part = total[first:last]
         if rows == 3:
             x, y, z = s.explicit[row], s.explicit[row + 1], s.explicit[row + 2]
@@ -288,7 +296,7 @@ def generalised_forces(d: Fields, efc: Efc, e: Layout, s: State) -> None:
 
 @jitable
 def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """Rewrite the rows of one state."""
+    """Rewrite all rows and applied forces of a state."""
     advance_modes(time, d, e, c, s)
     if e.modes.size > 0:
         modal_rows(d, efc, e, s)
@@ -311,6 +319,6 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
 
 @jitable
 def damper_force(damper: int, d: Fields, e: Layout, s: State) -> float:
-    """Force of a user actuator [N]: -D v at the present velocity, or -c v, and what is constant in the law."""
+    """Return the force of a user actuator [N]: -D v or -c v at the present velocity, and the constant part."""
     force: float = -s.coefficient[damper] * d.actuator_velocity[damper] - e.dampers.laws[damper]["shift"]
     return force

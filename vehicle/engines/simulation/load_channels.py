@@ -1,8 +1,8 @@
-"""Loads of the elements in a run: forces in the axes of their carriers, torques of joint springs, suspension travel.
+"""Load channels of a run: element forces in axes of the carriers, torques of joint springs, suspension travel.
 
-The force of a constraint row is what the solver found and what was given explicitly, preload included; a connection
-has three rows in world axes, which the frame R of its carrier turns into f = R' (f_solved + f_explicit). It acts on the
-moving part, and its opposite on the carrier. A main spring has one row along its line, positive in compression.
+The force of a constraint row is the sum of solver force and explicit force, preload included. A connection has three
+rows in world axes; with the frame R of its carrier f = R' (f_solved + f_explicit). This force acts on the moving part,
+its opposite on the carrier. A main spring has one row along its line, positive in compression.
 """
 
 from __future__ import annotations
@@ -22,26 +22,27 @@ Vector = npt.NDArray[np.float64]
 
 
 class LoadPlaces:
-    """Where the loads of a car stand in its rows, bodies and joints.
+    """Rows, bodies and joints from which the load channels of a car are computed.
 
     Args:
-        car: compiled and trimmed car.
-        rows: its rows.
-        names: of the load channels that are asked for; all by default.
+        car: compiled car in static equilibrium.
+        rows: rows of the run.
+        names: names of the requested load channels; all by default.
 
     Attributes:
-        names: of the channels.
+        names: names of the channels.
         connections: name, rows in world axes, and id of the carrier of each connection.
-        oblique: first row of those whose rows follow directions of their own, and P of these.
+        oblique: direction matrix P of oblique elements by their first row.
         springs: name and row of each main spring.
-        joints: channel, stiffness, damping [N/m or N m/rad, and s of these] and unstrained place of each joint spring.
+        joints: channel, stiffness, damping [N/m or N m/rad, N s/m or N m s/rad] and unstrained position of each
+            joint spring.
         wheels: channel, id of the part, the wheel centre in the frame of the part, its height above the origin of the
-            trimmed body in the design position [m].
-        bodies: ids of the bodies whose frames `channels` needs: the trimmed body, carriers, parts of wheels; (b,).
+            body in the design position [m].
+        bodies: ids of the bodies whose frames `channels` needs: car body, carriers, parts of wheels; (b,).
     """
 
     def __init__(self, car: CarModel, rows: Rows, names: Sequence[str] | None = None) -> None:
-        model, own = rows.model, car.vehicle.composition
+        model, composition = rows.model, car.vehicle.composition
         self.names = car.vehicle.load_channels if names is None else tuple(names)
         first = equality_rows(model)
         self.connections: list[tuple[str, Index, int]] = []
@@ -52,66 +53,67 @@ class LoadPlaces:
                 self.connections.append((name.rpartition("/")[2], row + np.arange(3), carrier))
         own_rows = rows.layout.bushings.rows
         self.oblique = {int(own_rows[index, 0]): way for index, way in rows.directions.items()}
-        self.springs = [(spring.name, first[spring.name]) for spring in own.springs]
+        self.springs = [(spring.name, first[spring.name]) for spring in composition.springs]
         self.joints = []
-        for spring in own.joint_springs:
-            generated = car.model.joint(spring.joint)  # where a run may hold fewer modal coordinates
+        for spring in composition.joint_springs:
+            generated = car.model.joint(spring.joint)  # the model of a run may have fewer modal coordinates
             ends = f"{spring.joint}_torque", f"{spring.joint}_spring_force"
-            # As generated: the damping of a prepared model is weighted for its step.
-            stiffness, damping = (own(car.model)[generated.dofadr[0]] for own in (joint_springs, joint_dampers))
+            # Read the generated model: the damping of a prepared model is weighted for its step.
+            stiffness, damping = (read(car.model)[generated.dofadr[0]] for read in (joint_springs, joint_dampers))
             unstrained = float(car.model.qpos_spring[generated.qposadr[0]])
             self.joints.append((ends[generated.type[0] == mujoco.mjtJoint.mjJNT_SLIDE], stiffness, damping, unstrained))
         self.wheels = []
-        for wheel in own.wheels:
+        for wheel in composition.wheels:
             part = int(model.body(wheel.part).id)
             # In the design position all frames are parallel to that of the car.
             offset = np.asarray(wheel.center) - car.origins[wheel.part]
             height = float(wheel.center[2] - car.origins["body"][2])
             self.wheels.append((f"suspension_travel_{wheel.name}", part, offset, height))
-        bodies = [rows.layout.modes.body, *(one[2] for one in self.connections), *(one[1] for one in self.wheels)]
+        carriers, parts = (connection[2] for connection in self.connections), (wheel[1] for wheel in self.wheels)
+        bodies = [rows.layout.modes.body, *carriers, *parts]
         self.bodies: Index = np.array(list(dict.fromkeys(bodies)), dtype=np.int64)
 
     def channels(self, total: Vector, frames: Vector, springs: Vector) -> dict[str, Vector]:
-        """Load channels of samples.
+        """Compute the load channels of samples.
 
         Args:
             total: forces of all rows [N]; (samples, rows).
             frames: position [m] and axes of `bodies`; (samples, 12 b).
-            springs: place and velocity of the joints with a spring; (samples, 2 j).
+            springs: position and velocity of the joints with a spring; (samples, 2 j).
 
         Returns:
-            Name to (samples,), those that were asked for.
+            Requested channels by name; (samples,) each.
         """
-        places = dict(zip(self.bodies, np.split(frames, len(self.bodies), axis=1), strict=True))
-        found: dict[str, Vector] = {}
-        for name, own, carrier in self.connections:
-            if int(own[0]) in self.oblique:
-                force = total[:, own] @ self.oblique[int(own[0])]
+        frames_by_body = dict(zip(self.bodies, np.split(frames, len(self.bodies), axis=1), strict=True))
+        channels: dict[str, Vector] = {}
+        for name, rows, carrier in self.connections:
+            if int(rows[0]) in self.oblique:
+                force = total[:, rows] @ self.oblique[int(rows[0])]
             else:
-                force = np.einsum("nji,nj->ni", places[carrier][:, 3:].reshape(-1, 3, 3), total[:, own])
-            found |= {f"{name}_force_{axis}": force[:, column] for column, axis in enumerate(AXES)}
-        found |= {f"{name}_force": total[:, row] for name, row in self.springs}
+                force = np.einsum("nji,nj->ni", frames_by_body[carrier][:, 3:].reshape(-1, 3, 3), total[:, rows])
+            channels |= {f"{name}_force_{axis}": force[:, column] for column, axis in enumerate(AXES)}
+        channels |= {f"{name}_force": total[:, row] for name, row in self.springs}
         for number, (name, stiffness, damping, unstrained) in enumerate(self.joints):
-            place, velocity = springs[:, 2 * number], springs[:, 2 * number + 1]
-            found[name] = -stiffness * (place - unstrained) - damping * velocity
-        body = places[self.bodies[0]]
+            position, velocity = springs[:, 2 * number], springs[:, 2 * number + 1]
+            channels[name] = -stiffness * (position - unstrained) - damping * velocity
+        body = frames_by_body[self.bodies[0]]
         for name, part, offset, height in self.wheels:
-            centre = places[part][:, :3] + places[part][:, 3:].reshape(-1, 3, 3) @ offset
+            centre = frames_by_body[part][:, :3] + frames_by_body[part][:, 3:].reshape(-1, 3, 3) @ offset
             apart = np.einsum("nji,nj->ni", body[:, 3:].reshape(-1, 3, 3), centre - body[:, :3])
-            found[name] = apart[:, 2] - height
-        return {name: found[name] for name in self.names}
+            channels[name] = apart[:, 2] - height
+        return {name: channels[name] for name in self.names}
 
 
 def spring_coordinates(car: CarModel, model: mujoco.MjModel) -> Indices:
-    """Place and velocity coordinate of each joint with a spring in the model of a run; (j, 2)."""
+    """Return position and velocity coordinate of each joint with a spring in the model of a run; (j, 2)."""
     joints = [model.joint(spring.joint) for spring in car.vehicle.composition.joint_springs]
     return np.array([(joint.qposadr[0], joint.dofadr[0]) for joint in joints], dtype=np.int64).reshape(-1, 2)
 
 
 def equality_rows(model: mujoco.MjModel) -> dict[str, int]:
-    """First constraint row of each equality of a model, by name."""
-    found, row = {}, 0
+    """Return the first constraint row of each equality of a model, by name."""
+    rows, row = {}, 0
     for index in range(model.neq):
-        found[str(model.equality(index).name)] = row
+        rows[str(model.equality(index).name)] = row
         row += 3 if model.eq_type[index] == mujoco.mjtEq.mjEQ_CONNECT else 1
-    return found
+    return rows

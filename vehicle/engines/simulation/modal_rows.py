@@ -1,4 +1,4 @@
-"""What the modes of the flexible body do to the rows at its nodes, as `vehicle.engines.simulation.kernel` says."""
+"""Contribution of the body modes to the rows at flexible nodes; equations in `vehicle.engines.simulation.kernel`."""
 
 from __future__ import annotations
 
@@ -9,18 +9,21 @@ from vehicle.engines.simulation.step_records import Efc, Fields, State
 
 @jitable
 def modal_rows(d: Fields, efc: Efc, e: Layout, s: State) -> None:
-    """J -> J +- (R Phi_n, -[d]x), r -> r +- d, r' -> r' +- (R Phi_n q' + w x d) for the rows at flexible nodes."""
+    """Add the modes to the rows at flexible nodes.
+
+    J -> J +- (R Phi_n, -[d]x), r -> r +- d, r' -> r' +- (R Phi_n q' + w x d).
+    """
     m = e.modes
-    modes, column, place = m.size, m.first_velocity, m.first_position
+    modes, column, position = m.size, m.first_velocity, m.first_position
     turn = d.xmat[m.body]
     nodes, count = m.rows.shape[1], m.mode_shapes.shape[1]
     t0, t1, t2, t3, t4 = turn[0], turn[1], turn[2], turn[3], turn[4]
     t5, t6, t7, t8 = turn[5], turn[6], turn[7], turn[8]
     moved, moving = s.deflection[0], s.deflection[1]
     moved[:], moving[:] = 0.0, 0.0
-    # Deflections of all nodes in body axes, mode by mode: long loops without sums that wait for each other.
+    # Deflections of all nodes in body axes, mode by mode: long loops without dependent sums.
     for k in range(modes):
-        q, v, shape = d.qpos[place + k], d.qvel[column + k], m.mode_shapes[k]
+        q, v, shape = d.qpos[position + k], d.qvel[column + k], m.mode_shapes[k]
         for j in range(count):
             moved[j] += shape[j] * q
             moving[j] += shape[j] * v
@@ -41,8 +44,8 @@ def modal_rows(d: Fields, efc: Efc, e: Layout, s: State) -> None:
             efc.J[r0, dof] += x
             efc.J[r1, dof] += y
             efc.J[r2, dof] += z
-            turning = d.qvel[dof]
-            vx, vy, vz = vx + x * turning, vy + y * turning, vz + z * turning
+            rate = d.qvel[dof]
+            vx, vy, vz = vx + x * rate, vy + y * rate, vz + z * rate
         efc.vel[r0] += vx
         efc.vel[r1] += vy
         efc.vel[r2] += vz

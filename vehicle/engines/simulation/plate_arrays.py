@@ -1,4 +1,4 @@
-"""Motion of the plates as arrays, one row a step."""
+"""Motion of the plates as arrays with a row for each step."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from vehicle.signals.excitation.signal import Signal
 Vector = npt.NDArray[np.float64]
 
 BLOCK = 2**18
-"""Rows that are in memory at once: two minutes at 0.5 ms."""
+"""Maximum number of rows in memory: two minutes at 0.5 ms."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlateArrays:
     """Displacement [m], velocity [m/s] and acceleration [m/s2] of the plates; (steps, w).
 
-    `row_velocity` (1 - delta2/12) velocity is what the tyre rows are given: averaged over three steps like the rest of
-    their force, where the central difference alone would be weaker by w2 h2/12, 3 % of the damping at 100 Hz and 1 ms.
+    `row_velocity` is (1 - delta2/12) velocity, for the tyre rows: averaged over three steps like the other parts of
+    their force. The central difference would be lower by w2 h2/12, 3 % of the damping at 100 Hz and 1 ms.
     """
 
     displacement: Vector
@@ -43,20 +43,20 @@ class PlateArrays:
     ) -> PlateArrays:
         """Evaluate a signal on the plates of wheels at the ends of the steps, and for some steps beyond them.
 
-        Velocity and acceleration are the central differences that the step itself makes of every coordinate of the
-        car: then the power that the plate puts in is exactly the power that the tyre takes up. (The derivatives of
+        Velocity and acceleration are central differences, like those of the coordinates of the car in the integration:
+        then the power of the plate is exactly the power into the tyre. (The derivatives of
         the spline differ from them by a share w2 h2/6, which at 28 Hz and 1 ms is 0.5 % of the power.)
 
         Args:
             signal: displacement of the plates.
-            step: [s].
-            count: number of steps; there are count + 1 rows, the first at the time 0.
-            wheels: whose plates.
-            beyond: further rows, with plates that keep their last acceleration.
-            rows: which of all rows; all by default.
+            step: time step [s].
+            count: number of steps; the arrays have count + 1 rows, the first at t = 0.
+            wheels: names of the wheels.
+            beyond: number of further rows, with constant acceleration of the plates.
+            rows: slice of the rows; all by default.
         """
         first, last, _ = rows.indices(count + 1 + beyond)
-        # Averages reach over two rows on each side.
+        # Averages need two rows on each side.
         begin, end = max(min(first - 2, count - 1), 0), min(last + 2, count + 1 + beyond)
         index = np.arange(begin, min(end, count + 1))
         motion = signal.plate_motion(step * index, wheels)
@@ -80,37 +80,40 @@ class PlateArrays:
             acceleration = np.vstack([acceleration, np.tile(acceleration[-1], (further_rows, 1))])
         row_velocity = velocity.copy()
         row_velocity[1:-1] -= FOURTH_ORDER * np.diff(velocity, 2, axis=0)
-        own = slice(first - begin, last - begin)
+        requested = slice(first - begin, last - begin)
         return cls(
-            displacement=displacement[own],
-            velocity=velocity[own],
-            acceleration=acceleration[own],
-            row_velocity=row_velocity[own],
+            displacement=displacement[requested],
+            velocity=velocity[requested],
+            acceleration=acceleration[requested],
+            row_velocity=row_velocity[requested],
         )
 
 
 class PlateBlock:
-    """The rows of `PlateArrays` around the present step, in arrays that stay where they are.
+    """Block of the rows of `PlateArrays` around the present step, in arrays with fixed addresses.
 
     Args:
-        of: makes the rows of a slice.
-        rows: how many there are.
+        of: function that evaluates a slice of the rows.
+        rows: total number of rows.
         level: height of the plates at rest [m]; (w,).
-        unit: the first row of a block is a multiple of it.
-        least: rows of a block at least.
+        unit: divisor of the first row of each block.
+        minimum: minimum number of rows of a block.
 
     Attributes:
-        motion: the rows of the block.
-        offset: number of its first row.
-        height, velocity, acceleration: what the plates and their tyre rows are given; (block, w).
+        motion: rows of the block.
+        offset: index of the first row of the block.
+        height, velocity, acceleration: values for the plates and for the tyre rows; (block, w).
     """
 
-    def __init__(self, of: Callable[[slice], PlateArrays], rows: int, level: Vector, *, unit: int, least: int) -> None:
+    def __init__(
+        self, of: Callable[[slice], PlateArrays], rows: int, level: Vector, *, unit: int, minimum: int
+    ) -> None:
         self.of, self.rows, self.level, self.unit = of, rows, level, unit
-        self.height, self.velocity, self.acceleration = np.zeros((3, min(max(BLOCK, least), rows), len(level)))
+        self.height, self.velocity, self.acceleration = np.zeros((3, min(max(BLOCK, minimum), rows), len(level)))
         self._load(0)
 
     def _load(self, offset: int) -> None:
+        """Evaluate the block that starts at a row."""
         self.offset, self.end = offset, min(offset + len(self.height), self.rows)
         self.motion = self.of(slice(offset, self.end))
         size = self.end - offset
@@ -118,7 +121,7 @@ class PlateBlock:
         self.velocity[:size], self.acceleration[:size] = self.motion.row_velocity, self.motion.acceleration
 
     def reach(self, first: int, last: int) -> int:
-        """Hold the rows first to last, at most `least` less `unit` of them, and return the offset."""
+        """Make the block contain the rows first to last, at most `minimum` - `unit` rows, and return its offset."""
         if not self.offset <= first <= last < self.end:
             self._load(first // self.unit * self.unit)
         return self.offset

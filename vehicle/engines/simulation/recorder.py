@@ -1,4 +1,4 @@
-"""Collects the state of every recorded step and turns it into channels and energies, a chunk at a time."""
+"""Recorder of a run: stores the state of every recorded step and computes channels and energies chunk by chunk."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from vehicle.signals.excitation.signal import Signal, uniform_time
 Vector = npt.NDArray[np.float64]
 
 CHUNK = 512
-"""Recorded samples between two flushes of the buffers, two checks of the state and two calls of the progress."""
+"""Number of samples between two flushes of the buffers, state checks and progress calls."""
 
 
 class Recorder:
-    """Buffers of one run.
+    """Buffers, channels and energy sums of a run.
 
     Args:
-        car: the car that runs.
-        model, data: its prepared model and state.
-        rows: its rows.
+        car: car of the run.
+        model, data: prepared model and state.
+        rows: rows of the model.
         samples: number of recorded samples.
         every: steps between two recorded samples.
         pose_every: samples between two stored poses.
-        requested: names of the channels on request to be recorded beside the others.
+        requested: names of additional channels: loads and damper settings.
     """
 
     def __init__(
@@ -58,15 +58,15 @@ class Recorder:
         self.shapes = {}
         self.places = [output.name for output in car.vehicle.composition.outputs]
         self.wheels, self.dampers = car.vehicle.wheels, [damper.name for damper in car.vehicle.composition.dampers]
-        for place in self.places:
-            shape = numeric(car.model, f"shape/place/{place}")
+        for point in self.places:
+            shape = numeric(car.model, f"shape/place/{point}")
             if shape is not None:
-                self.shapes[place] = shape.reshape(3, -1)
+                self.shapes[point] = shape.reshape(3, -1)
         self.settings = [name for name in requested if name in car.vehicle.setting_channels]
         loads = [name for name in requested if name not in self.settings]
         self.loads = LoadPlaces(car, rows, loads) if loads else None
         joints = spring_coordinates(car, model)
-        self.sites = np.array([model.site(f"place/{place}").id for place in self.places], dtype=np.int64)
+        self.sites = np.array([model.site(f"place/{point}").id for point in self.places], dtype=np.int64)
         self.sources = Sources(
             position=data.qpos,
             velocity=data.qvel,
@@ -105,9 +105,9 @@ class Recorder:
         )
         self.channels = {name: np.zeros(samples) for name in car.vehicle.channels}
         self.channels |= {name: np.zeros(samples) for name in requested}
-        # Positions until the end of the run, which makes accelerations of them.
+        # Positions during the run; differentiated twice at the end.
         self.channels |= {name: np.zeros(samples + AHEAD) for name in car.vehicle.acceleration_channels}
-        # All that are finished, the samples of all, and those of the samples in the buffers.
+        # Finished poses, the sample index of every pose, and the poses of the samples in the buffers.
         self.poses = np.zeros((-(-samples // pose_every), car.model.nq))
         self.pose_index: list[int] = []
         self.new_poses: list[Vector] = []
@@ -121,13 +121,13 @@ class Recorder:
         self.energy_at_start: float | None = None
 
     def before_step(self) -> None:
-        """Keep what the step will overwrite: the present pose."""
+        """Store the present pose, which the step will overwrite."""
         if (self.done + self.filled) % self.pose_every == 0:
             self.new_poses.append(self.data.qpos.copy())
             self.pose_index.append(self.done + self.filled)
 
     def after_step(self, *, moved: bool) -> None:
-        """Keep the sample of the present time; `moved` where a step has been taken."""
+        """Store the sample of the present time; `moved` is True after a step, False after an evaluation."""
         half = self.order.half if moved else -self.order.half
         keep_sample(self.filled, half, self.order, self.sources, self.data.efc_force, self.buffers)
         self.filled += 1
@@ -138,33 +138,33 @@ class Recorder:
             self.energy_at_end = energy
 
     def keep(self, last: int, posed: int) -> None:
-        """Count the samples up to a step that a compiled loop has written into the buffers, and take over its poses."""
+        """Register the samples up to step `last` from the compiled loop, and copy the `posed` new poses."""
         samples = np.arange(self.done + self.filled, last // self.every + 1)
         self.filled += len(samples)
         self.new_poses.extend(self.buffers.poses[:posed].copy())
         self.pose_index.extend(int(sample) for sample in samples[samples % self.pose_every == 0])
 
     def finite_samples(self) -> int:
-        """Number of buffered samples before the first one that is not finite."""
+        """Return the number of buffered samples before the first nonfinite sample."""
         finite = np.all(np.isfinite(self.buffers.solved[: self.filled]), axis=1)
         return self.filled if finite.all() else int(np.argmin(finite))
 
     def last_pose(self, good: int) -> tuple[float, Vector]:
-        """Time [s] and position of the last stored pose among the finished and the first `good` buffered samples."""
+        """Return time [s] and position of the last stored pose before sample `good` of the buffers."""
         last = max(self.done + good - 1, 0)
         index = max((i for i, sample in enumerate(self.pose_index) if sample <= last), default=0)
         return self.pose_index[index] / self.car.vehicle.solver.record_rate, self._pose(index)
 
     def _pose(self, index: int) -> Vector:
-        """A stored pose with all modal coordinates; of a sample in the buffers they are there."""
+        """Return a stored pose with all modal coordinates, for samples in the buffers from `modal_position`."""
         new = index - (len(self.pose_index) - len(self.new_poses))
         if new < 0:
             return np.array(self.poses[index])
         return self.rows.whole(self.new_poses[new], self.buffers.modal_position[self.pose_index[index] - self.done])
 
     def _stored_energy(self, half: float) -> float:
-        """Kinetic, elastic and gravity energy [J] at the present time."""
-        # The armature of the integration is not a mass of the car, so the model as generated is asked.
+        """Return the kinetic, elastic and gravity energy [J] at the present time."""
+        # Use the generated model: the armature of the integration is not a mass of the car.
         model, rows = self.car.model, self.rows
         e, state, preload = rows.layout, rows.state, rows.weights.preload
         b, springs = e.bushings, e.springs
@@ -178,7 +178,7 @@ class Recorder:
         mujoco.mj_energyPos(model, data)
         mujoco.mj_energyVel(model, data)
         residual, ground = state.residual.copy(), b.one_sided
-        # What lifts off keeps the energy with which its spring was without force.
+        # A contact that lifts off keeps the energy of its unloaded spring.
         residual[ground, 2] = np.minimum(residual[ground, 2], preload[b.rows[ground, 2]] / b.stiffness[ground, 2])
         elastic = 0.5 * np.sum(b.stiffness * residual**2) - np.sum(preload[b.rows] * residual)
         turned, frames = rows.rotation(self.data)
@@ -189,35 +189,37 @@ class Recorder:
         lines = state.ends[1::2] - state.ends[::2]
         extension = np.sqrt(np.sum(lines**2, axis=1)) - springs.lengths
         elastic += np.sum(0.5 * springs.stiffness * extension**2 - preload[springs.rows] * extension)
-        for k, (kind, element, axis) in enumerate(zip(e.tables.kinds, e.tables.elements, e.tables.axes, strict=True)):
+        for k, (law_type, element, axis) in enumerate(
+            zip(e.tables.kinds, e.tables.elements, e.tables.axes, strict=True)
+        ):
             curve, at, x = curve_of(e.tables, k), e.tables.at[k], state.stretch[k]
             elastic += curve.energy(x) - curve.energy(at)
-            if kind < 2:
-                own = b.stiffness[element, axis] if kind == 0 else springs.stiffness[element]
-                elastic -= float(curve.force(at)) * (x - at) + 0.5 * own * (x - at) ** 2
+            if law_type < 2:
+                tangent = b.stiffness[element, axis] if law_type == 0 else springs.stiffness[element]
+                elastic -= float(curve.force(at)) * (x - at) + 0.5 * tangent * (x - at) ** 2
         branch = self._branch_force(self.data.efc_force[None, :], state.branch_past[None])[0]
         present = b.branch_stiffness > 0.0
         elastic += 0.5 * np.sum(branch[present] ** 2 / b.branch_stiffness[present])
         return float(data.energy[0] + data.energy[1] + elastic)
 
     def _row_acceleration(self, solved: Vector) -> Vector:
-        """Acceleration of the element rows, from f = -D J a; (chunk, n, 3)."""
+        """Return the acceleration of the element rows, from f = -D J a; (chunk, n, 3)."""
         return -self._local(solved) / self.rows.weights.impedance
 
     def _branch_force(self, solved: Vector, past: Vector) -> Vector:
-        """Force of the Maxwell branches; (chunk, n, 3)."""
+        """Return the force of the Maxwell branches; (chunk, n, 3)."""
         return past + self.rows.weights.slope * self._row_acceleration(solved)
 
     def _local(self, forces: Vector) -> Vector:
-        """Forces of the element rows; the car turns too little for world and element axes to differ here."""
+        """Return the forces of the element rows, neglecting the rotation between world and element axes."""
         return np.asarray(forces[:, self.rows.layout.bushings.rows])
 
     def flush(self, motion: PlateArrays, index: int, every: int) -> None:
-        """Turn the buffered samples into channels and add up the energies."""
+        """Compute channels and energies of the buffered samples and clear the buffers."""
         count, b = self.filled, Samples(*(array[: self.filled] for array in self.buffers))
-        here = slice(self.done, self.done + count)
+        chunk = slice(self.done, self.done + count)
         steps = slice(index - (count - 1) * every, index + 1, every)
-        self._keep_positions(here, b.places, b.turn, b.modal_position)
+        self._keep_positions(chunk, b.places, b.turn, b.modal_position)
         for pose in range(len(self.pose_index) - len(self.new_poses), len(self.pose_index)):
             self.poses[pose] = self._pose(pose)
         self.new_poses.clear()
@@ -229,37 +231,37 @@ class Recorder:
         velocity = motion.velocity[steps]
         tyre = total[:, bushings.rows[e.tyres][:, 2]]
         for column, damper in enumerate(self.dampers):
-            self.channels[f"{damper}_velocity"][here] = b.damper_velocity[:, column]
-            self.channels[f"{damper}_force"][here] = damper_force[:, column]
+            self.channels[f"{damper}_velocity"][chunk] = b.damper_velocity[:, column]
+            self.channels[f"{damper}_force"][chunk] = damper_force[:, column]
         for column, wheel in enumerate(self.wheels):
-            self.channels[f"tyre_{wheel}_force_z"][here] = tyre[:, column]
-            self.channels[f"plate_{wheel}_displacement"][here] = motion.displacement[steps, column]
+            self.channels[f"tyre_{wheel}_force_z"][chunk] = tyre[:, column]
+            self.channels[f"plate_{wheel}_displacement"][chunk] = motion.displacement[steps, column]
             lowest = int(np.argmin(tyre[:, column]))
             if tyre[lowest, column] < self.lowest_load[wheel][0]:
                 when = (self.done + lowest) * every * self.step
                 self.lowest_load[wheel] = (float(tyre[lowest, column]), when)
         for name in self.settings:
-            self.channels[name][here] = b.coefficient[:, self.dampers.index(name.removesuffix("_coefficient"))]
+            self.channels[name][chunk] = b.coefficient[:, self.dampers.index(name.removesuffix("_coefficient"))]
         if self.loads is not None:
             for name, values in self.loads.channels(total, b.load_frames, b.load_springs).items():
-                self.channels[name][here] = values
-        # What lifts the weight is known without any quadrature, and is a multiple of what the dampers take.
+                self.channels[name][chunk] = values
+        # The work against the static load is exact and much larger than the dissipated energy, so keep it separate.
         static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]
         power_in = np.sum((tyre - static) * velocity, axis=1)
         if self.done == 0:
             self.start = motion.displacement[0].copy()
         self.lifting = float(static @ (motion.displacement[index] - self.start))
         rate = b.rate + 0.5 * self.step * self._row_acceleration(b.solved)
-        # The damping of a tyre answers the averaged velocity of its plate and works along the true one.
+        # Tyre damping uses the plate velocity averaged over three steps; its power uses the true plate velocity.
         true_rate = rate.copy()
         true_rate[:, e.tyres, 2] += (motion.row_velocity - motion.velocity)[steps]
         losses = bushings.damping * rate * true_rate
-        # Of a contact that lifts off, what the elastic force has more than the whole one.
+        # Damping force of a contact that may lift off: elastic force less total force.
         ground = bushings.one_sided
         losses[:, ground, 2] = (b.contact - total[:, bushings.rows[ground, 2]]) * true_rate[:, ground, 2]
         loss = np.sum(losses, axis=(1, 2))
         branch = self._branch_force(b.solved, b.branch)
-        # Of a rolling car what keeps it on its way: slope, moments and hold by all velocities, side slip by V psi.
+        # Rolling car: power of slope, moments and course control on all velocities, and of side slip on V psi.
         power_in = power_in + b.pushed
         power_in = power_in + np.sum(branch[:, e.rolling.tyres, 1] * b.heading * e.rolling.speeds, axis=1)
         present = bushings.branch_stiffness > 0.0
@@ -273,24 +275,31 @@ class Recorder:
         self.done += count
         self.filled = 0
 
-    def _keep_positions(self, here: slice, places: Vector, turn: Vector, modal: Vector) -> None:
-        """Positions of all places with their modal displacement; (chunk, 3 places), (chunk, 9), (chunk, modes)."""
-        for place, value in zip(self.places, np.split(places, len(self.sites), axis=1), strict=True):
-            if place in self.shapes:
-                value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[place].T)
+    def _keep_positions(self, chunk: slice, positions: Vector, turn: Vector, modal: Vector) -> None:
+        """Store the positions of all output points with their modal displacement.
+
+        Args:
+            chunk: range of samples.
+            positions: positions of the sites [m]; (chunk, 3 points).
+            turn: frame of the body, row by row; (chunk, 9).
+            modal: modal coordinates; (chunk, modes).
+        """
+        for point, value in zip(self.places, np.split(positions, len(self.sites), axis=1), strict=True):
+            if point in self.shapes:
+                value = value + np.einsum("nij,nj->ni", turn.reshape(-1, 3, 3), modal @ self.shapes[point].T)
             for axis, name in enumerate(AXES):
-                self.channels[f"{place}_acc_{name}"][here] = value[:, axis]
+                self.channels[f"{point}_acc_{name}"][chunk] = value[:, axis]
 
     def keep_ahead(self, sample: int) -> None:
-        """Keep the positions of a sample beyond the end of the record, the first of which is 0."""
+        """Store the positions of a sample after the end of the record; the first of these has index 0."""
         data, rows = self.data, self.rows
         mujoco.mj_kinematics(self.model, data)
-        here = slice(self.samples + sample, self.samples + sample + 1)
+        chunk = slice(self.samples + sample, self.samples + sample + 1)
         turn, modal = data.xmat[rows.layout.modes.body][None], rows.modal_positions(data)[None]
-        self._keep_positions(here, data.site_xpos[self.sites].reshape(1, -1), turn, modal)
+        self._keep_positions(chunk, data.site_xpos[self.sites].reshape(1, -1), turn, modal)
 
     def _add_work(self, power_in: Vector, loss: Vector, every: int) -> None:
-        """Trapezoidal rule across chunks."""
+        """Add the work of a chunk by the trapezoidal rule, continued across chunks."""
         if self.last_powers is not None:
             power_in = np.concatenate([[self.last_powers[0]], power_in])
             loss = np.concatenate([[self.last_powers[1]], loss])
@@ -300,7 +309,7 @@ class Recorder:
         self.last_powers = (float(power_in[-1]), float(loss[-1]))
 
     def energies(self) -> Energies:
-        """Energy balance of the whole run."""
+        """Return the energy balance of the run."""
         assert self.energy_at_start is not None
         return Energies(
             work_in=self.work_in + self.lifting,
@@ -309,33 +318,33 @@ class Recorder:
         )
 
     def warnings(self) -> tuple[str, ...]:
-        """A sentence for each tyre that pulled on its plate."""
-        found = []
+        """Return warnings about tyres that pulled on their plates."""
+        messages = []
         e = self.rows.layout
         for (wheel, (load, when)), tyre in zip(self.lowest_load.items(), e.tyres, strict=True):
             if load < 0.0 and tyre not in e.bushings.one_sided:
                 first = self.channels[f"tyre_{wheel}_force_z"]
                 start = int(np.argmax(first < 0.0)) / self.car.vehicle.solver.record_rate
-                found.append(
+                messages.append(
                     f"tyre {wheel} would lift off its plate at t = {start:.3f} s (lowest load {load:.0f} N at "
                     f"{when:.3f} s); the model pulls there, so the result is out of its validity"
                 )
-        return tuple(found)
+        return tuple(messages)
 
     def notices(self) -> tuple[str, ...]:
-        """A sentence for each one-sided tyre that left its plate."""
-        found, e, rate = [], self.rows.layout, self.car.vehicle.solver.record_rate
+        """Return notices about one-sided tyres that left their plates."""
+        messages, e, rate = [], self.rows.layout, self.car.vehicle.solver.record_rate
         for wheel, tyre in zip(self.wheels, e.tyres, strict=True):
             away = self.channels[f"tyre_{wheel}_force_z"] <= 0.0
             if tyre in e.bushings.one_sided and away.any():
-                found.append(
+                messages.append(
                     f"tyre {wheel} left its plate at t = {int(np.argmax(away)) / rate:.3f} s, for "
                     f"{np.count_nonzero(away) / rate:.3g} s in all"
                 )
-        return tuple(found)
+        return tuple(messages)
 
     def recording(self, signal: Signal, statistics: Statistics) -> Recording:
-        """The finished recording."""
+        """Return the finished recording."""
         interval = 1.0 / self.car.vehicle.solver.record_rate
         time = uniform_time(samples=self.samples, timestep=interval)
         for name in self.car.vehicle.acceleration_channels:

@@ -1,4 +1,4 @@
-"""What a run leaves behind: channels over time, energies, poses for the film, solver statistics."""
+"""Results of a run: channels over time, energies, poses for the film, solver statistics."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Energies:
 
     @property
     def residual(self) -> float:
-        """|work_in - dissipated - stored| / work_in [-]; 0 where no work was done."""
+        """Return |work_in - dissipated - stored| / |work_in| [-]; 0 without work."""
         if self.work_in == 0.0:
             return 0.0
         return abs(self.work_in - self.dissipated - self.stored) / abs(self.work_in)
@@ -31,18 +31,18 @@ class Energies:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Statistics:
-    """How the run was computed.
+    """Solver, computing time and validity of a run.
 
     Attributes:
         engine: "mujoco" or "reduced".
         callback: form of the element laws: "native", compiled code.
-        timestep: [s].
+        timestep: time step [s].
         steps: number of steps.
         wall_time: computing time [s].
-        warnings: sentences about the validity of the results.
-        energies: energy balance; None of the reduced engine, whose matrices know no parts.
-        notices: sentences about the way of computing.
-        within_validity: False where the motion left what the engine holds for, so that another one should answer.
+        warnings: messages about the validity of the results.
+        energies: energy balance; None for the reduced engine, whose matrices contain no parts.
+        notices: messages about the computation.
+        within_validity: False for a motion outside the valid range of the engine, which needs another engine.
     """
 
     engine: str
@@ -57,7 +57,7 @@ class Statistics:
 
     @property
     def realtime_factor(self) -> float:
-        """Simulated time over computing time [-]."""
+        """Return the simulated time over the computing time [-]."""
         return self.steps * self.timestep / self.wall_time
 
 
@@ -69,9 +69,9 @@ class Recording:
         time: (n,) [s].
         channels: channel name to (n,) array; names and units are those of `vehicle.names`.
         units: channel name to unit.
-        excited: wheels whose plates were driven.
+        excited: wheels with a moving plate.
         pose_time: times of the stored poses [s], (f,).
-        poses: generalised positions of MuJoCo at those times, (f, nq).
+        poses: generalised positions of MuJoCo at `pose_time`, (f, nq).
         statistics: solver statistics.
     """
 
@@ -84,14 +84,14 @@ class Recording:
     statistics: Statistics
 
     def __getitem__(self, channel: str) -> Vector:
-        """Time history of one channel."""
+        """Return the time history of a channel."""
         try:
             return self.channels[channel]
         except KeyError:
             raise ConfigurationError(f"no channel {channel!r}; the recording has {', '.join(self.channels)}") from None
 
     def only(self, channels: Sequence[str]) -> Recording:
-        """The same recording with fewer channels."""
+        """Return the recording with a subset of its channels."""
         return replace(
             self,
             channels={name: self[name] for name in channels},
@@ -100,5 +100,5 @@ class Recording:
 
     @property
     def timestep(self) -> float:
-        """Sampling interval of the channels [s]."""
+        """Return the sampling interval of the channels [s]."""
         return float(self.time[1] - self.time[0])

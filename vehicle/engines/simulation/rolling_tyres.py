@@ -1,19 +1,19 @@
-"""Tyres that roll: where they touch the road, their slip, and the forces that no row has.
+"""Rolling tyres: contact point on the road, slip, and explicit forces without a constraint row.
 
 The wheel turns at -V/R + theta' about its axle e, the car driving along -x; theta is a coordinate of the model, the
-steady part is not. The lowest point of the tread lies at r = -a_y e - R d below the centre c, d being the vertical
-without its part along e. It is a point of the wheel, so its velocity has the column e x r of the spin, and not one of
-the hub: a hub that pitches about e does not move it. The rows of a tyre at the point of the hub become those of it,
+steady part is not. The lowest point of the tread is at r = -a_y e - R d from the centre c, with d the component of
+the vertical normal to e. It is a point of the wheel, so its velocity has the column e x r of the spin; pitch of the
+hub about e leaves it at rest. The rows of a tyre at the point of the hub become those of this point,
 
     J -> J + w x (c + r - p_hub),   J_spin = e x r,
 
-and their branches along x and y are the slip (`docs/theory.md`, "The rolling tyre"): that along y is driven by
-v_y + V psi, psi being the heading of the axle, in the middle of the past step like every rate. The known part of
+and their branches along x and y represent the slip (`docs/theory/rolling-tyre.md`). The input of the branch
+along y is v_y + V psi, psi being the heading of the axle, in the middle of the past step. The known part of
 
 - the slope of the road, F_z w'/V along x at the wheel centre, with the present load;
 - the aligning moment, trail times side force, on the hub;
 - the gyroscopic moment -omega x (H e) on the hub, H = -I V/R, carried to the present by the last two velocities;
-- the hold of the course, on the trimmed body: along x, along y at the front axle, where a driver steers, and in yaw,
+- the course control on the body: along x, along y at the front axle, where a driver steers, and in yaw,
 
 acts explicitly on the coordinates, as `push`. Source: Pacejka, Tire and Vehicle Dynamics, 3rd ed., chapters 7 to 9.
 """
@@ -29,11 +29,16 @@ from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 
 @jitable
 def rolling_rows(d: Fields, efc: Efc, e: Layout) -> None:
-    """Rows, residuals and rates of the rolling tyres at the lowest point of the tread."""
-    own = e.rolling
-    for entry in range(own.dofs.shape[0]):
-        n, dof = own.dofs[entry, 0], own.dofs[entry, 1]
-        frame, row, radius, motion = d.xmat[own.hubs[n]], e.bushings.rows[own.tyres[n], 0], own.arms[n, 2], d.cdof[dof]
+    """Move rows, residuals and rates of the rolling tyres to the lowest point of the tread."""
+    rolling = e.rolling
+    for entry in range(rolling.dofs.shape[0]):
+        n, dof = rolling.dofs[entry, 0], rolling.dofs[entry, 1]
+        frame, row, radius, motion = (
+            d.xmat[rolling.hubs[n]],
+            e.bushings.rows[rolling.tyres[n], 0],
+            rolling.arms[n, 2],
+            d.cdof[dof],
+        )
         level = np.sqrt(1.0 - frame[7] * frame[7])
         x = radius * (frame[2] + frame[7] * frame[1] / level)
         y = radius * (frame[5] + frame[7] * frame[4] / level)
@@ -45,8 +50,13 @@ def rolling_rows(d: Fields, efc: Efc, e: Layout) -> None:
         efc.vel[row] += u * d.qvel[dof]
         efc.vel[row + 1] += v * d.qvel[dof]
         efc.vel[row + 2] += w * d.qvel[dof]
-    for n in range(own.tyres.shape[0]):
-        frame, row, radius, spin = d.xmat[own.hubs[n]], e.bushings.rows[own.tyres[n], 0], own.arms[n, 2], own.spins[n]
+    for n in range(rolling.tyres.shape[0]):
+        frame, row, radius, spin = (
+            d.xmat[rolling.hubs[n]],
+            e.bushings.rows[rolling.tyres[n], 0],
+            rolling.arms[n, 2],
+            rolling.spins[n],
+        )
         level = np.sqrt(1.0 - frame[7] * frame[7])
         efc.pos[row] += radius * (frame[2] + frame[7] * frame[1] / level)
         efc.pos[row + 1] += radius * (frame[5] + frame[7] * frame[4] / level)
@@ -61,63 +71,63 @@ def rolling_rows(d: Fields, efc: Efc, e: Layout) -> None:
 
 @jitable
 def headings(time: float, d: Fields, e: Layout, s: State) -> None:
-    """Heading and angular velocity of the hubs, once for each time; the side slip that the heading makes.
+    """Update heading and angular velocity of the hubs once for each time, and add the heading to the side slip.
 
-    At the time 0 the car has not moved yet: its tangents are taken there.
+    At t = 0, where the car is linearised, the side slip has no heading.
     """
-    own = e.rolling
-    if own.tyres.shape[0] == 0:
+    rolling = e.rolling
+    if rolling.tyres.shape[0] == 0:
         return
     if time != s.last_time[0]:
-        for n in range(own.tyres.shape[0]):
-            frame = d.xmat[own.hubs[n]]
+        for n in range(rolling.tyres.shape[0]):
+            frame = d.xmat[rolling.hubs[n]]
             s.heading[1, n], s.heading[0, n] = s.heading[0, n], np.arctan2(-frame[1], frame[4])
             for i in range(3):
                 s.turning[n, 3 + i], s.turning[n, i] = s.turning[n, i], 0.0
-        for entry in range(own.dofs.shape[0]):
-            n, dof = own.dofs[entry, 0], own.dofs[entry, 1]
+        for entry in range(rolling.dofs.shape[0]):
+            n, dof = rolling.dofs[entry, 0], rolling.dofs[entry, 1]
             for i in range(3):
                 s.turning[n, i] += d.cdof[dof, i] * d.qvel[dof]
     if time > 0.0:
-        for n in range(own.tyres.shape[0]):
-            s.rate[own.tyres[n], 1] += own.speeds[n] * 0.5 * (s.heading[0, n] + s.heading[1, n])
+        for n in range(rolling.tyres.shape[0]):
+            s.rate[rolling.tyres[n], 1] += rolling.speeds[n] * 0.5 * (s.heading[0, n] + s.heading[1, n])
 
 
 @jitable
 def rolling_forces(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
-    """Slope, aligning and gyroscopic moments on the hubs, and the hold of the course, on the coordinates.
+    """Apply road slope, aligning and gyroscopic moments on the hubs, and the course control.
 
-    What the tyres hold level at rest, mN of the sliding share of the trim, is held by the hub and turns no wheel.
+    The static horizontal tyre forces, mN from `SLIDING_SHARE` of the trim, act on the hub and rotate no wheel.
     """
-    own, push = e.rolling, s.push
+    rolling, push = e.rolling, s.push
     for dof in range(push.shape[0]):
         push[dof] = 0.0
-    for n in range(own.tyres.shape[0]):
-        tyre, frame, t = own.tyres[n], d.xmat[own.hubs[n]], s.turning[n]
-        row, spin = e.bushings.rows[tyre, 0], own.spins[n]
+    for n in range(rolling.tyres.shape[0]):
+        tyre, frame, t = rolling.tyres[n], d.xmat[rolling.hubs[n]], s.turning[n]
+        row, spin = e.bushings.rows[tyre, 0], rolling.spins[n]
         push[spin] = -c.preload[row] * efc.J[row, spin] - c.preload[row + 1] * efc.J[row + 1, spin]
-        s.slope[n, 0] = max(0.0, s.force[tyre, 2]) * s.plate_velocity[own.plates[n], 2] / own.speeds[n]
+        s.slope[n, 0] = max(0.0, s.force[tyre, 2]) * s.plate_velocity[rolling.plates[n], 2] / rolling.speeds[n]
         # -omega x (H e) = H e x omega
-        momentum = -own.inertias[n] * own.speeds[n] / own.arms[n, 2]
+        momentum = -rolling.inertias[n] * rolling.speeds[n] / rolling.arms[n, 2]
         x, y, z = 1.5 * t[0] - 0.5 * t[3], 1.5 * t[1] - 0.5 * t[4], 1.5 * t[2] - 0.5 * t[5]
         s.slope[n, 1] = momentum * (frame[4] * z - frame[7] * y)
         s.slope[n, 2] = momentum * (frame[7] * x - frame[1] * z)
-        s.slope[n, 3] = momentum * (frame[1] * y - frame[4] * x) - own.trails[n] * s.branch_past[tyre, 1]
-    for entry in range(own.dofs.shape[0]):
-        n, dof, tree = own.dofs[entry, 0], own.dofs[entry, 1], own.dofs[entry, 2]
-        frame, arm, motion, given = d.xmat[own.hubs[n]], own.arms[n], d.cdof[dof], s.slope[n]
-        point, centre = d.site_xpos[own.sites[n]], d.subtree_com[tree]
+        s.slope[n, 3] = momentum * (frame[1] * y - frame[4] * x) - rolling.trails[n] * s.branch_past[tyre, 1]
+    for entry in range(rolling.dofs.shape[0]):
+        n, dof, tree = rolling.dofs[entry, 0], rolling.dofs[entry, 1], rolling.dofs[entry, 2]
+        frame, arm, motion, load = d.xmat[rolling.hubs[n]], rolling.arms[n], d.cdof[dof], s.slope[n]
+        point, centre = d.site_xpos[rolling.sites[n]], d.subtree_com[tree]
         y = point[1] + frame[3] * arm[0] + frame[4] * arm[1] + frame[5] * arm[2] - centre[1]
         z = point[2] + frame[6] * arm[0] + frame[7] * arm[1] + frame[8] * arm[2] - centre[2]
-        push[dof] += given[0] * (motion[3] + motion[1] * z - motion[2] * y)
-        push[dof] += given[1] * motion[0] + given[2] * motion[1] + given[3] * motion[2]
-    if own.course.shape[0] > 0:
-        frame, hold, ahead = d.xmat[e.modes.body], own.hold, own.hold[6]
-        away, turning = np.arctan2(frame[3], frame[0]), d.qvel[own.course[2]]
-        x, y = d.qpos[own.course[3]] - own.rest[0], d.qpos[own.course[4]] - own.rest[1] + ahead * away
-        side = hold[1] * y + hold[4] * (d.qvel[own.course[1]] + ahead * turning)
-        push[own.course[0]] -= hold[0] * x + hold[3] * d.qvel[own.course[0]]
-        push[own.course[1]] -= side
-        push[own.course[2]] -= hold[2] * away + hold[5] * turning + ahead * side
+        push[dof] += load[0] * (motion[3] + motion[1] * z - motion[2] * y)
+        push[dof] += load[1] * motion[0] + load[2] * motion[1] + load[3] * motion[2]
+    if rolling.course.shape[0] > 0:
+        frame, hold, ahead = d.xmat[e.modes.body], rolling.hold, rolling.hold[6]
+        away, yaw_rate = np.arctan2(frame[3], frame[0]), d.qvel[rolling.course[2]]
+        x, y = d.qpos[rolling.course[3]] - rolling.rest[0], d.qpos[rolling.course[4]] - rolling.rest[1] + ahead * away
+        side = hold[1] * y + hold[4] * (d.qvel[rolling.course[1]] + ahead * yaw_rate)
+        push[rolling.course[0]] -= hold[0] * x + hold[3] * d.qvel[rolling.course[0]]
+        push[rolling.course[1]] -= side
+        push[rolling.course[2]] -= hold[2] * away + hold[5] * yaw_rate + ahead * side
     for dof in range(push.shape[0]):
         d.qfrc_applied[dof] += push[dof]

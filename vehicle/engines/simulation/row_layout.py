@@ -1,4 +1,4 @@
-"""Model -> rows: where the elements of a compiled car stand in its rows and columns, and their constants."""
+"""Layout of a compiled car: constraint rows and coordinates of its elements, and the constants of their laws."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from vehicle.engines.simulation.element_records import (
 )
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.engines.simulation.law_arrays import law_names, laws_of, model_numbers, with_numbers
-from vehicle.model.assembly.law_numbers import TURNING
+from vehicle.model.assembly.element_numbers import TURNING
+from vehicle.model.laws.control_laws import in_steps
 from vehicle.model.laws.damper import unpack
-from vehicle.model.laws.semi_active import in_steps
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
-    """A custom numeric field of the model, None where it does not exist."""
+    """Return a custom numeric field of the model, or None for a missing field."""
     index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, name)
     if index < 0:
         return None
@@ -41,24 +41,24 @@ def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
 
 
 def read_layout(model: mujoco.MjModel) -> Layout:
-    """Collect the elements from the custom fields of a compiled car.
+    """Read the elements of a compiled car from its custom fields.
 
     Args:
-        model: made by `vehicle.model.assembly`, or loaded from its MJCF file.
+        model: model from `vehicle.model.assembly`, or from its MJCF file.
 
     Returns:
-        The arrays, in the order of the constraint rows.
+        Records of the elements, in the order of the constraint rows.
     """
     kinds, law, numbers = mujoco.mjtEq, law_names(model), model_numbers(model)
     names, springs, laws = law.bushings, law.springs, laws_of(law, numbers)
-    types = [kinds(kind) for kind in model.eq_type]
-    heights = [3 if kind == kinds.mjEQ_CONNECT else 1 for kind in types]
-    first_rows = np.cumsum([0, *heights])
+    types = [kinds(equality_type) for equality_type in model.eq_type]
+    row_counts = [3 if equality_type == kinds.mjEQ_CONNECT else 1 for equality_type in types]
+    first_rows = np.cumsum([0, *row_counts])
     equalities = {str(model.equality(index).name): index for index in range(model.neq)}
     joints = _modal_joints(model)
     modes = len(joints)
     modal = range(int(model.jnt_dofadr[joints[0]]), int(model.jnt_dofadr[joints[0]]) + modes) if joints else range(0)
-    ends: dict[str, tuple[int, int]] = {}  # sites of a connection, or of a spring
+    ends: dict[str, tuple[int, int]] = {}  # sites of a connection or a spring
     for name, index in equalities.items():
         if types[index] == kinds.mjEQ_CONNECT:
             ends[name] = int(model.eq_obj1id[index]), int(model.eq_obj2id[index])
@@ -66,7 +66,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
     rolling = [name for name in names if f"rolling/{name}" in numbers]
     spins = {name: _spin(model, ends[name]) for name in rolling}
-    reach = [
+    nonzero = [
         run
         for name, sites in ends.items()
         for run in _reach(model, sites, (*modal, *spins.get(name, ())), equalities[name], first_rows)
@@ -77,7 +77,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
 
     balls = [name for name in ends if name not in springs]
     carriers = _whole([model.site_bodyid[ends[name][1]] for name in names])
-    turning = [name for name, own in zip(names, laws, strict=True) if own[TURNING] > 0.0]
+    rotational = [name for name, law_numbers in zip(names, laws, strict=True) if law_numbers[TURNING] > 0.0]
     none = np.zeros(0)
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
     empty = np.zeros((0, 3))
@@ -96,10 +96,10 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             directions=np.zeros((0, 9)),
         ),
         rotations=Rotations(
-            sites=_whole([ends[name] for name in turning], 2),
+            sites=_whole([ends[name] for name in rotational], 2),
             stiffness=np.zeros(0),
-            turning=_turning(model, [ends[name] for name in turning]),
-            **_node_rotations(model, turning, ends, modes),
+            turning=_turning(model, [ends[name] for name in rotational]),
+            **_node_rotations(model, rotational, ends, modes),
         ),
         springs=Springs(
             rows=rows_of(springs),
@@ -119,7 +119,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
-        reach=_whole(reach, 4),
+        reach=_whole(nonzero, 4),
         row_count=int(first_rows[-1]) + int(np.count_nonzero(model.dof_frictionloss > 0.0)) + len(law.valves),
         velocity_count=int(model.nv),
     )
@@ -127,40 +127,43 @@ def read_layout(model: mujoco.MjModel) -> Layout:
 
 
 def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
-    """Names of the wheels of a car, in the order of their plates."""
-    plates = sorted((int(place), index) for index, place in enumerate(model.body_mocapid) if place >= 0)
+    """Return the names of the wheels of a car, in the order of their plates."""
+    plates = sorted((int(plate), index) for index, plate in enumerate(model.body_mocapid) if plate >= 0)
     return tuple(str(model.body(index).name).removeprefix("plate_") for _, index in plates)
 
 
 def places_of(model: mujoco.MjModel) -> tuple[str, ...]:
-    """Names of the recorded places of a car, in the order of their sensors."""
+    """Return the names of the output points of a car, in the order of their sensors."""
     return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in range(model.nsensor))
 
 
 def _whole(values: Any, columns: int = 0) -> Index:
-    """Integers; rows of as many columns as given."""
+    """Convert values to 64-bit integers, (n,) or (n, columns)."""
     array = np.array(values, dtype=np.int64, order="C")
     return array.reshape(-1, columns) if columns else array.reshape(-1)
 
 
 def _triples(first: Index) -> Indices:
+    """Return three consecutive rows from each first row; (n, 3)."""
     return np.ascontiguousarray(first[:, None] + np.arange(3))
 
 
 def _modal_joints(model: mujoco.MjModel) -> list[int]:
-    """Ids of the joints that hold the modal coordinates."""
-    found: list[int] = []
+    """Return the ids of the joints of the modal coordinates."""
+    joints: list[int] = []
     while True:
-        index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"mode_{len(found) + 1}")
+        index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, f"mode_{len(joints) + 1}")
         if index < 0:
-            return found
-        found.append(index)
+            return joints
+        joints.append(index)
 
 
 def _shapes(model: mujoco.MjModel, names: Sequence[str], modes: int) -> Table:
-    """Modal shapes of elements, zero where they are rigid; (names, 3 modes)."""
-    found = [numeric(model, f"shape/{name}") for name in names]
-    return np.array([np.zeros(3 * modes) if one is None else one for one in found]).reshape(len(names), 3 * modes)
+    """Return the modal shapes of elements, zero for rigid attachments; (names, 3 modes)."""
+    shapes = [numeric(model, f"shape/{name}") for name in names]
+    return np.array([np.zeros(3 * modes) if shape is None else shape for shape in shapes]).reshape(
+        len(names), 3 * modes
+    )
 
 
 def _modes(
@@ -170,9 +173,9 @@ def _modes(
     rows_of: Callable[[Sequence[str]], Index],
     modal: range,
 ) -> Modes:
-    """The flexible body, and what its modes do to the rows of connections at its nodes."""
+    """Return the record of the flexible body, with the rows of the connections at its nodes."""
     joints, body = _modal_joints(model), max(int(mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "body")), 0)
-    # The residual is moving less carrier: the body's own shape counts with the sign of its role.
+    # The residual is moving part less carrier: the sign of a shape depends on the role of the body.
     signs = [1.0 if model.site_bodyid[ends[name][0]] == body else -1.0 for name in names]
     shapes = np.reshape(signs, (-1, 1)) * _shapes(model, names, len(modal))
     by_node = shapes.reshape(len(names), 3, len(modal))
@@ -190,17 +193,17 @@ def _modes(
 
 
 def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:
-    """The dampers: user actuators on joints, each with an equality row of its name."""
-    own = _damper_actuators(model)
-    joints = [int(model.actuator_trnid[index, 0]) for index in own]
+    """Return the record of the dampers: user actuators on joints, with equality rows of the same names."""
+    actuators = _damper_actuators(model)
+    joints = [int(model.actuator_trnid[index, 0]) for index in actuators]
     dofs = _whole([model.jnt_dofadr[joint] for joint in joints])
     tendons = np.flatnonzero(model.tendon_frictionloss > 0.0)
     wrapped = [joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])) for tendon in tendons]
     # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
-    valves = [(first + len(own) + index, damper) for index, damper in enumerate(wrapped)]
+    valves = [(first + len(actuators) + index, damper) for index, damper in enumerate(wrapped)]
     return Dampers(
         laws=unpack([]),
-        rows=rows_of([str(model.actuator(index).name) for index in own]),
+        rows=rows_of([str(model.actuator(index).name) for index in actuators]),
         frictions=first + np.argsort(np.argsort(dofs)),
         dofs=dofs,
         places=_whole([model.jnt_qposadr[joint] for joint in joints]),
@@ -210,24 +213,25 @@ def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], f
 
 
 def _damper_actuators(model: mujoco.MjModel) -> list[int]:
+    """Return the ids of the actuators of dampers."""
     return [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
 
 
 def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Controls:
-    """The controlled dampers, each with the sites of its sensors."""
-    places = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
-    sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in places]
+    """Return the record of the controlled dampers with the sites of their sensors."""
+    site_names = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
+    sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in site_names]
     return Controls(
         dampers=_whole([]),
         laws=in_steps(np.zeros((0, 8)), 1.0),
         sites=_whole(sites, 2),
-        shapes=_shapes(model, [place for both in places for place in both], modes),
+        shapes=_shapes(model, [site for both in site_names for site in both], modes),
         dofs=_spring_dofs(model, sites),
     )
 
 
 def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:
-    """Which coordinates turn the moving part (+1) and the carrier (-1) of each element; both cancel."""
+    """Return element, coordinate and sign: +1 if it rotates the moving part, -1 the carrier; both cancel."""
     signs = np.zeros((len(sites), model.nv), dtype=np.int64)
     for row, (moving, carrier) in zip(signs, sites, strict=True):
         row[_moved_by(model, moving)] += 1
@@ -240,55 +244,55 @@ def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices
 def _node_rotations(
     model: mujoco.MjModel, names: Sequence[str], ends: dict[str, tuple[int, int]], modes: int
 ) -> dict[str, Any]:
-    """Elements on nodes of the body whose rotation in the modes is known: which, on which side, and the rotation."""
+    """Return the elements with rotational mode shapes at a node of the body, the side of the node, and the shapes."""
     body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, "body")
     read = [numeric(model, f"rotation/{name}") for name in names]
-    known = [(n, psi) for n, psi in enumerate(read) if psi is not None]
-    sides = [int(model.site_bodyid[ends[names[n]][0]] != body) for n, _ in known]
+    with_shapes = [(n, psi) for n, psi in enumerate(read) if psi is not None]
+    sides = [int(model.site_bodyid[ends[names[n]][0]] != body) for n, _ in with_shapes]
     return {
-        "nodes": _whole([(n, side) for (n, _), side in zip(known, sides, strict=True)], 2),
-        "shapes": np.reshape([psi for _, psi in known], (len(known), 3 * modes)).astype(float),
+        "nodes": _whole([(n, side) for (n, _), side in zip(with_shapes, sides, strict=True)], 2),
+        "shapes": np.reshape([psi for _, psi in with_shapes], (len(with_shapes), 3 * modes)).astype(float),
     }
 
 
 def _turns(model: mujoco.MjModel) -> npt.NDArray[np.bool_]:
-    """Which velocity coordinates turn a body: all but slides and the first three of free bodies; (nv,)."""
-    found = np.ones(model.nv, dtype=np.bool_)
+    """Return a mask of the rotational velocity coordinates: no slides, no translations of free bodies; (nv,)."""
+    rotational = np.ones(model.nv, dtype=np.bool_)
     kinds = mujoco.mjtJoint
     for joint in range(model.njnt):
         shifts = {int(kinds.mjJNT_SLIDE): 1, int(kinds.mjJNT_FREE): 3}.get(int(model.jnt_type[joint]), 0)
-        found[model.jnt_dofadr[joint] : model.jnt_dofadr[joint] + shifts] = False
-    return found
+        rotational[model.jnt_dofadr[joint] : model.jnt_dofadr[joint] + shifts] = False
+    return rotational
 
 
 def _spring_dofs(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices:
-    """Spring, end, velocity coordinate and its tree, for all coordinates that move an end of a spring."""
-    found = [
+    """Return rows of spring, end, velocity coordinate that moves the end, and its tree."""
+    entries = [
         (spring, end, dof, int(model.body_rootid[model.dof_bodyid[dof]]))
         for spring, ends in enumerate(sites)
         for end, site in enumerate(ends)
         for dof in _moved_by(model, site)
     ]
-    return _whole(found, 4)
+    return _whole(entries, 4)
 
 
 def _moved_by(model: mujoco.MjModel, site: int) -> list[int]:
-    """Velocity coordinates that move a site."""
+    """Return the velocity coordinates that move a site."""
     return _above(model, int(model.site_bodyid[site]))
 
 
 def _above(model: mujoco.MjModel, body: int) -> list[int]:
-    """Velocity coordinates that move a body, from itself down to the world."""
-    found: list[int] = []
+    """Return the velocity coordinates that move a body, from the body down to the world."""
+    columns: list[int] = []
     while body > 0:
         first = int(model.body_dofadr[body])
-        found += range(first, first + int(model.body_dofnum[body]))
+        columns += range(first, first + int(model.body_dofnum[body]))
         body = int(model.body_parentid[body])
-    return found
+    return columns
 
 
 def _spin(model: mujoco.MjModel, sites: tuple[int, int]) -> tuple[int]:
-    """Velocity coordinate about the axle of the wheel on a plate."""
+    """Return the velocity coordinate about the axle of the wheel on a plate."""
     wheel = str(model.body(model.site_bodyid[sites[1]]).name).removeprefix("plate_")
     return (int(model.joint(f"spin_{wheel}").dofadr[0]),)
 
@@ -296,21 +300,30 @@ def _spin(model: mujoco.MjModel, sites: tuple[int, int]) -> tuple[int]:
 def _rolling(
     model: mujoco.MjModel, wheels: Sequence[tuple[int, tuple[int, int], int]], plates: dict[int, Any]
 ) -> Rolling:
-    """The rolling tyres: position among the bushings, sites and spin of each; their numbers are zero."""
-    order = sorted(int(place) for place in plates.values() if place >= 0)
+    """Return the record of the rolling tyres, with law parameters of zero.
+
+    Args:
+        model: compiled car.
+        wheels: index among the bushings, sites and spin coordinate of each rolling tyre.
+        plates: index of the plate by index among the bushings.
+    """
+    order = sorted(int(position) for position in plates.values() if position >= 0)
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites, _ in wheels]
     inertias = []
     for _, _, spin in wheels:
-        turning = np.flatnonzero(model.body_weldid == model.dof_bodyid[spin])
-        frames = np.zeros((len(turning), 9))
-        for frame, body in zip(frames, turning, strict=True):
+        rotating = np.flatnonzero(model.body_weldid == model.dof_bodyid[spin])
+        frames = np.zeros((len(rotating), 9))
+        for frame, body in zip(frames, rotating, strict=True):
             mujoco.mju_quat2Mat(frame, model.body_iquat[body])
-        inertias.append(float(np.sum(frames.reshape(-1, 3, 3)[:, 1] ** 2 * model.body_inertia[turning])))
-    count, course, rest = len(wheels), np.zeros(0), np.zeros(0)
+        inertias.append(float(np.sum(frames.reshape(-1, 3, 3)[:, 1] ** 2 * model.body_inertia[rotating])))
+    count, course, start = len(wheels), np.zeros(0), np.zeros(0)
     if count:
         joint = model.joint("body")
-        first, place = int(joint.dofadr[0]), int(joint.qposadr[0])
-        course, rest = np.array([first, first + 1, first + 5, place, place + 1]), model.qpos0[place : place + 2].copy()
+        first, position = int(joint.dofadr[0]), int(joint.qposadr[0])
+        course, start = (
+            np.array([first, first + 1, first + 5, position, position + 1]),
+            model.qpos0[position : position + 2].copy(),
+        )
     return Rolling(
         tyres=_whole([index for index, _, _ in wheels]),
         plates=_whole([order.index(int(plates[index])) for index, _, _ in wheels]),
@@ -325,7 +338,7 @@ def _rolling(
             [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 3
         ),
         course=_whole(course),
-        rest=rest,
+        rest=start,
         hold=np.zeros(0),
     )
 
@@ -333,7 +346,7 @@ def _rolling(
 def _reach(
     model: mujoco.MjModel, sites: tuple[int, int], further: Sequence[int], equality: int, first_rows: Index
 ) -> list[tuple[int, int, int, int]]:
-    """Rows, and the runs of columns in which the motion of two sites has derivatives."""
+    """Return first row, number of rows, first column and end of the nonzero columns of a connection."""
     columns = np.unique([*_moved_by(model, sites[0]), *_moved_by(model, sites[1]), *further])
     runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
     row, rows = int(first_rows[equality]), int(first_rows[equality + 1] - first_rows[equality])

@@ -1,4 +1,4 @@
-"""Rows: the elements of a compiled car with the weights of its time step, and the state of their laws."""
+"""Elements of a compiled car with the weights of its time step and the state of their laws."""
 
 from __future__ import annotations
 
@@ -15,49 +15,49 @@ from vehicle.engines.simulation.law_arrays import Numbers, law_names, with_numbe
 from vehicle.engines.simulation.row_layout import read_layout
 from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.engines.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
-from vehicle.model.laws.semi_active import RING
+from vehicle.model.laws.control_laws import RING
 
 Vector = npt.NDArray[np.float64]
 
 
 def prepare_model(model: mujoco.MjModel) -> None:
-    """Give springs and dampers inside joints the same centred treatment as the rows, through the armature.
+    """Integrate springs and dampers inside joints centred like the rows, by means of the armature.
 
     (M + B h/2 + K h2/12) a = ... - K q - B q' for the modal coordinates and the stabilizer torsion.
 
     Args:
-        model: compiled car, as generated; changed in place, once.
+        model: compiled car as generated; modified in place, so call this once.
     """
     model.dof_armature += joint_weights(model)
     model.dof_damping *= np.reshape(damping_factors(model), (-1, *[1] * (model.dof_damping.ndim - 1)))
-    # Bodies with a single slide take their mass from constants that are derived here.
+    # This updates the derived constants of bodies with a single slide.
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
 def joint_springs(model: mujoco.MjModel) -> Vector:
-    """Stiffness of the springs inside joints, per velocity coordinate; (nv,)."""
+    """Return the stiffness of the springs inside joints, per velocity coordinate; (nv,)."""
     stiffness = np.zeros(model.nv)
     stiffness[model.jnt_dofadr] = model.jnt_stiffness.reshape(model.njnt, -1)[:, 0]
     return stiffness
 
 
 def joint_dampers(model: mujoco.MjModel) -> Vector:
-    """Damping inside joints, per velocity coordinate; (nv,)."""
+    """Return the damping inside joints, per velocity coordinate; (nv,)."""
     return np.ravel(model.dof_damping.reshape(model.nv, -1)[:, 0])
 
 
 def damping_factors(model: mujoco.MjModel) -> Vector:
-    """Factor 1 + w2 h2/12 of the damping inside joints, per velocity coordinate; (nv,).
+    """Return the factor 1 + w2 h2/12 of the damping inside joints, per velocity coordinate; (nv,).
 
-    A centred damping is weaker by w2 h2/12 than the average of all else. That of a mode counts at its resonance, where
-    w2 = K / M, M being the diagonal of the mass matrix in the design position: 1 of a mode.
+    Centred damping is lower by w2 h2/12 than the averaged other forces. The damping of a mode matters at its resonance
+    w2 = K / M, M being the diagonal of the mass matrix in the design position, which is 1 for a mode.
     """
     squares = joint_springs(model) / model.dof_M0
     return np.asarray(1.0 + FOURTH_ORDER * squares * model.opt.timestep**2)
 
 
 def joint_weights(model: mujoco.MjModel) -> Vector:
-    """Weight B h/2 + K h2/12 [kg or kg m2] of the springs and dampers inside joints of a model as generated; (nv,)."""
+    """Return the weight B h/2 + K h2/12 [kg or kg m2] of springs and dampers inside joints, before `prepare_model`."""
     step = model.opt.timestep
     damping = np.zeros(model.nv)
     damping[model.jnt_dofadr] = joint_dampers(model)[model.jnt_dofadr]
@@ -65,16 +65,16 @@ def joint_weights(model: mujoco.MjModel) -> Vector:
 
 
 class Rows:
-    """The rows of one simulation: what their laws need, and what these remember between steps.
+    """Constraint rows of a simulation: records of the laws, their weights and their state between steps.
 
     Args:
-        model: compiled car; its armatures are changed by `prepare_model`.
-        preload: static forces as in `Weights`; zeros by default.
-        space: the modes where the rows integrate them; none by default.
+        model: compiled car.
+        preload: static forces, see `Weights`; zeros by default.
+        space: modes that the rows integrate; None if the model contains them.
 
     Attributes:
-        laws: names of all elements. names: of those in the order of `layout.bushings`.
-        layout, weights, state: records of the laws.
+        laws: names of all elements. names: names in the order of `layout.bushings`.
+        layout, weights, state: elements, step weights and state.
     """
 
     def __init__(self, model: mujoco.MjModel, preload: Vector | None = None, space: ModalSpace | None = None) -> None:
@@ -88,12 +88,12 @@ class Rows:
 
     @property
     def directions(self) -> dict[int, Vector]:
-        """P of the elements whose rows follow directions of their own, by number; (3, 3)."""
+        """Return the direction matrix P of the oblique elements, by index; (3, 3)."""
         b = self.layout.bushings
         return {int(index): way.reshape(3, 3) for index, way in zip(b.oblique, b.directions, strict=True)}
 
     def anew(self, preload: Vector | None = None) -> Rows:
-        """The same rows at rest with a state of their own, under these static forces; under the same by default."""
+        """Return a copy at rest with a new state, under these static forces or unchanged ones."""
         other = copy.copy(self)
         if preload is not None:
             other.layout = standing_on(self.layout, preload)
@@ -102,110 +102,110 @@ class Rows:
         return other
 
     def with_laws(self, numbers: Numbers) -> Rows:
-        """The rows of a car with other numbers of its laws; not for a run: weights and state are those of this one."""
+        """Return rows with other law parameters for a linearisation; weights and state remain unchanged."""
         other = copy.copy(self)
         timestep = float(self.model.opt.timestep)
         other.layout = standing_on(with_numbers(self.layout, self.laws, numbers, timestep), None)
         return other
 
     def reset(self) -> None:
-        """Forget the past: no branch forces, no rates."""
-        for own, fresh in zip(self.state, _at_rest(self.layout), strict=True):
-            own[...] = fresh
+        """Reset the state to rest: zero branch forces, zero rates."""
+        for present, fresh in zip(self.state, _at_rest(self.layout), strict=True):
+            present[...] = fresh
 
     def fields(self, data: mujoco.MjData) -> Fields:
-        """What the laws read and write in a state at fixed places."""
+        """Return the fields of a state with constant addresses that the laws read and write."""
         return Fields(**{name: getattr(data, name) for name in Fields._fields})
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Rewrite the rows of `data` without a compiler; installed as `mjcb_control`."""
+        """Rewrite the rows of `data` in Python, as `mjcb_control`."""
         efc = {name: getattr(data, f"efc_{name}") for name in Efc._fields}
         efc["J"] = efc["J"].reshape(self.layout.row_count, model.nv)
-        # A state that is lost is found by the guard of the run.
+        # The caller detects nonfinite states.
         with np.errstate(all="ignore"):
             rewrite(data.time, self.fields(data), Efc(**efc), self.layout, self.weights, self.state)
 
     def actuator_bias(self, model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
-        """Viscous force of a damper; installed as `mjcb_act_bias`."""
+        """Return the viscous force of a damper, as `mjcb_act_bias`."""
         return float(damper_force(index, self.fields(data), self.layout, self.state))
 
     @staticmethod
     def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
-        """No control acts on a damper; installed as `mjcb_act_gain`."""
+        """Return zero, as `mjcb_act_gain`: dampers have no control input."""
         return 0.0
 
     def whole(self, held: Vector, modal: Vector) -> Vector:
-        """Positions of the car, or velocities, of those that the model holds and all modal ones."""
-        own = self.layout.modes
-        own_place = own.positions if held.size == self.model.nq else own.velocities
-        return np.concatenate([held[: own_place.start], modal, held[own_place.stop :]])
+        """Insert all modal coordinates into positions or velocities of the model."""
+        modes = self.layout.modes
+        modal_range = modes.positions if held.size == self.model.nq else modes.velocities
+        return np.concatenate([held[: modal_range.start], modal, held[modal_range.stop :]])
 
     def modal_positions(self, data: mujoco.MjData) -> Vector:
-        """Modal coordinates after a step, at which the rows have not been evaluated yet; (modes,)."""
-        own, modes, (q, v) = self.layout.space, self.layout.modes, self.state.modal
-        if not own.mass.size:
+        """Return the modal coordinates after a step, before the rows are evaluated; (modes,)."""
+        space, modes, (q, v) = self.layout.space, self.layout.modes, self.state.modal
+        if not space.mass.size:
             return np.array(data.qpos[modes.positions])
         h = self.weights.timestep
         pull = (data.qvel[modes.velocities] - self.state.modal_rate) / h - self.state.modal_force
-        elastic = own.stiffness * (own.rest - q) - own.damping * v
-        return np.asarray(q + h * (v + h * (elastic / own.mass + own.spread @ pull)))
+        elastic = space.stiffness * (space.rest - q) - space.damping * v
+        return np.asarray(q + h * (v + h * (elastic / space.mass + space.spread @ pull)))
 
     def rotation(self, data: mujoco.MjData) -> tuple[Vector, Vector]:
-        """sin(angle) n of each moving part against its carrier in world axes (m, 3), and the carrier's frame."""
-        own, modes = self.layout.rotations, self.layout.modes
-        frames = data.site_xmat[own.sites].reshape(-1, 2, 3, 3)
-        for (element, side), psi in zip(own.nodes, self._node_rotations(data), strict=True):
+        """Return sin(angle) n of each moving part relative to its carrier, world axes, (m, 3), and carrier frames."""
+        elements, modes = self.layout.rotations, self.layout.modes
+        frames = data.site_xmat[elements.sites].reshape(-1, 2, 3, 3)
+        for (element, side), psi in zip(elements.nodes, self._node_rotations(data), strict=True):
             frames[element, side] += np.cross(psi @ data.qpos[modes.positions], frames[element, side], axisb=0, axisc=0)
         moving, carrier = frames[:, 0], frames[:, 1]
         return 0.5 * np.sum(np.cross(carrier, moving, axis=1), axis=2), carrier
 
     def rotation_jacobian(self, data: mujoco.MjData) -> Vector:
-        """Angular velocity of each moving part against its carrier over the velocity coordinates; (m, 3, nv)."""
-        found = np.zeros((len(self.layout.rotations.sites), 3, self.model.nv))
+        """Return the Jacobian of the angular velocity of each moving part relative to its carrier; (m, 3, nv)."""
+        jacobian = np.zeros((len(self.layout.rotations.sites), 3, self.model.nv))
         element, dof, sign = self.layout.rotations.turning.T
-        found[element, :, dof] = sign[:, None] * data.cdof[dof, :3]
+        jacobian[element, :, dof] = sign[:, None] * data.cdof[dof, :3]
         for (index, side), psi in zip(self.layout.rotations.nodes, self._node_rotations(data), strict=True):
-            found[index, :, self.layout.modes.velocities] += (1 - 2 * side) * psi
-        return found
+            jacobian[index, :, self.layout.modes.velocities] += (1 - 2 * side) * psi
+        return jacobian
 
     def _node_rotations(self, data: mujoco.MjData) -> Vector:
-        """R Psi of the nodes whose rotation is known; (k, 3, modes)."""
-        own, turn = self.layout.rotations, data.xmat[self.layout.modes.body].reshape(3, 3)
-        return np.asarray(turn @ own.shapes.reshape(len(own.nodes), 3, self.layout.modes.size))
+        """Return R Psi of the nodes with rotational mode shapes; (k, 3, modes)."""
+        elements, turn = self.layout.rotations, data.xmat[self.layout.modes.body].reshape(3, 3)
+        return np.asarray(turn @ elements.shapes.reshape(len(elements.nodes), 3, self.layout.modes.size))
 
 
 def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
-    """Weights of the rows for the time step of a model.
+    """Compute the weights of the rows for the time step of a model.
 
     Args:
-        model: with its step.
-        layout: of its elements.
-        preload: static forces.
+        model: model with its time step.
+        layout: elements of the model.
+        preload: static forces of the rows.
 
     Returns:
-        The weights.
+        Weights of the rows.
     """
     b, h = layout.bushings, float(model.opt.timestep)
-    # A step that holds the steepest piece of a curve holds them all.
+    # A step that is stable for the steepest segment of a curve is stable for all.
     stiffness, springs = b.stiffness.copy(), layout.springs.stiffness.copy()
     t = layout.tables
-    for kind, element, axis, steepest in zip(t.kinds, t.elements, t.axes, t.slopes.max(axis=1), strict=True):
-        if kind == 0:
+    for law_type, element, axis, steepest in zip(t.kinds, t.elements, t.axes, t.slopes.max(axis=1), strict=True):
+        if law_type == 0:
             stiffness[element, axis] = steepest
-        elif kind == 1:
+        elif law_type == 1:
             springs[element] = steepest
     masses = _row_masses(model, layout)
     averaged = np.where(b.averaged[:, None] > 0, average(stiffness * h**2 / masses), FOURTH_ORDER)
     present = b.branch_time > 0.0
     tau = np.where(present, b.branch_time, 1.0)
     decay = np.where(present, np.exp(-h / tau), 0.0)
-    # A branch may be as stiff as the sheet metal behind a mount; then its force is averaged over three steps too.
+    # A branch may be as stiff as the sheet metal of a mount; then its force is averaged over three steps too.
     phase = (stiffness + b.branch_stiffness) * h**2 / masses
     branch_average = average(phase)
     # Exact response of the branch to a rate that is linear over the step: mean rate and its slope.
     gain = np.where(present, b.branch_stiffness * tau * -np.expm1(-h / tau), 0.0)
     series = tau * (0.5 * h * (1.0 + np.exp(-h / tau)) + tau * np.expm1(-h / tau))
-    # A light part that the branch damps strongly must not ring.
+    # Avoid ringing of a low-mass part with strong branch damping.
     share = np.where(phase > FITTED_PHASE**2, 0.5, implicit_share(gain * h / masses))
     slope = np.where(present, b.branch_stiffness * series * 2.0 * share, 0.0)
     rise = branch_average * ((decay - 1.0) * slope + gain * h)
@@ -227,23 +227,23 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
 
 
 def _row_masses(model: mujoco.MjModel, layout: Layout) -> Vector:
-    """Mass 1 / (j M^-1 j') [kg] that each element row moves in the design position; (n, 3)."""
+    """Return the effective mass 1 / (j M^-1 j') [kg] of each element row in the design position; (n, 3)."""
     data = mujoco.MjData(model)
     mujoco.mj_fwdPosition(model, data)
     mass = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     rows = data.efc_J.reshape(-1, model.nv)[layout.bushings.rows.ravel()]
     for index, way in zip(layout.bushings.oblique, layout.bushings.directions, strict=True):
-        own = slice(3 * index, 3 * index + 3)
-        rows[own] = way.reshape(3, 3) @ rows[own]
+        element_rows = slice(3 * index, 3 * index + 3)
+        rows[element_rows] = way.reshape(3, 3) @ rows[element_rows]
     inverse = np.einsum("ij,ji->i", rows, np.linalg.solve(mass, rows.T))
-    # A row that nothing can move moves an infinite mass.
+    # The effective mass of an immovable row is infinite.
     moved = np.divide(1.0, inverse, out=np.full_like(inverse, np.inf), where=inverse > 0.0)
     return np.asarray(moved).reshape(layout.bushings.rows.shape)
 
 
 def _at_rest(layout: Layout) -> State:
-    """A state without a past."""
+    """Return a state at rest."""
     elements, tyres, springs = layout.bushings.rows.shape, len(layout.tyres), len(layout.springs.rows)
     shapes: dict[str, tuple[int, ...]] = dict.fromkeys(State._fields, elements)
     shapes |= dict.fromkeys(("plate_velocity", "plate_acceleration"), (tyres, 3))

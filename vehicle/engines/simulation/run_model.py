@@ -1,4 +1,4 @@
-"""The model that a run steps: that of the car, prepared for its step, with no more modal coordinates than are seen."""
+"""Model of a run: prepared for its step, with only the modal coordinates that move the attachments."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from vehicle.model.flexbody.superelement import attached_nodes
 Vector = npt.NDArray[np.float64]
 
 SEEN = 1e-10
-"""Singular value over the largest one below which a combination of modes does not move the attachments: round-off."""
+"""Relative singular value below which a combination of modes does not move the attachments: round-off."""
 
 
 def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
-    """The model of a run.
+    """Build the model of a run.
 
     Args:
-        car: compiled and trimmed car.
+        car: compiled car in static equilibrium.
 
     Returns:
-        The prepared model; what the callbacks need to know of the modes where they integrate these themselves.
+        Prepared model; modal parameters for the callbacks if they integrate the modes, else None.
     """
     model = prepared(car.spec, car.model.qpos_spring)
     modes = read_layout(model).modes
     if not modes.size:
         return model, None
     numbers = model_numbers(model)
-    shapes = [found.reshape(3, modes.size) for name, found in numbers.items() if _is_seen(name)]
+    shapes = [shape.reshape(3, modes.size) for name, shape in numbers.items() if _is_seen(name)]
     mass = model.dof_M0[modes.velocities]
     scaled = np.concatenate([np.zeros((0, modes.size)), *shapes]) / np.sqrt(mass)
     _, values, basis = np.linalg.svd(scaled, full_matrices=False)
@@ -56,15 +56,15 @@ def run_model(car: CarModel) -> tuple[mujoco.MjModel, ModalSpace | None]:
 
 
 def _is_seen(name: str) -> bool:
-    """Whether a field holds the shape of a node where something acts on the body, or is sensed by it."""
+    """Return True for a field with the mode shape of a node with a force or a sensor."""
     return name.startswith(("shape/", "rotation/")) and not name.startswith("shape/place/")
 
 
-def prepared(spec: mujoco.MjSpec, rest: Vector) -> mujoco.MjModel:
-    """A specification compiled and prepared for its step; `rest`: unstrained places of the joint springs."""
+def prepared(spec: mujoco.MjSpec, unstrained: Vector) -> mujoco.MjModel:
+    """Compile a specification and prepare it for its step; `unstrained`: positions of the joint springs."""
     model = spec.compile()
-    model.qpos_spring[:] = rest
+    model.qpos_spring[:] = unstrained
     prepare_model(model)
-    # The recorder takes accelerations from positions; the sensors are for those who load the model elsewhere.
+    # The recorder computes accelerations from positions; the sensors are for use of the model elsewhere.
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
     return model

@@ -1,4 +1,4 @@
-"""One step of a run around `mj_step`: the plates in, the sample out. The loop does this compiled or as it stands."""
+"""Plate motion before `mj_step` and sampling after it, for compiled code."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vehicle.engines.simulation.modal_space import modal_acceleration
 
 
 class Plates(NamedTuple):
-    """Motion of the plates over the steps (steps, t), and the places it goes to."""
+    """Motion of the plates over the steps (steps, t), and its destination arrays."""
 
     height: Table
     velocity: Table
@@ -59,9 +59,9 @@ class Sources(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Buffers that the samples are copied into, a row each; `load_frames` and `load_springs` serve the loads alone.
+    """Buffers with a row for each sample; only load channels use `load_frames` and `load_springs`.
 
-    `poses` has a row for each stored pose, `modal_pull` is the memory of one sample.
+    `poses` has a row for each stored pose; `modal_pull` is a working array.
     """
 
     places: Table
@@ -112,8 +112,15 @@ def empty_samples(count: int, s: Sources) -> Samples:
 
 
 class Order(NamedTuple):
-    """Addresses of `mj_step`, mjModel and mjData, offset of the constraint forces, steps to a sample, samples to a
-    pose, the flexible body and the first velocity of its modes, half a step back [s]."""
+    """Constants of the loop.
+
+    Attributes:
+        step, model, data: addresses of `mj_step`, mjModel and mjData.
+        force_offset: byte offset of the constraint forces in mjData.
+        every, pose_every: steps between two samples, samples between two poses.
+        body, first_velocity: id of the flexible body, first velocity coordinate of its modes.
+        half: minus half a time step [s].
+    """
 
     step: int
     model: int
@@ -127,7 +134,7 @@ class Order(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """Everything that the compiled loop works on."""
+    """Records of the compiled loop."""
 
     order: Order
     plates: Plates
@@ -137,14 +144,14 @@ class Loop(NamedTuple):
 
 @jitable
 def copy_row(row: Vector, values: Vector) -> None:
-    """Copy numbers one by one: an assignment of arrays compiles its error messages, which takes as long as all else."""
+    """Copy values in a loop: an array assignment would double the compile time by its error messages."""
     for entry in range(values.shape[0]):
         row[entry] = values[entry]
 
 
 @jitable
 def move_plates(index: int, p: Plates) -> None:
-    """Put the plates where they are at a step, and tell the tyre rows."""
+    """Set the plate heights of a step, and the plate motion of the tyre rows."""
     for plate in range(p.mocap.shape[0]):
         p.mocap_position[p.mocap[plate], 2] = p.height[index, plate]
         p.row_velocity[plate, 2] = p.velocity[index, plate]
@@ -153,7 +160,7 @@ def move_plates(index: int, p: Plates) -> None:
 
 @jitable
 def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
-    """Copy the modal coordinates of the last evaluation, and their velocities half a step later."""
+    """Store the modal coordinates of the last evaluation, and their velocities half a step later."""
     q, v, pull, first = s.modal[0], s.modal[1], b.modal_pull, order.first_velocity
     for j in range(pull.shape[0]):
         pull[j] = s.acceleration[first + j] - s.modal_force[j]
@@ -168,13 +175,13 @@ def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
 
 @jitable
 def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
-    """Copy the present time's forces, rates and positions.
+    """Store forces, rates and positions of the present time.
 
-    MuJoCo's velocity is that of the middle of a step: `half` a step of acceleration carries it to the present.
+    MuJoCo's velocity is that of the middle of a step; `half` times the acceleration extrapolates to the present.
     """
-    for place in range(s.sites.shape[0]):
+    for point in range(s.sites.shape[0]):
         for axis in range(3):
-            b.places[row, 3 * place + axis] = s.site_positions[s.sites[place], axis]
+            b.places[row, 3 * point + axis] = s.site_positions[s.sites[point], axis]
     copy_row(b.turn[row], s.orientation[order.body])
     keep_modes(row, order, s, b)
     for damper in range(s.dampers.shape[0]):
@@ -201,6 +208,6 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
         for entry in range(9):
             b.load_frames[row, 12 * body + 3 + entry] = s.orientation[s.load_bodies[body], entry]
     for spring in range(s.load_springs.shape[0]):
-        place, dof = s.load_springs[spring, 0], s.load_springs[spring, 1]
-        b.load_springs[row, 2 * spring] = s.position[place]
+        point, dof = s.load_springs[spring, 0], s.load_springs[spring, 1]
+        b.load_springs[row, 2 * spring] = s.position[point]
         b.load_springs[row, 2 * spring + 1] = s.velocity[dof] + half * s.acceleration[dof]

@@ -1,4 +1,4 @@
-"""Whether a car can stand as its parameters say: on all its supports, on springs of sensible sag, on a body."""
+"""Checks of the static equilibrium of a car: loads of all supports, spring sag, first mode of the body."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
 LARGEST_SAG = 0.5
-"""Static deflection [m] that no spring of a road vehicle has: a soft car spring sags by 0.2 m, an engine by 5 mm."""
+"""Maximum static deflection [m] of a spring: a soft car spring sags by 0.2 m, an engine by 5 mm."""
 
 
-def element_parameter(vehicle: Vehicle, name: str, kind: str, axis: str) -> str:
-    """Parameter path of an element of the model: of "bushing/tyre_fr" front.bushings.tyre and what follows.
+def element_parameter(vehicle: Vehicle, name: str, parameter: str, axis: str) -> str:
+    """Return the parameter path of an element: for "bushing/tyre_fr" front.bushings.tyre, then parameter and axis.
 
     Args:
         vehicle: the car.
-        name: of the element.
-        kind: its parameter.
-        axis: its component, or nothing.
+        name: name of the element in the model.
+        parameter: name of the parameter.
+        axis: component of the parameter, or "".
     """
-    group, _, place = name.partition("/")
+    group, _, element = name.partition("/")
     if group != "bushing":
-        return f"the attachment stiffness of {place} in body.superelement"
-    path = next(one.path for one in vehicle.composition.connections if one.name == place)
-    return ".".join(word for word in (path, kind, axis) if word)
+        return f"the attachment stiffness of {element} in body.superelement"
+    path = next(connection.path for connection in vehicle.composition.connections if connection.name == element)
+    return ".".join(word for word in (path, parameter, axis) if word)
 
 
 def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
-    """Refuse a body whose first elastic mode is among the rigid-body modes of the car.
+    """Reject a body with its first elastic mode among the rigid-body modes of the car.
 
     Raises:
-        ConfigurationError: naming the mode and the parameters.
+        ConfigurationError: the message contains the mode and the parameters.
     """
     scale, first = vehicle.body.frequency_scale, float(np.min(body.frequencies, initial=np.inf))
     if not vehicle.body.flexible or first * scale >= LOWEST_FIRST_MODE:
@@ -54,15 +54,15 @@ def require_body_modes(vehicle: Vehicle, body: Superelement) -> None:
 
 
 def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
-    """Refuse a car that would tip off one of its supports, or sag beyond any spring.
+    """Reject a car with a support without load, or with a static deflection above `LARGEST_SAG`.
 
     Args:
         vehicle: parameters.
-        rows: of its elements.
-        static: its static loads.
+        rows: rows of the car.
+        static: static loads of the car.
 
     Raises:
-        ConfigurationError: naming the parameters.
+        ConfigurationError: the message contains the parameters.
     """
     if vehicle.gravity == 0.0:
         return
@@ -78,7 +78,7 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
     preload, springs, bushings = static.preload, rows.layout.springs, rows.layout.bushings
     ground = ground_contacts(rows)
     looked = bushings.stiffness > 0.0
-    # On the ground the car is set down without horizontal force.
+    # Ground contacts carry no static horizontal force.
     looked[ground, :2] = False
     with np.errstate(divide="ignore", invalid="ignore"):
         sag = np.where(looked, np.abs(preload[bushings.rows]) / bushings.stiffness, 0.0)
@@ -87,8 +87,8 @@ def require_standing(vehicle: Vehicle, rows: Rows, static: StaticTrim) -> None:
         return
     placed = vehicle.composition.springs
     sags: dict[str, float] = {}
-    for spring, own in zip(placed, spring_sag.tolist(), strict=True):
-        sags[f"{spring.path}.stiffness"] = max(sags.get(f"{spring.path}.stiffness", 0.0), own)
+    for spring, deflection in zip(placed, spring_sag.tolist(), strict=True):
+        sags[f"{spring.path}.stiffness"] = max(sags.get(f"{spring.path}.stiffness", 0.0), deflection)
     for index, axis in np.argwhere(looked).tolist():
         sags[element_parameter(vehicle, rows.names[index], "stiffness", AXES[axis])] = float(sag[index, axis])
     worst = max(sags, key=lambda name: sags[name])

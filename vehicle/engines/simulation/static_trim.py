@@ -1,10 +1,10 @@
-"""Static trim: preloads with which the car stands in its design position under gravity.
+"""Static trim: preloads for static equilibrium of the car in its design position under gravity.
 
 A car whose elements were stress-free in the design position would settle by u under gravity:
 K u + Jc' lambda = g, Jc u = 0, with K = sum of J' K_e J over all elements. The forces that the elements then carry,
-f_e = -K_e J u, are given to them as preloads, and the reaction -lambda to the ideal joints: in the design position
-these forces and gravity are in equilibrium exactly, and the share of each element is that of its stiffness. Tyres and
-rubber blocks are set down without horizontal force: while the car settles, they slide; wheels do not turn meanwhile.
+f_e = -K_e J u, become their preloads, and the reaction -lambda that of the ideal joints: in the design position these
+forces and gravity are in exact equilibrium, distributed over the elements by stiffness. Tyres and rubber blocks slide
+while the car settles, so that they carry no horizontal force; wheels do not rotate meanwhile.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ Vector = npt.NDArray[np.float64]
 
 
 SLIDING_SHARE = 1e-5
-"""Share of the horizontal stiffness of the ground contacts left while the car settles; zero would let it drift.
+"""Factor of the horizontal stiffness of the ground contacts while the car settles; with zero it would drift.
 
-Ground contacts are the elements on the world or on a plate: tyres, and blocks. They hold in all three directions, and
-pull as well as push: there is no lift-off and no sliding in a run. A tyre that would pull is a warning of the run."""
+Ground contacts are the elements on the world or on a plate: tyres, and blocks. In a run they act in all three
+directions without sliding. Two-sided contacts can pull, which is a warning of the run."""
 
 
 LEAST_CONDITION = 1e-14
-"""Reciprocal condition below which a car counts as not held, in the norm of the largest singular value."""
+"""Minimum reciprocal condition number (2-norm) of a car without free motion."""
 
 CONDITION_SURE = 1e-11
-"""Reciprocal condition in the norm of sums, as LAPACK estimates it, above which that cannot be."""
+"""Reciprocal condition number (1-norm, LAPACK estimate) above which the 2-norm is not computed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -46,11 +46,11 @@ class StaticTrim:
     """Result of the trim.
 
     Attributes:
-        preload: static force of every constraint row in the axes of its element [N], and behind them the static
+        preload: static force of every constraint row in the axes of its element [N], followed by the static
             torques of the rotations [N m], (rows + 3 m,).
         tyre_load: vertical load of each tyre [N], by wheel.
-        support_load: vertical load of each other ground contact [N], by its name.
-        residual: largest displacement by which the trimmed car would still move [m].
+        support_load: vertical load of each other ground contact [N], by name.
+        residual: maximum displacement due to the remaining forces [m].
     """
 
     preload: Vector
@@ -61,12 +61,12 @@ class StaticTrim:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class AtRest:
-    """A car in its design position, whatever the numbers of its laws; n velocity coordinates.
+    """Car in its design position, independent of law parameters; n velocity coordinates.
 
     Attributes:
-        jacobian: displacement of all rows over the coordinates; (rows, n).
-        turned: rotations of the elements that resist them; (m, 3, n).
-        weight: generalised force of gravity, with what the elements answer to the round-off of their places; (n,).
+        jacobian: Jacobian of the displacements of all rows; (rows, n).
+        turned: Jacobian of the rotations of the elements with a rotational stiffness; (m, 3, n).
+        weight: generalised force of gravity, with element forces from the round-off of positions; (n,).
     """
 
     jacobian: Vector
@@ -78,14 +78,14 @@ def at_rest(rows: Rows) -> AtRest:
     """Read the design position of a compiled car.
 
     Args:
-        rows: of its elements, without static forces.
+        rows: rows of the car, without static forces.
     """
-    data, own = mujoco.MjData(rows.model), rows.layout.dampers
+    data, dampers = mujoco.MjData(rows.model), rows.layout.dampers
     with installed(rows):
         mujoco.mj_forward(rows.model, data)
-    # What is there besides is constant in the dampers, and in the springs inside joints.
+    # Remove the constant forces of the dampers and of the springs inside joints.
     weight = data.qfrc_smooth - data.qfrc_passive - unsolved(rows.layout, np.zeros(rows.model.nv))
-    weight[own.dofs] += own.laws["shift"] - own.laws["rest_force"]
+    weight[dampers.dofs] += dampers.laws["shift"] - dampers.laws["rest_force"]
     return AtRest(
         jacobian=data.efc_J.reshape(rows.layout.row_count, rows.model.nv).copy(),
         turned=rows.rotation_jacobian(data),
@@ -94,23 +94,23 @@ def at_rest(rows: Rows) -> AtRest:
 
 
 def trim(rows: Rows) -> StaticTrim:
-    """Find the preloads of a car and write those of its joint springs into the model.
+    """Compute the preloads of a car, and write the unstrained positions of joint springs into its model.
 
     Args:
-        rows: element rows of a compiled car, without static forces; their curves are left at their operating points,
-            and in their model `qpos_spring` of the modal coordinates and of the stabilizer is set in place.
+        rows: rows of a compiled car, without static forces; the operating points of its curves and `qpos_spring` of its
+            model are set in place.
 
     Returns:
-        The preloads of the rows, and the static loads.
+        Preloads of the rows and static loads.
 
     Raises:
-        SimulationError: the car is not held in all directions by its elements.
-        ConfigurationError: a curve that no point of carries its static force.
+        SimulationError: the car can move without resistance.
+        ConfigurationError: a static force is outside the range of the curve of its element.
     """
     model = rows.model
     model.qpos_spring[:] = model.qpos0
-    rest, joint_stiffness = at_rest(rows), joint_springs(model)
-    settled = settle(rows, rest, joint_stiffness)
+    design, joint_stiffness = at_rest(rows), joint_springs(model)
+    settled = settle(rows, design, joint_stiffness)
     for joint in range(model.njnt):
         dof = model.jnt_dofadr[joint]
         if joint_stiffness[dof] > 0.0:
@@ -127,12 +127,12 @@ def trim(rows: Rows) -> StaticTrim:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Settled:
-    """A car that has settled under gravity.
+    """Equilibrium of a car under gravity from its design position.
 
     Attributes:
-        preload: as of `StaticTrim`.
-        displacement: by which it has settled; (n,).
-        give: displacement and joint reactions under a force on the coordinates.
+        preload: see `StaticTrim`.
+        displacement: static displacement; (n,).
+        give: function from a generalised force to displacement and joint reactions.
     """
 
     preload: Vector
@@ -141,45 +141,45 @@ class Settled:
 
 
 MOST_TRIMS = 50
-"""Trims in which the operating points of the curves settle; two, as a rule."""
+"""Maximum number of iterations for the operating points of the curves; usually two are enough."""
 
 
-def settle(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
-    """Trim with every law over displacement as its tangent at the force that it carries; errors as of `trim`.
+def settle(rows: Rows, design: AtRest, joint_stiffness: Vector) -> Settled:
+    """Trim with the tangents of nonlinear laws, iterated to their operating points; raises like `trim`.
 
     Args:
-        rows: element rows without static forces; their curves are left at their operating points.
-        rest: design position of the car.
-        joint_stiffness: of the springs inside joints; (n,).
+        rows: rows without static forces; the operating points of their curves are set in place.
+        design: design position of the car.
+        joint_stiffness: stiffness of the springs inside joints; (n,).
     """
-    found = _settled(rows, rest, joint_stiffness)
+    settled = _settled(rows, design, joint_stiffness)
     t = rows.layout.tables
     if not len(t.at):
-        return found
+        return settled
     for _ in range(MOST_TRIMS):
-        last, rows.layout = rows.layout, standing_on(rows.layout, found.preload)
-        found = _settled(rows, rest, joint_stiffness)
+        last, rows.layout = rows.layout, standing_on(rows.layout, settled.preload)
+        settled = _settled(rows, design, joint_stiffness)
         now = rows.layout
-        same = ((one.bushings.stiffness, one.springs.stiffness, one.tables.at) for one in (now, last))
+        same = ((layout.bushings.stiffness, layout.springs.stiffness, layout.tables.at) for layout in (now, last))
         if all(map(np.allclose, *same)):
             break
     t = rows.layout.tables
-    for index, (kind, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
-        if kind < 2:
-            row = rows.layout.bushings.rows[element, axis] if kind == 0 else rows.layout.springs.rows[element]
-            needed, carried = -found.preload[row], float(curve_of(t, index).force(at))
+    for index, (law_type, element, axis, at) in enumerate(zip(t.kinds, t.elements, t.axes, t.at, strict=True)):
+        if law_type < 2:
+            row = rows.layout.bushings.rows[element, axis] if law_type == 0 else rows.layout.springs.rows[element]
+            needed, carried = -settled.preload[row], float(curve_of(t, index).force(at))
             if abs(carried - needed) > 1e-6 * max(abs(needed), 1.0):
-                name = rows.names[element] if kind == 0 else rows.laws.springs[element]
+                name = rows.names[element] if law_type == 0 else rows.laws.springs[element]
                 raise ConfigurationError(
                     f"the table of {name}: carries {carried:.4g} N nearest to the {needed:.4g} N "
                     "with which the car stands in its design position; give it points up to that force"
                 )
-    return found
+    return settled
 
 
-def _settled(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
-    """Trim of a car whose laws are linear."""
-    e, twist, jacobian, turned = rows.layout, rows.layout.rotations.stiffness, rest.jacobian, rest.turned
+def _settled(rows: Rows, design: AtRest, joint_stiffness: Vector) -> Settled:
+    """Compute the equilibrium with the present tangents of all laws."""
+    e, twist, jacobian, turned = rows.layout, rows.layout.rotations.stiffness, design.jacobian, design.turned
     row_stiffness, spins = _row_stiffness(rows), rows.layout.rolling.spins
     if len(spins):
         jacobian = jacobian.copy()
@@ -190,7 +190,7 @@ def _settled(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
     stiffness += flat.T @ (np.repeat(twist, 3)[:, None] * flat)
     stiffness[np.diag_indices(len(stiffness))] += joint_stiffness
     give = _factored(stiffness, jacobian[e.joints.ravel()])
-    displacement, reaction = give(unsolved(e, rest.weight))
+    displacement, reaction = give(unsolved(e, design.weight))
     preload = -row_stiffness @ (jacobian @ displacement)
     preload[e.joints.ravel()] = -reaction
     torque = -twist[:, None] * (turned @ displacement)
@@ -198,47 +198,47 @@ def _settled(rows: Rows, rest: AtRest, joint_stiffness: Vector) -> Settled:
 
 
 def _row_stiffness(rows: Rows) -> Vector:
-    """Stiffness of all rows [N/m], diagonal but for contacts with the ground along directions of their own."""
+    """Return the stiffness of all rows [N/m], diagonal except for oblique ground contacts."""
     e, b = rows.layout, rows.layout.bushings
     ground = ground_contacts(rows)
-    found = np.zeros(e.row_count)
-    found[b.rows] = b.stiffness
+    diagonal = np.zeros(e.row_count)
+    diagonal[b.rows] = b.stiffness
     rolling = e.rolling.tyres
-    found[b.rows[rolling, :2]] = b.branch_stiffness[rolling, :2]
-    found[b.rows[ground, :2]] *= SLIDING_SHARE
-    found[e.springs.rows] = e.springs.stiffness
-    whole = np.diag(found)
+    diagonal[b.rows[rolling, :2]] = b.branch_stiffness[rolling, :2]
+    diagonal[b.rows[ground, :2]] *= SLIDING_SHARE
+    diagonal[e.springs.rows] = e.springs.stiffness
+    whole = np.diag(diagonal)
     slide = np.diag(np.sqrt([SLIDING_SHARE, SLIDING_SHARE, 1.0]))
     for index, way in rows.directions.items():
         if index in ground:
-            own, back = b.rows[index], np.linalg.inv(way)
+            element_rows, back = b.rows[index], np.linalg.inv(way)
             level = slide @ (way.T * b.stiffness[index]) @ way @ slide
-            whole[np.ix_(own, own)] = back.T @ level @ back
+            whole[np.ix_(element_rows, element_rows)] = back.T @ level @ back
     return whole
 
 
 def unsolved(layout: Layout, weight: Vector) -> Vector:
-    """Forces on the coordinates at rest, but those of the implicit rows; of these, what the curves of dampers have.
+    """Return the generalised force at rest without the implicit rows: gravity, dampers and bump stops.
 
     Args:
-        layout: of the elements.
-        weight: force of gravity; (n,).
+        layout: layout of the elements.
+        weight: generalised force of gravity; (n,).
     """
-    own, t, force = layout.dampers, layout.tables, weight.copy()
-    force[own.dofs] -= own.laws["rest_force"]
+    dampers, t, force = layout.dampers, layout.tables, weight.copy()
+    force[dampers.dofs] -= dampers.laws["rest_force"]
     for index in np.flatnonzero(t.kinds == 2):
-        force[own.dofs[t.elements[index]]] -= curve_of(t, int(index)).force(0.0)
+        force[dampers.dofs[t.elements[index]]] -= curve_of(t, int(index)).force(0.0)
     return force
 
 
 def ground_contacts(rows: Rows) -> npt.NDArray[np.intp]:
-    """Positions of the elements between car and ground among the bushings; (k,)."""
+    """Return the indices of the ground contacts among the bushings; (k,)."""
     model, carriers = rows.model, rows.layout.bushings.carriers
     return np.flatnonzero((carriers == 0) | (model.body_mocapid[carriers] >= 0))
 
 
 def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vector, Vector]]:
-    """What gives displacement and joint reactions under a force: K u + Jc' lambda = f, Jc u = 0."""
+    """Return a solver of K u + Jc' lambda = f, Jc u = 0 for displacement and joint reactions."""
     size, count = len(stiffness), len(hard)
     system = np.block([[stiffness, hard.T], [hard, np.zeros((count, count))]])
     scale = np.ones(size + count)
@@ -246,28 +246,30 @@ def _factored(stiffness: Vector, hard: Vector) -> Callable[[Vector], tuple[Vecto
     scaled = system * scale[:, None] * scale[None, :]
     factors, pivots, singular = scipy.linalg.lapack.dgetrf(scaled)
     near, _ = scipy.linalg.lapack.dgecon(factors, np.abs(scaled).sum(axis=0).max())
-    # The estimate is off by a factor; near the limit the condition itself is worth its singular values.
+    # The estimate is inaccurate by a factor; near the limit, compute the exact condition number.
     if (singular or not near > CONDITION_SURE) and not np.linalg.cond(scaled) <= 1.0 / LEAST_CONDITION:
         raise SimulationError(
             "static trim: the car can move without resistance; check that every bushing has a stiffness in each "
-            "direction that nothing else holds"
+            "direction without another support"
         )
 
     def give(force: Vector) -> tuple[Vector, Vector]:
-        found, _ = scipy.linalg.lapack.dgetrs(factors, pivots, scale * np.concatenate([force, np.zeros(count)]))
-        solution = scale * found
+        scaled_solution, _ = scipy.linalg.lapack.dgetrs(
+            factors, pivots, scale * np.concatenate([force, np.zeros(count)])
+        )
+        solution = scale * scaled_solution
         return solution[:size], solution[size:]
 
     return give
 
 
 def static_loads(rows: Rows, settled: Settled, left: Vector) -> StaticTrim:
-    """Static loads of a car.
+    """Compute the static loads of a car.
 
     Args:
-        rows: of its elements.
-        settled: the car.
-        left: forces on the coordinates that are left with the preloads in place; (n,).
+        rows: rows of the car.
+        settled: equilibrium of the car.
+        left: generalised force that remains with the preloads in place; (n,).
     """
     preload, tyres = settled.preload, rows.layout.tyres
     remaining, _ = settled.give(left)

@@ -1,4 +1,4 @@
-"""What a step works on beside the elements: fields of mjData, weights of the step, state of the laws."""
+"""Records of a time step: fields of mjData, weights of the rows, state of the laws."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from vehicle.engines.simulation.element_records import Index, Layout, Table, Vec
 
 
 class Fields(NamedTuple):
-    """Fields of mjData at fixed places, by their names there."""
+    """Fields of mjData with constant addresses, under their names in mjData."""
 
     qpos: Vector
     qvel: Vector
@@ -22,7 +22,7 @@ class Fields(NamedTuple):
 
 
 class Efc(NamedTuple):
-    """Fields of mjData over the constraint rows, which each step may put elsewhere; `efc_` and these names there."""
+    """Fields of mjData over the constraint rows, whose addresses change between steps; in mjData `efc_` + name."""
 
     J: Table
     KBIP: Table
@@ -35,11 +35,11 @@ class Efc(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """What the rows hold for one time step; arrays over the elements as in `Layout`.
+    """Weights of the rows for a time step; arrays over the elements as in `Layout`.
 
-    `preload` holds the static force of every row in element axes [N], and behind them the static torques of the
-    rotations in the axes of their carriers [N m]; (rows + 3 m,). `decay`, `gain`, `slope` and `average` are those of
-    the Maxwell branches, (n, 3); `inertial` is the averaged stiffness of the tyres beta K h2, (t, 3).
+    `preload` contains the static force of every row in element axes [N], followed by the static torques of the
+    rotations in the axes of their carriers [N m]; (rows + 3 m,). `decay`, `gain`, `slope` and `average` belong to the
+    Maxwell branches, (n, 3); `inertial` is the averaged stiffness of the tyres beta K h2, (t, 3).
     """
 
     timestep: float
@@ -56,32 +56,32 @@ class Weights(NamedTuple):
 
 
 class State(NamedTuple):
-    """What the laws remember and leave behind; arrays over the elements as in `Layout`.
+    """State variables and results of the laws; arrays over the elements as in `Layout`.
 
     Attributes:
-        plate_velocity, plate_acceleration: of the plates, given from outside; (t, 3).
-        branch_past: part of the branch forces f2 known before the acceleration of the step is; (n, 3).
+        plate_velocity, plate_acceleration: motion of the plates, an input; (t, 3).
+        branch_past: part of the branch forces f2 that is independent of the acceleration of the step; (n, 3).
         branch_force: f2 at the last completed step; (n, 3).
-        last_rate: r' there; (n, 3). last_time: when that was, -1 at rest; (1,).
+        last_rate: r' at the last completed step; (n, 3). last_time: time of that step [s], -1 at rest; (1,).
         residual, rate: r [m] and r' [m/s] in element axes; (n, 3).
         explicit: f0 of every row [N]; (rows,).
-        force: f0 of the elements in their own axes; (n, 3). torque: of the rotations in world axes; (m, 3).
-        frame: of the sides at nodes whose rotation is known, row by row; (k, 9).
+        force: f0 in element axes; (n, 3). torque: torques of the rotations in world axes; (m, 3).
+        frame: frames at the nodes with rotational mode shapes, row by row; (k, 9).
         ends, line: lower and upper ends of the main springs with their modal displacement, and their directions.
-        stretch: displacement of the laws that are curves; (t,).
+        stretch: displacement of the nonlinear laws; (t,).
         deflection: modal displacement and velocity of the nodes in body axes; (2, 3 g).
         modal: modal coordinates and their velocities at the last evaluation; (2, modes).
-        modal_force, modal_rate, modal_pull: of the coordinates that stand for them: force of their springs, velocity,
-            and what the attachments pulled over the last step; (r,), none where the model holds the modes.
-        heading: of the rolling wheels [rad] now and at the time before; (2, w).
-        turning: angular velocity of their hubs [rad/s] now, x, y, z, and at the time before; (w, 6).
-        slope: what acts on their hubs beside the rows: force along x [N], moment [N m]; (w, 4).
-        push: all such forces on the coordinates; (nv,), none where the tyres stand.
-        contact: elastic force of the one-sided elements [N], and their r' at the last evaluation [m/s]; (2, k).
-        coefficient: what the dampers have in place of D v, F = c v [N s/m]; (w,).
-        sensed: velocities at the sensors in the middle of the past step and of the one before it [m/s]; (2 k, 2).
-        past: what controlled dampers remember, as of `vehicle.model.laws.semi_active`; (k, ...).
-        steps: number of the present step; (1,).
+        modal_force, modal_rate, modal_pull: spring force, velocity and attachment force over the last step, of the
+            reduced modal coordinates; (r,), empty if the model contains the modes.
+        heading: heading of the rolling wheels [rad], present and previous; (2, w).
+        turning: angular velocity of the hubs [rad/s], present x, y, z and previous; (w, 6).
+        slope: explicit force along x [N] and moment [N m] on the hubs; (w, 4).
+        push: generalised force of all explicit forces of a rolling car; (nv,), empty on a shaker.
+        contact: elastic force of one-sided elements [N], and r' at the last evaluation [m/s]; (2, k).
+        coefficient: damping coefficient c of the dampers [N s/m]; (w,).
+        sensed: velocities at the sensors in the middle of the last two steps [m/s], latest first; (2 k, 2).
+        past: memory of the controlled dampers, see `vehicle.model.laws.control_laws`; (k, ...).
+        steps: index of the present step; (1,).
     """
 
     plate_velocity: Table
@@ -116,11 +116,11 @@ class State(NamedTuple):
 
 
 class Ticket(NamedTuple):
-    """How a compiled callback finds and checks its state.
+    """Addresses with which a compiled callback finds and checks its state.
 
     Attributes:
-        model: address of its mjModel.
-        rows: number of constraint rows that the records were made for.
+        model: address of mjModel.
+        rows: number of constraint rows in the records.
         row_count, time: byte offsets of `nefc` and `time` in mjData.
         efc: byte offsets of the pointers of `Efc`, in its order; (8,).
     """
@@ -133,7 +133,7 @@ class Ticket(NamedTuple):
 
 
 class Simulation(NamedTuple):
-    """Everything a compiled callback works on."""
+    """Records of a compiled callback."""
 
     ticket: Ticket
     fields: Fields

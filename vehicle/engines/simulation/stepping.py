@@ -1,4 +1,4 @@
-"""The one stepping loop: plates in, recording out, guarded against everything MuJoCo would pass over in silence."""
+"""Stepping loop of a run, with checks for states and warnings that MuJoCo ignores."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ Vector = npt.NDArray[np.float64]
 Progress = Callable[[float], None]
 
 POSE_RATE = 100.0
-"""Rate [Hz] of the poses kept for films."""
+"""Rate [Hz] of the stored poses for films."""
 
 
 LARGEST_STATE = 1e8
-"""Velocity or acceleration beyond which a state is lost, long before it is infinite; the limit of MuJoCo is higher."""
+"""Maximum velocity or acceleration of a valid state; the limit of MuJoCo is higher."""
 
 
 def simulate(
@@ -44,19 +44,19 @@ def simulate(
     """Run a car on its shaker plates.
 
     Args:
-        car: compiled and trimmed car.
+        car: compiled car in static equilibrium.
         signal: displacement of the plates.
-        progress: called with the finished fraction [-] now and then.
-        requested: names of channels to be recorded beside the usual ones: loads, settings.
+        progress: function that is called with the finished fraction [-] about every `CHUNK` samples.
+        requested: names of additional channels: loads and damper settings.
 
     Returns:
-        The recording, sampled at `solver.record_rate`.
+        Recording, sampled at `solver.record_rate`.
 
     Raises:
-        ConfigurationError: the recording rate is no whole fraction of the step rate.
-        MissingPartError: numba or the installed MuJoCo version does not fit; the message says why.
-        SimulationError: the state is no longer finite, MuJoCo warned, or the energy balance does not close; the
-            message says when and where.
+        ConfigurationError: the recording rate is not an integer fraction of the step rate.
+        MissingPartError: numba is missing, or the installed MuJoCo version does not match its declarations.
+        SimulationError: the state is not finite, MuJoCo warned, or the energy balance does not close; the
+            message contains time and joint.
     """
     every = record_every(car)
     model, space = run_model(car)
@@ -70,7 +70,7 @@ def simulate(
     level = data.mocap_pos[mocap, 2].copy()
     unit = every * pose_every
     motion = partial(PlateArrays.of, signal, step, count, car.vehicle.wheels, AHEAD * every)
-    block = PlateBlock(motion, count + 1 + AHEAD * every, level, unit=unit, least=(CHUNK + 1) * every + unit)
+    block = PlateBlock(motion, count + 1 + AHEAD * every, level, unit=unit, minimum=(CHUNK + 1) * every + unit)
     plates = Plates(
         height=block.height,
         velocity=block.velocity,
@@ -90,10 +90,10 @@ def simulate(
     with installed(rows, compiled):
         index = 0
         while index <= count:
-            # The first and the last sample also ask for the energy of the car, so they are taken one by one.
+            # The first and the last sample need the energy of the car, so their steps are taken singly.
             last = every * min(recorder.done + CHUNK - 1, count // every - 1)
             several = 0 < index <= last
-            # From the first of the samples in the buffers on, which are evaluated together.
+            # The block must contain all samples in the buffers, which are evaluated together.
             offset = block.reach(min(index, every * recorder.done), last if several else index)
             if several:
                 recorder.keep(last, advance(index - offset, last - offset, recorder.filled))
@@ -115,7 +115,7 @@ def simulate(
     wall = clock.perf_counter() - started
     warnings = _warnings(data)
     if warnings:
-        raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; no result of it may be used")
+        raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; discard its results")
     energies = recorder.energies()
     statistics = Statistics(
         engine="mujoco",
@@ -131,7 +131,7 @@ def simulate(
 
 
 def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, recorded: bool, moved: bool) -> None:
-    """One step, or the evaluation that ends the run; recorded where asked."""
+    """Take a step, or evaluate the final state if not `moved`; store a sample if `recorded`."""
     if recorded:
         recorder.before_step()
     if moved:
@@ -143,10 +143,10 @@ def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, rec
 
 
 def record_every(car: CarModel) -> int:
-    """Number of steps between two recorded samples.
+    """Return the number of steps between two recorded samples.
 
     Raises:
-        ConfigurationError: the two rates do not divide.
+        ConfigurationError: the recording rate is not an integer fraction of the step rate.
     """
     rate, step = car.vehicle.solver.record_rate, car.vehicle.solver.step
     every = 1.0 / (rate * step)
@@ -158,7 +158,7 @@ def record_every(car: CarModel) -> int:
 
 
 def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, interval: float) -> None:
-    """Stop at the first state that is not finite; MuJoCo itself would go on."""
+    """Raise an error for a nonfinite state; MuJoCo would continue."""
     good = recorder.finite_samples()
     state = np.concatenate([data.qvel, data.qacc])
     if good == recorder.filled and np.all(np.isfinite(state)) and np.max(np.abs(state)) < LARGEST_STATE:
@@ -168,18 +168,17 @@ def _check_state(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder,
     pose_time, pose = recorder.last_pose(good)
     raise SimulationError(
         f"the state is no longer finite at t = {(recorder.done + good) * interval:.4f} s (joint {joint}); "
-        "the step answers the car at rest, so it is this motion that it cannot hold: check the input, and the "
-        "parameters that you changed",
+        "the step is stable for the car at rest, but not for this motion: check the input and the changed parameters",
         state={"time": np.array(pose_time), "qpos": pose},
     )
 
 
 def _warnings(data: mujoco.MjData) -> list[str]:
-    """Warnings MuJoCo counted during the run."""
+    """Return the warnings that MuJoCo counted during the run."""
     kinds = mujoco.mjtWarning
-    found = []
-    for kind in range(int(kinds.mjNWARNING)):
-        number = int(data.warning[kind].number)
+    messages = []
+    for warning_type in range(int(kinds.mjNWARNING)):
+        number = int(data.warning[warning_type].number)
         if number:
-            found.append(f"{kinds(kind).name} ({number} times)")
-    return found
+            messages.append(f"{kinds(warning_type).name} ({number} times)")
+    return messages

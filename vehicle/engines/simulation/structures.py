@@ -1,4 +1,4 @@
-"""Where the fields of MuJoCo's C structures lie: byte offsets from the published declarations, checked by address."""
+"""Byte offsets of fields in MuJoCo's C structures, from its published declarations, checked by address."""
 
 from __future__ import annotations
 
@@ -58,17 +58,17 @@ class Offsets(NamedTuple):
 
 @functools.cache
 def layout(name: str, last: str = "") -> Layout:
-    """The ctypes form of a structure of MuJoCo, from `mujoco.introspect`.
+    """Return a structure of MuJoCo as a ctypes class, from `mujoco.introspect`.
 
     Args:
         name: name of the structure, like "mjData".
-        last: field after which the rest may be left out.
+        last: last field of the class; all fields by default.
 
     Returns:
-        A structure class, of which only the layout is used.
+        Structure class; only its layout is used.
 
     Raises:
-        LookupError: the declarations hold a type that is not known here.
+        LookupError: the declarations contain an unsupported type.
     """
     from mujoco.introspect import structs
 
@@ -81,16 +81,16 @@ def layout(name: str, last: str = "") -> Layout:
 
 
 def _ctype(declared: Any) -> Any:
-    """The ctypes type of a declared one."""
+    """Convert a declared type to a ctypes type."""
     from mujoco.introspect import ast_nodes, enums, structs
 
     if isinstance(declared, ast_nodes.PointerType):
         return ctypes.c_void_p
     if isinstance(declared, ast_nodes.ArrayType):
-        kind = _ctype(declared.inner_type)
+        element_type = _ctype(declared.inner_type)
         for extent in reversed(declared.extents):
-            kind = kind * extent
-        return kind
+            element_type = element_type * extent
+        return element_type
     if not isinstance(declared, ast_nodes.ValueType):
         raise LookupError(f"type {declared!r}")
     name = declared.name.removeprefix("struct ")
@@ -111,41 +111,41 @@ def user_size_offset(model: mujoco.MjModel) -> int:
     """
     structure = layout("mjModel", "nuserdata")
     seen = structure.from_address(model._address)
-    for name, kind in structure._fields_:  # type: ignore[misc]
-        if kind is ctypes.c_int64 and hasattr(model, name) and getattr(seen, name) != getattr(model, name):
+    for name, field_type in structure._fields_:  # type: ignore[misc]
+        if field_type is ctypes.c_int64 and hasattr(model, name) and getattr(seen, name) != getattr(model, name):
             raise LookupError(f"mjModel.{name}")
     return int(structure.nuserdata.offset)
 
 
 def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]:
-    """Byte offsets of array pointers in mjData.
+    """Return the byte offsets of array pointers in mjData.
 
     Args:
-        data: state in which the arrays exist, so after a forward evaluation.
-        names: the arrays.
+        data: state after a forward evaluation, so that the arrays exist.
+        names: names of the arrays.
 
     Returns:
-        Name to offset [bytes].
+        Offset [bytes] by name.
 
     Raises:
-        LookupError: a pointer is not where the declarations say.
+        LookupError: a pointer has another offset than declared.
     """
     structure = layout("mjData")
     seen = structure.from_address(data._address)
-    found = {}
+    offset_by_name = {}
     for name in names:
         array = getattr(data, name)
         if not array.size or getattr(seen, name, None) != array.ctypes.data:
             raise LookupError(f"mjData.{name}")
-        found[name] = int(getattr(structure, name).offset)
-    return found
+        offset_by_name[name] = int(getattr(structure, name).offset)
+    return offset_by_name
 
 
 def scalar_offsets(data: mujoco.MjData) -> tuple[int, int]:
-    """Byte offsets of `time` and `nefc` in mjData.
+    """Return the byte offsets of `time` and `nefc` in mjData.
 
     Raises:
-        LookupError: a value is not where the declarations say.
+        LookupError: a value has another offset than declared.
     """
     structure = layout("mjData")
     seen = structure.from_address(data._address)
@@ -178,15 +178,15 @@ def step_address() -> int:
 
 @functools.cache
 def offsets() -> Offsets:
-    """Return what compiled code reads by address, checked once in a process with a small model.
+    """Return the offsets and addresses for compiled code, checked once in a process with a small model.
 
     Raises:
-        MissingPartError: a field is not located where the declarations of the installed MuJoCo version say.
+        MissingPartError: a field has another offset than declared by the installed MuJoCo version.
     """
     model = mujoco.MjModel.from_xml_string(PROBE)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    # Not zero, so that a field of zeros is not taken for the time.
+    # A nonzero time, so that a zero field does not pass the check.
     data.time = 0.734
     try:
         time, row_count = scalar_offsets(data)

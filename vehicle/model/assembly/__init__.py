@@ -1,1 +1,1 @@
-"""Parameters and superelement into a MuJoCo model; the only room that names MJCF elements."""
+"""Generation of the MuJoCo model from parameters and superelement; the only package that creates MJCF elements."""

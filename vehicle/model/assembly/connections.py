@@ -1,4 +1,4 @@
-"""Force laws of the connections of the car: the published bushings, with the local stiffness of the body in series."""
+"""Force laws of the connections of the car: bushings in series with the local stiffness of the body."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
@@ -36,13 +36,13 @@ class ElementLaw:
     Attributes:
         stiffness: K [N/m], shape (3,).
         damping: B [N s/m], shape (3,).
-        branch_stiffness: K2 [N/m], shape (3,); zero where there is no branch.
-        branch_time: tau [s], shape (3,); zero where there is no branch.
+        branch_stiffness: K2 [N/m], shape (3,); zero without a branch.
+        branch_time: tau [s], shape (3,); zero without a branch.
         rotational_stiffness: K_rot [N m/rad].
-        averaged: True where the stiffness is too high for the explicit step and is averaged over three steps
+        averaged: True if the stiffness is too high for the explicit step and is averaged over three steps
             (Newmark with beta 1/4); False for the fourth-order average (beta 1/12).
-        local: stiffness of the attachment [N/m], in series with what is a table; (3,).
-        directions: P, the directions that replace the axes, a row each; (3, 3). None: the axes of the carrier.
+        local: stiffness of the attachment [N/m] in series with a table, shape (3,).
+        directions: rows are the directions that replace the axes, shape (3, 3); None for the axes of the carrier.
     """
 
     stiffness: Vector
@@ -56,15 +56,15 @@ class ElementLaw:
 
 
 def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> ElementLaw | None:
-    """Law of a connection; None of an ideal ball joint where nothing gives way.
+    """Return the law of a connection; None for a rigid ball joint.
 
     Args:
-        connection: as composed.
+        connection: connection of the composition.
         body: parameters of the trimmed body.
-        superelement: its model; gives the local stiffness of its attachment nodes.
+        superelement: model of the body, with the local flexibility of its attachment nodes.
 
     Raises:
-        DataError: the body has no node there.
+        DataError: the body has no node at the connection.
 
     Source: Bommer 2006, section 3.1.3.
     """
@@ -93,7 +93,7 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
 
 
 def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
-    """Law of a tyre that rolls: slip C/V in series with the carcass along x and y, the standing one along z."""
+    """Return the law of a rolling tyre: slip C/V in series with the carcass along x and y; along z as at rest."""
     slip = np.array([tyre.slip_stiffness, tyre.cornering_stiffness, 0.0], dtype=float)
     carcass = np.array([tyre.carcass_longitudinal, tyre.carcass_lateral, 0.0], dtype=float)
     time = np.divide(slip, speed * carcass, out=np.zeros(3), where=carcass > 0.0)
@@ -107,7 +107,7 @@ def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
 
 
 def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> ElementLaw:
-    """Law of a bushing, with the local stiffness of its attachment point in series, exactly."""
+    """Return the law of a bushing in exact series with the local stiffness of its attachment point."""
     stiffness = np.array(parameters.stiffness)
     damping = np.array(parameters.damping)
     branch = np.zeros((2, 3))  # K2 [N/m] and tau [s]
@@ -117,13 +117,13 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
     if local is not None:
         for axis, name in enumerate(AXES):
             if getattr(parameters, f"table_{name}", None) is not None:
-                # Behind a table the spring of the attachment is in its points, and the damper stays beside both.
+                # The points of a table include the spring of the attachment; the damper stays parallel to both.
                 continue
-            # A dashpot beside the branch (Dz1, zero in the source) stays outside the series.
+            # A dashpot parallel to the branch (Dz1, zero in the source) stays outside the series.
             elastomer = float(branch[0, axis]), float(branch[0, axis] * branch[1, axis])
-            own = (float(stiffness[axis]), *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
+            element = (float(stiffness[axis]), *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
             damping[axis] = damping[axis] if elastomer[0] > 0.0 else 0.0
-            stiffness[axis], joined, time = _behind(float(local[axis]), own)
+            stiffness[axis], joined, time = _in_series(float(local[axis]), element)
             if time > 0.0:
                 branch[:, axis] = joined, time
     return ElementLaw(
@@ -136,14 +136,14 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
     )
 
 
-# The two sides of a car, and all cars of a sweep that leave an axis alone, ask for the same again and again.
+# Both sides of a car, and all cars of a sweep with an unchanged axis, need the same values.
 @lru_cache(maxsize=4096)
-def _behind(local: float, own: tuple[float, ...]) -> tuple[float, float, float]:
-    """Stiffness, branch stiffness and branch time of a bushing K, B or an elastomer K1, K2, D2 behind a spring."""
+def _in_series(local: float, constants: tuple[float, ...]) -> tuple[float, float, float]:
+    """Return stiffness, branch stiffness and branch time of a bushing K, B or elastomer K1, K2, D2 with a spring."""
     element = (
-        Kelvin(stiffness=own[0], damping=own[1])
-        if len(own) == 2
-        else Maxwell(stiffness=own[0], branch_stiffness=own[1], branch_damping=own[2])
+        Kelvin(stiffness=constants[0], damping=constants[1])
+        if len(constants) == 2
+        else Maxwell(stiffness=constants[0], branch_stiffness=constants[1], branch_damping=constants[2])
     )
     joined = in_series(local, element)
     time = float(joined.relaxation_time) if float(joined.branch_damping) > 0.0 else 0.0

@@ -1,8 +1,8 @@
-"""Laws behind an attachment whose residual flexibility couples the axes, as that of every finite-element body does.
+"""Laws in series with an attachment whose residual flexibility couples the axes, as in finite-element bodies.
 
-A bushing K, B in series with a spring G^-1 has the static stiffness K_s = K (1 + G K)^-1, of which it takes the share
-T = (1 + G K)^-1 of the displacement; its damper acts as T' B T, and its Maxwell branch along T' e. Along directions
-p_i, which need not be perpendicular, K_s = sum of k_i p_i p_i' and the damping sum of b_i p_i p_i': three rows again.
+A bushing K, B in series with a spring G^-1 has the static stiffness K_s = K (1 + G K)^-1. Its share of the displacement
+is T = (1 + G K)^-1; its damper acts as T' B T, and its Maxwell branch along T' e. Along directions p_i, which need not
+be perpendicular, K_s = sum of k_i p_i p_i' and the damping sum of b_i p_i p_i': three rows again.
 
 K_s is exact. The damper is to first order in G w B, the share by which its own force moves the attachment: 0.03 at
 50 Hz of a mount with 2000 N s/m on 2e7 N/m, which changes the damping by its square.
@@ -18,39 +18,39 @@ from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.elements import Bushing, Hydromount
+from vehicle.model.parameters.force_elements import Bushing, Hydromount
 from vehicle.names import AXES
 
 STRUCTURAL_LOSS_TIME = 1e-4
-"""Damping over stiffness [s] of the local stiffness behind an ideal joint.
+"""Damping over stiffness [s] of the local stiffness in series with an ideal joint.
 
 Assumed: a loss factor of 2 % at 30 Hz, usual for welded steel structures.
 """
 _COUPLED = 1e-9
-"""Off-diagonal flexibility over the largest one below which the axes are those of the carrier."""
+"""Maximum ratio of off-diagonal to diagonal flexibility at which the axes are those of the carrier."""
 _STIFFEST = 1e-11
-"""Flexibility below which an attachment counts as this [m/N]: stiffer than any sheet metal, and not without bound."""
+"""Minimum flexibility of an attachment [m/N]: stiffer than any sheet metal, but finite."""
 
 
 def is_coupled(flexibility: FloatArray) -> bool:
-    """Whether a flexibility couples the axes, or is zero along one."""
-    own = np.diag(flexibility)
-    apart = np.abs(flexibility - np.diag(own)).max()
-    return bool(apart > _COUPLED * own.max() or own.min() < _STIFFEST)
+    """Return True if a flexibility couples the axes, or is zero along an axis."""
+    diagonal = np.diag(flexibility)
+    coupling = np.abs(flexibility - np.diag(diagonal)).max()
+    return bool(coupling > _COUPLED * diagonal.max() or diagonal.min() < _STIFFEST)
 
 
 def coupled_law(
     connection: PlacedConnection, flexibility: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Rows of a connection behind an attachment.
+    """Return the rows of a connection in series with an attachment.
 
     Args:
-        connection: as composed.
+        connection: connection of the composition.
         flexibility: G in the axes of the carrier [m/N], shape (3, 3).
 
     Returns:
         Stiffness [N/m], damping [N s/m], branch stiffness [N/m] and branch time [s] along three directions, shape (3,);
-        the directions, a row each, shape (3, 3).
+        the directions as rows, shape (3, 3).
 
     Raises:
         ConfigurationError: the law is a table over displacement.
@@ -65,26 +65,26 @@ def coupled_law(
     for name in AXES:
         if getattr(law, f"table_{name}", None) is not None:
             raise ConfigurationError(
-                f"{connection.path}.table_{name}: found a table behind an attachment whose residual flexibility "
-                "couples the axes; leave the table out, use a body model with one stiffness along each axis, or "
+                f"{connection.path}.table_{name}: found a table in series with an attachment whose residual "
+                "flexibility couples the axes; remove the table, use a model with one stiffness for each axis, or "
                 "body.attachment_flexibility = false"
             )
     axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
-    own = (axes.T * law.stiffness) @ axes
-    share = np.linalg.inv(np.eye(3) + attachment @ own)
-    static = own @ share
+    bushing_stiffness = (axes.T * law.stiffness) @ axes
+    share = np.linalg.inv(np.eye(3) + attachment @ bushing_stiffness)
+    static = bushing_stiffness @ share
     static = 0.5 * (static + static.T)
     damping = share.T @ (axes.T * law.damping) @ axes @ share
     branch = _branch(law)
     if branch is None:
-        stiffness, drag, directions = _together(static, damping, np.eye(3))
+        stiffness, drag, directions = _diagonalised(static, damping, np.eye(3))
         return stiffness, drag, none, none, directions
     joined = in_series(1.0 / float(axes[2] @ attachment @ axes[2]), branch)
     along = share.T @ axes[2] / np.linalg.norm(share.T @ axes[2])
     own_part = 1.0 / float(along @ np.linalg.solve(static, along))
-    rest = static - own_part * np.outer(along, along)
-    _, basis = np.linalg.eigh(rest)
-    stiffness, drag, directions = _together(rest, damping, basis[:, 1:])
+    remainder = static - own_part * np.outer(along, along)
+    _, basis = np.linalg.eigh(remainder)
+    stiffness, drag, directions = _diagonalised(remainder, damping, basis[:, 1:])
     return (
         np.append(stiffness, own_part),
         np.append(drag, 0.0),
@@ -102,14 +102,14 @@ def _branch(law: Bushing | Hydromount) -> Maxwell | None:
     )
 
 
-def _together(
+def _diagonalised(
     stiffness: FloatArray, damping: FloatArray, basis: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Directions along which two symmetric matrices are diagonal, in the space of a basis (3, k): k, b, P (k, 3)."""
+    """Return k, b and directions (k, 3) that diagonalise two symmetric matrices in the space of a basis (3, k)."""
     inner, drag = basis.T @ stiffness @ basis, basis.T @ damping @ basis
     scale = np.trace(inner) / max(float(np.trace(drag)), 1e-12)
     whole = inner + scale * drag
-    whole += 1e-12 * np.trace(whole) * np.eye(len(whole))  # where an axis has neither
+    whole += 1e-12 * np.trace(whole) * np.eye(len(whole))  # for an axis without stiffness and damping
     shares, vectors = scipy.linalg.eigh(scale * drag, whole)  # V' whole V = 1
     directions = np.linalg.inv(vectors) @ basis.T
     length = np.linalg.norm(directions, axis=1)

@@ -1,4 +1,4 @@
-"""Parameters and superelement into a MuJoCo specification of the car on its rig."""
+"""MuJoCo specification of the car on its rig, built from parameters and superelement."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.assembly.elements import ElementBuilder
+from vehicle.model.assembly.element_builder import ElementBuilder
 from vehicle.model.flexbody.attached_mass import with_attached_masses
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
 from vehicle.model.parameters.vehicle import Vehicle
@@ -19,13 +19,13 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Assembly:
-    """What the generator made.
+    """Generated specification of a car.
 
     Attributes:
         spec: the specification; `spec.compile()` gives the model.
-        vehicle: the parameters it was made from.
-        superelement: the flexible body with the masses that are fixed to it.
-        origins: where each body frame sits in the design position [m], by body name.
+        vehicle: parameters of the car.
+        superelement: flexible body with the masses of the parts fixed to it.
+        origins: origin of each body frame in the design position [m], by body name.
     """
 
     spec: mujoco.MjSpec
@@ -37,7 +37,7 @@ class Assembly:
 def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
     """Build the car: trimmed body, then everything of its composition, in that order.
 
-    Every body frame is parallel to the vehicle frame in the design position and sits at the part's centre of gravity.
+    Every body frame is parallel to the vehicle frame in the design position, with its origin at the centre of gravity.
 
     Args:
         vehicle: parameters.
@@ -47,14 +47,14 @@ def assemble(vehicle: Vehicle, trimmed_body: Superelement) -> Assembly:
         The assembly; `spec.compile()` gives the model.
 
     Raises:
-        DataError: the superelement lacks a node where something acts on the body.
+        DataError: the superelement lacks a node at a point where a force acts.
     """
     masses = fixed_masses(vehicle, trimmed_body)
     return assemble_on(vehicle, with_attached_masses(trimmed_body, masses) if masses else trimmed_body)
 
 
 def fixed_masses(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, float]:
-    """Return the masses [kg] of the parts fixed to a flexible body, by node; arguments and errors as `assemble`."""
+    """Return the masses [kg] of the parts fixed to a flexible body, by node; arguments and errors: see `assemble`."""
     nodes = attached_nodes(trimmed_body, vehicle.composition.attachments())
     masses = dict[str, float]()
     for part in vehicle.composition.parts if vehicle.body.flexible else ():
@@ -64,7 +64,7 @@ def fixed_masses(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, floa
 
 
 def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
-    """Build the car on a body model that has the masses of what is fixed to it; else as `assemble`."""
+    """Build the car on a body model that includes the masses of the parts fixed to it; see `assemble`."""
     car = vehicle.composition
     spec = _empty_spec(vehicle)
     builder = ElementBuilder(spec, vehicle, superelement, attached_nodes(superelement, car.attachments()))
@@ -83,24 +83,24 @@ def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
         builder.add_damper(damper)
     builder.add_hold()
     for output in car.outputs:
-        builder.add_place(output)
+        builder.add_output(output)
     return Assembly(spec=spec, vehicle=vehicle, superelement=superelement, origins=builder.origins)
 
 
 def _empty_spec(vehicle: Vehicle) -> mujoco.MjSpec:
-    """Specification with the options that the element laws need."""
+    """Return a specification with the options that the element laws need."""
     spec = mujoco.MjSpec()
     spec.modelname = vehicle.name
     spec.compiler.degree = False
     spec.compiler.autolimits = True
-    # Compiled callbacks find their arrays through the user data of a state.
+    # Compiled callbacks access their arrays through the user data of a state.
     spec.nuserdata = 4
     option = spec.option
     option.timestep = vehicle.solver.step
     option.gravity = [0.0, 0.0, -vehicle.gravity]
     option.integrator = mujoco.mjtIntegrator.mjINT_EULER
     option.solver = mujoco.mjtSolver.mjSOL_NEWTON
-    # Modal columns are written into the rows, and a sparse pattern would not hold them.
+    # Modal columns are written into the rows, and a sparse pattern would not contain them.
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     option.iterations = 50
     option.tolerance = 1e-12

@@ -5,14 +5,14 @@ from __future__ import annotations
 import mujoco
 
 FARTHEST = 120.0
-"""What lies farther from the camera is not drawn [m]."""
+"""Maximum distance from the camera that is drawn [m]."""
 
 FLOOR_COLOUR = (0.78, 0.80, 0.82, 1.0)
 BACKGROUND = (0.80, 0.825, 0.85)
 
 
 def add_studio(spec: mujoco.MjSpec, size: tuple[int, int], samples: int, ground: float) -> None:
-    """Give a specification of the car what a picture needs; nothing of it has mass or touches anything.
+    """Add lights, floor and background to a specification, without mass and without contact.
 
     Args:
         spec: specification with its shapes; changed in place.

@@ -21,18 +21,18 @@ SHELL_GROUP = 1
 """Visual group of everything on the trimmed body."""
 
 ELSEWHERE = {"coil_spring": "coil"}
-"""Role of a part that is not on a strut to the one that it is drawn as then."""
+"""Role that replaces the role of a part outside a strut."""
 
 PART_GROUP = 2
 """Visual group of all other parts and of the rig."""
 
 
 def visible_shapes(vehicle: Vehicle, *, rig: bool = True) -> dict[str, Shape]:
-    """Shapes of a car and its rig at the design position, by name: of each part by its role, else a rod.
+    """Return the shapes of a car and its rig at the design position, by name; parts without a known role are rods.
 
     Args:
         vehicle: the car.
-        rig: draw what moves and stands under the wheels.
+        rig: include the plates and their supports.
     """
     car = vehicle.composition
     points = {name: np.array(point) for name, point in car.points.items()}
@@ -41,29 +41,29 @@ def visible_shapes(vehicle: Vehicle, *, rig: bool = True) -> dict[str, Shape]:
         | {"wheel_center": np.array(wheel.center), "tyre_patch": np.array(wheel.patch)}
         for wheel in car.wheels
     }
-    blocks = [one for one in car.connections if one.carrier == "world" and one.ground]
-    supports = {one.name.rpartition("_")[2]: np.array(one.at) for one in blocks}
+    blocks = [link for link in car.connections if link.carrier == "world" and link.ground]
+    supports = {link.name.rpartition("_")[2]: np.array(link.at) for link in blocks}
     return car_shapes(points, corners, supports, _drawn(vehicle, points, corners), rig=rig)
 
 
 def _around(points: Mapping[str, Vector], suffix: str) -> dict[str, Vector]:
-    """Points of one corner or side, without its ending; all of a car for what has none."""
+    """Return the points of a corner or side by names without its suffix; all points for an empty suffix."""
     return {name.removesuffix(suffix): point for name, point in points.items() if name.endswith(suffix)}
 
 
 def _drawn(
     vehicle: Vehicle, points: Mapping[str, Vector], corners: Mapping[str, Mapping[str, Vector]]
 ) -> Iterator[Part]:
-    """Parts and springs of a car with the points that their roles need, or with their own.
+    """Yield the parts and springs of a car with the points that their roles need, or with the points of the part.
 
-    Those of a corner name wheel centre and contact patch whatever its template calls them.
+    At a corner the wheel centre and the contact patch have fixed names, independent of the template.
     """
     car = vehicle.composition
-    listed = [(one.path, one.name, one.shape, one.points, one.side) for one in car.parts]
+    listed = [(part.path, part.name, part.shape, part.points, part.side) for part in car.parts]
     for spring in car.springs:
         ends = dict(zip(("lower", "upper"), spring.at, strict=True))
         listed.append((spring.path, spring.name, spring.shape, ends, float(np.sign(spring.at[0][1]))))
-    for path, name, role, own, side in listed:
+    for path, name, role, local_points, side in listed:
         base = path.rpartition(".")[2]
         suffix = name.removeprefix(base)
         around = corners.get(suffix[1:]) or _around(points, suffix)
@@ -72,15 +72,18 @@ def _drawn(
             chosen = around
         else:
             role = ELSEWHERE.get(role, role)
-            chosen = {key: np.array(place) for key, place in (own if len(own) > 1 else _reach(car, name, own)).items()}
+            chosen = {
+                key: np.array(point)
+                for key, point in (local_points if len(local_points) > 1 else _reach(car, name, local_points)).items()
+            }
         if role != "none":
             yield Part(name=base, role=role, points=chosen, suffix=name.removeprefix(base), left=side < 0.0)
 
 
-def _reach(car: Composition, name: str, own: Mapping[str, Point]) -> dict[str, Point]:
-    """Points of a part, and those at which others hang on it."""
+def _reach(car: Composition, name: str, local_points: Mapping[str, Point]) -> dict[str, Point]:
+    """Return the points of a part and of the joints of its children."""
     joints = {joint.name: joint.at for part in car.parts if part.parent == name for joint in part.joints}
-    return {**own, **joints}
+    return {**local_points, **joints}
 
 
 def add_shapes(
@@ -89,15 +92,15 @@ def add_shapes(
     origins: Mapping[str, npt.NDArray[np.float64]],
     springs: Iterable[PlacedSpring],
 ) -> None:
-    """Give a specification a visible mesh for every shape; masses, inertias and joints stay what they are.
+    """Add a visible mesh for every shape to a specification; masses, inertias and joints do not change.
 
     Body frames are parallel to the vehicle frame in the design position, so a mesh is only shifted: v - origin.
 
     Args:
         spec: specification of the car on its rig; changed in place.
         shapes: shapes at the design position in the vehicle frame, by name.
-        origins: where each body frame sits in the design position [m], by body name.
-        springs: of the car; a coil lies between two bodies and goes with the lower one.
+        origins: origin of each body frame in the design position [m], by body name.
+        springs: springs of the car; a coil between two bodies belongs to the lower body.
     """
     borne = {spring.name: spring.parts[0] for spring in springs}
     for name, shape in shapes.items():

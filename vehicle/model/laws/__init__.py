@@ -1,1 +1,1 @@
-"""Force laws on arrays: what a damper, a friction pair or an elastomer answers to a velocity or an extension."""
+"""Force laws on arrays: force of a damper, a friction pair or an elastomer over velocity or extension."""

@@ -1,6 +1,6 @@
-"""Coulomb friction: one limit at every velocity.
+"""Coulomb friction: the same limit at every velocity.
 
-Set-valued, it is computed by a switch (`vehicle.model.laws.switch`).
+The set-valued form is computed by a switch (`vehicle.model.laws.switch`).
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ class Coulomb(Friction):
     @staticmethod
     @jitable
     def limit_at(velocity: Any, numbers: Any) -> Any:
-        """Fd [N]."""
+        """Return Fd [N]."""
         return numbers["friction_limit"]
 
     @staticmethod
     def fall_at(velocity: Any, numbers: Any) -> Any:
-        """v dL/dv = 0."""
+        """Return v dL/dv = 0 [N]."""
         return 0.0

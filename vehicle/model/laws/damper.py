@@ -1,10 +1,10 @@
-"""The laws of a damper as one record: written into a model as the parameters of its actuator, read back as an array.
+"""Laws of a damper as one record: written to a model as the parameters of its actuator, read back as an array.
 
     F = F_c(v) - F_gas + clamp(c v, L(v)),   F_c = D v + shift + sum of clamp(e (v - m), e w)
 
 with the friction of `vehicle.model.laws.friction` and the curve F_c of `vehicle.model.laws.curve`: linear, degressive,
-or a table. Of a controlled damper F_c is that of its softest setting; what is set beyond it is of
-`vehicle.model.laws.semi_active`.
+or a table. For a controlled damper, F_c is the force of its softest setting; `vehicle.model.laws.control_laws` computes
+the remainder.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
 from vehicle.model.laws.law import Constant, Parallel
-from vehicle.model.parameters.elements import FRICTION_LAWS, Damper
+from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
 
 RECORD = np.dtype(
     [
@@ -36,30 +36,31 @@ RECORD = np.dtype(
             "stribeck_exponent",  # delta [-]
             "rest_force",  # F_c(0) - F_gas [N]
             "shift",  # shift - F_gas [N]
-            "friction_law",  # index of its word
+            "friction_law",  # index in FRICTION_LAWS
             "spare",
         )
     ],
     align=True,
 )
-"""At least as long as the 10 parameters of an actuator; a longer one is also a custom field of the model."""
+"""Record of the laws of a damper, at least as long as the 10 parameters of an actuator; a longer record is also a field
+of the model."""
 
 
 def pack(damper: Damper) -> npt.NDArray[Any]:
-    """Record of the laws of a damper; ()."""
+    """Return the record of the laws of a damper; ()."""
     curve = damper_curve(damper)
-    rest = float(curve.force(0.0)) - damper.gas_force
+    force_at_rest = float(curve.force(0.0)) - damper.gas_force
     return np.array(
         (
             curve.least_slope,
             damper.smoothing,
             damper.coulomb_friction,
             damper.static_friction,
-            # 1 stands for a number of a law that is not chosen.
+            # 1 is a placeholder for parameters of a law that is not chosen.
             damper.stribeck_velocity or 1.0,
             damper.stribeck_exponent or 1.0,
-            rest,
-            rest - curve.at_rest(),
+            force_at_rest,
+            force_at_rest - curve.at_rest(),
             FRICTION_LAWS.index(damper.friction_law),
             0.0,
         ),
@@ -68,12 +69,14 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
 
 
 def damper_curve(damper: Damper) -> Curve:
-    """Force over velocity without friction and gas; of a controlled damper in its softest setting."""
+    """Return force over velocity without friction and gas; for a controlled damper, of its softest setting."""
     if damper.controlled is not None:
         return Curve.line(damper.controlled.minimum_damping)
     if damper.viscous_law == "table":
         return Curve.through(damper.velocity, damper.force)
-    high, low, knee = (one or 0.0 for one in (damper.viscous, damper.degressive_viscous, damper.degressive_velocity))
+    high, low, knee = (
+        value or 0.0 for value in (damper.viscous, damper.degressive_viscous, damper.degressive_velocity)
+    )
     if damper.viscous_law == "linear":
         return Curve.line(high)
     excess = low - high
@@ -85,43 +88,43 @@ def damper_curve(damper: Damper) -> Curve:
 
 
 def actuator_parameters(record: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """Parameters of the actuator of a damper with this record; (n,), n the length of `RECORD`."""
+    """Return the parameters of the actuator of a damper with this record; (n,), n the length of `RECORD`."""
     return np.atleast_1d(record).view(np.float64)
 
 
 def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Return the records (w,) of the parameters of w actuators, n each with n the length of `RECORD`."""
+    """Return the records (w,) of the parameters of w actuators, n for each, n the length of `RECORD`."""
     return np.reshape(np.array(parameters, dtype=np.float64), -1).view(RECORD)
 
 
 def damper_law(damper: Damper) -> Parallel:
-    """Whole force of a damper as a law of arrays, its friction in the smooth form."""
+    """Return the total force of a damper as a law of arrays, with friction in the smooth form."""
     record, law = pack(damper), FRICTION[damper.friction_law]
     friction = law(**{entry.name: float(record[entry.name]) for entry in dataclasses.fields(law)})
     return Parallel(laws=(damper_curve(damper), Constant(value=-damper.gas_force), friction))
 
 
 def _friction_laws() -> dict[str, type[Friction]]:
-    """Return the classes of the laws by their words.
+    """Return the classes of the friction laws by their names.
 
     Raises:
-        ConfigurationError: a law has a number that no record of a damper holds: it would fail in the middle of a run.
+        ConfigurationError: the record of a damper lacks a parameter of a law, which would fail in the middle of a run.
     """
-    rooms = {word: importlib.import_module(f"vehicle.model.laws.{word}") for word in FRICTION_LAWS}
+    modules = {name: importlib.import_module(f"vehicle.model.laws.{name}") for name in FRICTION_LAWS}
     laws: dict[str, type[Friction]] = {}
-    for word, room in rooms.items():
-        law = laws[word] = getattr(room, word.title().replace("_", ""))
-        lost = [entry.name for entry in dataclasses.fields(law) if entry.name not in (RECORD.names or ())]
-        if lost:
+    for name, module in modules.items():
+        law = laws[name] = getattr(module, name.title().replace("_", ""))
+        missing = [entry.name for entry in dataclasses.fields(law) if entry.name not in (RECORD.names or ())]
+        if missing:
             raise ConfigurationError(
-                f"friction law {word}: its numbers {', '.join(lost)} have no place in a record of a damper, with "
+                f"friction law {name}: the record of a damper has no {', '.join(missing)}, but only "
                 f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/model/laws/damper.py, and to `pack`"
             )
     return laws
 
 
 def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any], Any]:
-    """Limit of the law that a record names by its index: compiled code has no tables of functions, but a chain."""
+    """Return a function of the limit of the law with the index in a record: a chain, for compiled code."""
     this = laws[0].limit_at
 
     def last(record: Any, velocity: Any) -> Any:
@@ -139,4 +142,4 @@ def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any]
 
 FRICTION = _friction_laws()
 friction_limit = _limit_of(list(FRICTION.values()))
-"""Friction limit [N] of a record at a velocity [m/s]."""
+"""Function that returns the friction limit [N] of a record at a velocity [m/s]."""

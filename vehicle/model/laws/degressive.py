@@ -1,4 +1,4 @@
-"""Degressive damper: steep at small velocities, flatter beyond the velocity where its valve opens."""
+"""Degressive damper: steep at low velocities, flatter above the velocity at which its valve opens."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vehicle.model.parameters.quantity import quantity, validate
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Degressive:
-    """F = Ddeg v below Vdeg; F = D v + sign(v) (Ddeg - D) Vdeg from there on: continuous at Vdeg.
+    """F = Ddeg v below Vdeg; F = D v + sign(v) (Ddeg - D) Vdeg above: continuous at Vdeg.
 
     Source: Bommer 2006, equation C.1 (the branch for large velocities is damaged in the scan; continuity gives it).
     """
@@ -26,11 +26,11 @@ class Degressive:
         validate(self)
 
     def force(self, velocity: Numbers) -> npt.NDArray[np.float64]:
-        """Force [N] at a velocity [m/s]."""
+        """Return the force [N] at a velocity [m/s]."""
         v = np.asarray(velocity)
         inner = np.clip(v, -np.asarray(self.knee_velocity), self.knee_velocity)
         return np.asarray(self.high_damping * v + (self.low_damping - self.high_damping) * inner)
 
     def slope(self, velocity: Numbers) -> npt.NDArray[np.float64]:
-        """Derivative d F / d v [N s/m]: Ddeg below the knee, D at and above it."""
+        """Return dF/dv [N s/m]: Ddeg below the knee, D at and above the knee."""
         return np.where(np.abs(velocity) < self.knee_velocity, self.low_damping, self.high_damping)

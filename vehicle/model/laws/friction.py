@@ -1,13 +1,13 @@
-"""Friction of a sliding pair: a law gives the limit L(v), and there are two ways through zero.
+"""Friction of a sliding pair: a law defines the limit L(v), and two forms the force near zero velocity.
 
-    smooth    F = L(v) (2/pi) atan(eps v)               the published form, that of the lumped models
-    clamped   F = min(L, max(-L, c v)), c = (2/pi) L eps   its slope at rest, straight up to the limit
+    smooth    F = L(v) (2/pi) atan(eps v)               the published form, used by the lumped models
+    clamped   F = min(L, max(-L, c v)), c = (2/pi) L eps   the same slope at rest, linear up to the limit
 
-The complete car computes the clamped line, in both engines: an implicit friction row with the impedance D = c h answers
-it. At eps = 1e5 s/m it reaches the limit at pi/(2 eps) = 16 um/s, where the atan has 64 % of it (99.4 % at 1 mm/s).
+The complete car uses the clamped form in both engines: an implicit friction row with the impedance D = c h solves it.
+At eps = 1e5 s/m it reaches the limit at pi/(2 eps) = 16 um/s, where the atan reaches 64 % (99.4 % at 1 mm/s).
 
-A law is a file of this room under its word of `Damper.friction_law`, with a class of that name: its numbers and the
-static functions `limit_at` and `fall_at`, which take a velocity, numbers by their names, and arrays as well as scalars.
+A law is a module of this package with the name in `Damper.friction_law`, and a class of that name: its parameters and
+the static functions `limit_at` and `fall_at` of a velocity and of parameters by name, for arrays and scalars.
 
 Source: Bommer 2006, equations 2.4 and 3.2.
 """
@@ -30,7 +30,7 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Friction(ABC):
-    """The smooth form of a law; its numbers are scalars, or arrays that broadcast together."""
+    """Smooth form of a friction law; parameters are scalars, or arrays that broadcast together."""
 
     friction_limit: Numbers = quantity("N", "friction limit Fd in sliding", at_least=0.0)
     smoothing: Numbers = quantity("s/m", "smoothing eps", above=0.0)
@@ -41,28 +41,28 @@ class Friction(ABC):
     @staticmethod
     @abstractmethod
     def limit_at(velocity: Any, numbers: Any) -> Any:
-        """Friction limit L [N] at a velocity [m/s]."""
+        """Return the friction limit L [N] at a velocity [m/s]."""
 
     @staticmethod
     @abstractmethod
     def fall_at(velocity: Any, numbers: Any) -> Any:
-        """v dL/dv [N] at a velocity [m/s]."""
+        """Return v dL/dv [N] at a velocity [m/s]."""
 
     def __getitem__(self, name: str) -> Numbers:
-        """A number of the law by its name, as of a record."""
-        found: Numbers = getattr(self, name)
-        return found
+        """Return a parameter of the law by its name, for functions that also accept records."""
+        value: Numbers = getattr(self, name)
+        return value
 
     def limit(self, velocity: Numbers) -> Array:
-        """Friction limit L [N] at a velocity [m/s]."""
+        """Return the friction limit L [N] at a velocity [m/s]."""
         return np.asarray(self.limit_at(velocity, self), dtype=float)
 
     def force(self, velocity: Numbers) -> Array:
-        """Force [N] at a velocity [m/s]."""
+        """Return the force [N] at a velocity [m/s]."""
         return np.asarray(self.limit(velocity) * (2.0 / np.pi) * np.arctan(self.smoothing * np.asarray(velocity)))
 
     def slope(self, velocity: Numbers) -> Array:
-        """Derivative d F / d v [N s/m]."""
+        """Return dF/dv [N s/m]."""
         v = np.asarray(velocity, dtype=float)
         scaled = self.smoothing * v
         fall, rising = self.fall_at(v, self), self.limit(v) * self.smoothing / (1.0 + scaled * scaled)
@@ -75,17 +75,17 @@ class Friction(ABC):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Clamped:
-    """The clamped form of a law."""
+    """Clamped form of a friction law."""
 
     law: Friction
 
     def force(self, velocity: Numbers) -> Array:
-        """Force [N] at a velocity [m/s]."""
+        """Return the force [N] at a velocity [m/s]."""
         limit = self.law.limit(velocity)
         return np.asarray(np.clip(slope_at_rest(limit, self.law.smoothing) * np.asarray(velocity), -limit, limit))
 
     def slope(self, velocity: Numbers) -> Array:
-        """Derivative d F / d v [N s/m]: that of c v where the force is below its limit, of the limit elsewhere."""
+        """Return dF/dv [N s/m]: of c v if the force is below the limit, otherwise of the limit."""
         v, limit = np.asarray(velocity, dtype=float), self.law.limit(velocity)
         fall, steep = self.law.fall_at(v, self.law), slope_at_rest(1.0, self.law.smoothing)
         inside = steep * np.abs(v) < 1.0
@@ -94,11 +94,11 @@ class Clamped:
 
 @jitable
 def clamp(force: float, limit: float) -> float:
-    """min(L, max(-L, F)), the scalar form."""
+    """Return min(L, max(-L, F)) for scalars."""
     return min(max(force, -limit), limit)
 
 
 @jitable
 def slope_at_rest(limit: Any, smoothing: Any) -> Any:
-    """c = (2/pi) L eps [N s/m]."""
+    """Return c = (2/pi) L eps [N s/m]."""
     return (2.0 / np.pi) * limit * smoothing

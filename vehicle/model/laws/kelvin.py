@@ -1,4 +1,4 @@
-"""Kelvin element: a spring and a viscous damper side by side."""
+"""Kelvin element: a spring and a viscous damper in parallel."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class Kelvin:
         validate(self)
 
     def force(self, extension: Numbers, rate: Numbers) -> npt.NDArray[np.float64]:
-        """Force [N] at an extension [m] and its rate [m/s]."""
+        """Return the force [N] at an extension [m] and its rate [m/s]."""
         return np.asarray(self.stiffness * np.asarray(extension) + self.damping * np.asarray(rate))
 
     def complex_stiffness(self, angular_frequency: Numbers) -> npt.NDArray[np.complex128]:
-        """K + j w B [N/m] at angular frequencies w [rad/s]."""
+        """Return K + j w B [N/m] at angular frequencies w [rad/s]."""
         return np.asarray(self.stiffness + 1j * np.asarray(angular_frequency) * self.damping)

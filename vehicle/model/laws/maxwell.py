@@ -1,4 +1,4 @@
-"""Elastomer: a spring beside a Maxwell branch (spring and damper in series), with one internal force."""
+"""Elastomer: a spring parallel to a Maxwell branch (spring and damper in series), with one internal force."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ class Maxwell:
 
     @property
     def relaxation_time(self) -> npt.NDArray[np.float64]:
-        """Time constant D2/K2 [s] of the branch; zero where the branch is absent."""
+        """Time constant D2/K2 [s] of the branch; zero if the branch is absent."""
         damping, stiffness = np.broadcast_arrays(self.branch_damping, self.branch_stiffness)
         present = stiffness > 0.0
         return np.where(present, damping / np.where(present, stiffness, 1.0), 0.0)
 
     def complex_stiffness(self, angular_frequency: Numbers) -> npt.NDArray[np.complex128]:
-        """K(j w) [N/m] at angular frequencies w [rad/s]."""
+        """Return K(j w) [N/m] at angular frequencies w [rad/s]."""
         turn = 1j * np.asarray(angular_frequency) * self.relaxation_time
         return np.asarray(self.stiffness + self.branch_stiffness * turn / (1.0 + turn))
 
     def loss_angle(self, angular_frequency: Numbers) -> npt.NDArray[np.float64]:
-        """Angle of K(j w) [rad] at angular frequencies w [rad/s]."""
+        """Return the angle of K(j w) [rad] at angular frequencies w [rad/s]."""
         return np.asarray(np.angle(self.complex_stiffness(angular_frequency)))
 
     def loss_peak(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Angular frequency [rad/s] and size [rad] of the largest loss angle.
+        """Return the angular frequency [rad/s] and the value [rad] of the maximum loss angle.
 
         w = (K2/D2) sqrt(K1/(K1 + K2)) and tan(angle) = K2 / (2 sqrt(K1 (K1 + K2))), from d angle / d w = 0.
 
         Raises:
-            ConfigurationError: K1, K2 or D2 is zero, where the angle has no peak.
+            ConfigurationError: K1, K2 or D2 is zero, so that the angle has no maximum.
         """
         for name in ("stiffness", "branch_stiffness", "branch_damping"):
             if not (np.asarray(getattr(self, name)) > 0.0).all():
@@ -62,16 +62,16 @@ class Maxwell:
         return frequency, np.arctan(self.branch_stiffness / (2.0 * np.sqrt(self.stiffness * total)))
 
     def step_coefficients(self, timestep: Numbers) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Coefficients of the exact step: F2(t + h) = decay F2(t) + gain (u(t + h) - u(t)).
+        """Return the coefficients of the exact step: F2(t + h) = decay F2(t) + gain (u(t + h) - u(t)).
 
-        decay = exp(-h/tau) and gain = D2 (1 - exp(-h/tau)) / h with tau = D2/K2; exact while u moves
-        on a straight line.
+        decay = exp(-h/tau) and gain = D2 (1 - exp(-h/tau)) / h with tau = D2/K2; exact if u is linear
+        in time.
 
         Args:
             timestep: step h [s].
 
         Returns:
-            decay [-] and gain [N/m]; both zero where the branch is absent.
+            decay [-] and gain [N/m]; both zero if the branch is absent.
 
         Raises:
             ConfigurationError: a step that is not a finite number above zero.
@@ -85,7 +85,7 @@ class Maxwell:
         return np.exp(-exponent), np.asarray(self.branch_stiffness * tau * -np.expm1(-exponent) / h)
 
     def step(self, branch_force: Numbers, extension_change: Numbers, timestep: Numbers) -> npt.NDArray[np.float64]:
-        """Branch force F2 [N] after a step, exact for an extension that moves linearly over it.
+        """Return the branch force F2 [N] after a step, exact for an extension that is linear in time.
 
         Args:
             branch_force: F2 [N] at the start of the step.

@@ -14,7 +14,7 @@ from vehicle.model.laws.law import Numbers
 from vehicle.model.parameters.quantity import quantity
 
 FASTEST = 1e15
-"""Ratio v/vs beyond which the limit is that of sliding anyway: its power overflows for no exponent up to 20."""
+"""Maximum ratio v/vs, at which the limit is that of sliding; its power up to 20 does not overflow."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -41,14 +41,14 @@ class Stribeck(Friction):
     @staticmethod
     @jitable
     def limit_at(velocity: Any, numbers: Any) -> Any:
-        """Fd + (Fs - Fd) exp(-|v/vs|^delta) [N]."""
+        """Return Fd + (Fs - Fd) exp(-|v/vs|^delta) [N]."""
         ratio = np.minimum(np.abs(velocity / numbers["stribeck_velocity"]), FASTEST)
         weight = np.exp(-(ratio ** numbers["stribeck_exponent"]))
         return numbers["friction_limit"] + (numbers["static_limit"] - numbers["friction_limit"]) * weight
 
     @staticmethod
     def fall_at(velocity: Any, numbers: Any) -> Any:
-        """v dL/dv = -(Fs - Fd) delta |v/vs|^delta exp(-|v/vs|^delta) [N]."""
+        """Return v dL/dv = -(Fs - Fd) delta |v/vs|^delta exp(-|v/vs|^delta) [N]."""
         ratio = np.minimum(np.abs(velocity / numbers["stribeck_velocity"]), FASTEST)
         power = ratio ** numbers["stribeck_exponent"]
         excess = (numbers["static_limit"] - numbers["friction_limit"]) * np.exp(-power)

@@ -32,7 +32,7 @@ class Switch:
         validate(self)
 
     def mixing(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> npt.NDArray[np.float64]:
-        """Share alpha of the field with positive friction.
+        """Return the share alpha of the field with positive friction.
 
         Args:
             velocity: relative velocity h [m/s].
@@ -40,8 +40,8 @@ class Switch:
             rate_minus: its rate f- [m/s2] with the friction -Fd.
 
         Returns:
-            alpha [-], of the shape of all arguments broadcast together. In stick it may leave [0, 1] by the
-            small force that returns the velocity to zero.
+            alpha [-], in the broadcast shape of all arguments. In stick it exceeds [0, 1] by the small force
+            that returns the velocity to zero.
         """
         h, plus, minus = np.broadcast_arrays(velocity, rate_plus, rate_minus)
         sticking = self.sticks(h, plus, minus)
@@ -51,10 +51,10 @@ class Switch:
         return np.where(sticking, mixed, slip.astype(float))
 
     def sticks(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> npt.NDArray[np.bool_]:
-        """True where the attractive sliding mode (stick) holds; arguments as of `mixing`."""
+        """Return True at elements in the attractive sliding mode (stick); arguments: see `mixing`."""
         h, plus, minus = np.broadcast_arrays(velocity, rate_plus, rate_minus)
         return np.asarray((np.abs(h) <= self.band) & (plus < 0.0) & (minus > 0.0))
 
     def force(self, velocity: Numbers, rate_plus: Numbers, rate_minus: Numbers) -> npt.NDArray[np.float64]:
-        """Friction force [N] against a positive velocity; arguments as of `mixing`."""
+        """Return the friction force [N] against a positive velocity; arguments: see `mixing`."""
         return np.asarray((2.0 * self.mixing(velocity, rate_plus, rate_minus) - 1.0) * self.limit)

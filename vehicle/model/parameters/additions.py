@@ -1,4 +1,4 @@
-"""What a vehicle file adds to its templates: points, connections between any two parts, recorded places, and loads."""
+"""Additions of a vehicle file to its templates: points, connections between any two parts, outputs and loads."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes, axes_along
 from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
-from vehicle.model.parameters.elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
 from vehicle.model.parameters.hardpoints import Point, require_apart, require_point
-from vehicle.model.parameters.loads import Load
+from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, nearest
 
-LAW = {"moving", "carrier", "at", "ground", "axes"}
-"""Keys of a connection of the vehicle file that are not of its law."""
+CONNECTION_KEYS = {"moving", "carrier", "at", "ground", "axes"}
+"""Keys of a connection of the vehicle file other than the numbers of its law."""
 
-LOAD = ("mass", "at", "on", "inertia", "products")
+LOAD_KEYS = ("mass", "at", "on", "inertia", "products")
 """Keys of a load."""
 
 
-def own_point(path: str, value: Any) -> Point:
-    """A point by its coordinates [m].
+def point_of(path: str, value: Any) -> Point:
+    """Return a point of the vehicle file [m].
 
     Args:
-        path: where it stands, shown in messages.
-        value: as read.
+        path: path of the point, shown in messages.
+        value: value in the file.
 
     Raises:
-        ConfigurationError: it is none.
+        ConfigurationError: the value is not a point.
     """
     point: Point = convert(Point, value, path)
     require_point(path, point, right=False)
@@ -38,55 +38,55 @@ def own_point(path: str, value: Any) -> Point:
 
 
 def law_kind(table: Mapping[str, Any], *, plate: bool = False) -> type[Bushing] | type[Hydromount]:
-    """Class of the numbers of a connection; `plate`: of a tyre on its plate."""
+    """Return the parameter class of a connection; `plate`: the connection is a tyre on its plate."""
     return Hydromount if any(key.startswith("maxwell_") for key in table) else Tyre if plate else Bushing
 
 
-def _place(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:
-    """Where an element is, by the name of a point or by coordinates, and the name of the point."""
+def _point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:
+    """Return the point of an element [m], given by its name or by coordinates, and the name of the point."""
     name, value = path.partition(".")[2], table.get("at")
     if not NAME_PATTERN.fullmatch(name):
-        raise ConfigurationError(f"{path}: found {name!r}, allowed are letters, digits, '_', '.', '-'")
+        raise ConfigurationError(f"{path}: found {name!r}, must consist of letters, digits, '_', '.', '-'")
     if value is None:
-        raise ConfigurationError(f"{path}.at: missing; needed is the name of a point, or its coordinates [m]")
+        raise ConfigurationError(f"{path}.at: missing; set the name of a point, or its coordinates [m]")
     if isinstance(value, str):
         if value not in points:
             near = nearest(value, points)
-            raise ConfigurationError(f"{path}.at: found {value!r}, no such point; the nearest is {near}")
+            raise ConfigurationError(f"{path}.at: found {value!r}, unknown point; the nearest is {near}")
         return points[value], value
-    return own_point(f"{path}.at", value), name
+    return point_of(f"{path}.at", value), name
 
 
-def _known(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
-    """The name of a part that a table gives under a key."""
+def _part_name(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
+    """Return the name of a part that a table gives under a key."""
     if key not in table:
-        raise ConfigurationError(f"{path}.{key}: missing; needed is the name of a part, as body")
+        raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, as body")
     name: str = convert(str, table[key], f"{path}.{key}")
     if name not in names:
-        raise ConfigurationError(f"{path}.{key}: found {name!r}, no such part; the nearest is {nearest(name, names)}")
+        raise ConfigurationError(f"{path}.{key}: found {name!r}, unknown part; the nearest is {nearest(name, names)}")
     return name
 
 
 def further_connection(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedConnection:
-    """A connection that the vehicle file adds between any two parts.
+    """Return a connection that the vehicle file adds between any two parts.
 
     Args:
-        name: of its table.
-        value: the table.
-        names: of all parts.
-        points: of the car by name [m].
+        name: name of the connection.
+        value: table of the connection.
+        names: names of all parts.
+        points: hardpoints of the car by name [m].
 
     Raises:
-        ConfigurationError: a name that leads nowhere, or a wrong number.
+        ConfigurationError: a name that does not exist, or a wrong value.
     """
     path = f"connection.{name}"
     table = convert(dict, value, path)
-    law = {key: inner for key, inner in table.items() if key not in LAW}
-    at, point = _place(path, table, points)
+    law = {key: inner for key, inner in table.items() if key not in CONNECTION_KEYS}
+    at, point = _point(path, table, points)
     return PlacedConnection(
         name=name,
-        moving=_known(path, table, "moving", names),
-        carrier=_known(path, table, "carrier", names),
+        moving=_part_name(path, table, "moving", names),
+        carrier=_part_name(path, table, "carrier", names),
         at=at,
         point=point,
         law=build(law_kind(law), law, path) if law else None,
@@ -97,80 +97,68 @@ def further_connection(name: str, value: Any, names: set[str], points: Mapping[s
 
 
 def _axes(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> Axes | None:
-    """Axes of a law along two points."""
+    """Return the axes of a law whose x axis passes through two points; None for the axes of the carrier."""
     if "axes" not in table:
         return None
     names: tuple[str, ...] = convert(tuple[str, ...], table["axes"], f"{path}.axes")
     for name in names:
         if name not in points:
             near = nearest(name, points)
-            raise ConfigurationError(f"{path}.axes: found {name!r}, no such point; the nearest is {near}")
+            raise ConfigurationError(f"{path}.axes: found {name!r}, unknown point; the nearest is {near}")
     if len(names) != 2 or table.get("ground"):
         raise ConfigurationError(
-            f"{path}.axes: found {list(names)}; needed are two points, of what is not on the ground"
+            f"{path}.axes: found {list(names)}; must be two points of a connection that is not on the ground"
         )
     require_apart({f"{path}.axes, {name}": points[name] for name in names})
     return axes_along(points[names[0]], points[names[1]])
 
 
 def further_output(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedOutput:
-    """A place whose acceleration the vehicle file wants recorded; arguments as of `further_connection`.
+    """Return an output point of the vehicle file; arguments: see `further_connection`.
 
     Raises:
-        ConfigurationError: a name that leads nowhere.
+        ConfigurationError: a name that does not exist.
     """
     path = f"outputs.{name}"
     table = convert(dict, value, path)
     for key in table:
         if key not in ("on", "at"):
-            raise ConfigurationError(f"{path}.{key}: unknown parameter; needed are on and at")
-    at, point = _place(path, table, points)
-    return PlacedOutput(name=name, on=_known(path, table, "on", names), at=at, point=point)
+            raise ConfigurationError(f"{path}.{key}: unknown parameter; must be on or at")
+    at, point = _point(path, table, points)
+    return PlacedOutput(name=name, on=_part_name(path, table, "on", names), at=at, point=point)
 
 
 def new_loads(overrides: Iterable[str]) -> list[str]:
-    """Return the paths of overrides that are keys of a load, which a file need not have."""
+    """Return the paths of overrides that set keys of a load; such a load is optional in a vehicle file."""
     texts = [text.partition("=")[0].strip() for text in overrides]
-    return [text for text in texts if re.fullmatch(rf"load\.[A-Za-z0-9_-]+\.({'|'.join(LOAD)})", text)]
-
-
-def load_numbers(path: str, table: Mapping[str, Any]) -> Load:
-    """Return the mass properties of a load.
-
-    Args:
-        path: of its table, shown in messages.
-        table: the table.
-
-    Raises:
-        ConfigurationError: a wrong number.
-    """
-    return build(Load, {key: value for key, value in table.items() if key not in ("on", "at")}, path)
+    return [text for text in texts if re.fullmatch(rf"load\.[A-Za-z0-9_-]+\.({'|'.join(LOAD_KEYS)})", text)]
 
 
 def placed_load(name: str, value: Any, names: set[str], points: Mapping[str, Point]) -> PlacedPart:
-    """Return a load of the vehicle file as a part that is fixed to what carries it.
+    """Return a load of the vehicle file as a part that is fixed to its carrier.
 
     Args:
-        name: of its table.
-        value: the table.
-        names: of the parts that can carry a load.
-        points: of the car by name [m].
+        name: name of the load.
+        value: table of the load.
+        names: names of the parts that can carry a load.
+        points: hardpoints of the car by name [m].
 
     Raises:
-        ConfigurationError: a name that leads nowhere, or a wrong number.
+        ConfigurationError: a name that does not exist, or a wrong value.
     """
     path = f"load.{name}"
     table = convert(dict, value, path)
-    at, _ = _place(path, table, points)
+    at, _ = _point(path, table, points)
     return PlacedPart(
         name=f"load_{name}",
-        parent=_known(path, {"on": "body", **table}, "on", names),
+        parent=_part_name(path, {"on": "body", **table}, "on", names),
         cog=at,
-        numbers=load_numbers(path, table),
+        numbers=build(Load, {key: inner for key, inner in table.items() if key not in ("on", "at")}, path),
         side=1.0,
         shape="none",
         points={},
         joints=(),
         seat=None,
         path=path,
+        tables=(path,),
     )

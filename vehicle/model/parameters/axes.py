@@ -1,4 +1,4 @@
-"""Axes of a bushing that lies along a line, as that at the end of a rod."""
+"""Axes of a bushing that is aligned with a line, as at the end of a rod."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ Axes = tuple[Point, Point, Point]
 
 
 def axes_along(start: Point, end: Point) -> Axes:
-    """x from one point to another, y level, z square to both; with a vertical line y is that of the car.
+    """Return axes with x from one point to another, y horizontal and z perpendicular; a vertical line keeps y.
 
-    Seen from the other side of the car these are mirrored axes, up to the sign of y, which K and D do not know.
+    For the mirrored line the axes are mirrored up to the sign of y, on which K and D do not depend.
 
     Args:
         start, end: two different points [m].

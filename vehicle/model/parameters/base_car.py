@@ -1,4 +1,4 @@
-"""The table of a vehicle file: its own, or laid over that of the car that it names as its base."""
+"""Reading a vehicle file, which may give only its differences from a base car."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from vehicle.model.parameters.whole_body import body_moves, followers, put
 
 
 def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
-    """Read a vehicle file; with `base = "focus_road"` it holds only what differs from that car.
+    """Read a vehicle file; with `base = "focus_road"` it contains only the differences from that car.
 
-    Tables are laid over those of the base, key by key; one that names a template takes the place of the base's. The
+    Tables are merged with those of the base, key by key; a table with a template replaces the table of the base. The
     inertia of the body follows another mass or CoG (`vehicle.model.parameters.whole_body`).
 
     Args:
-        path: of the file, or the name of a shipped car.
-        above: files that build on it.
+        path: path of the file, or the name of a shipped car.
+        above: files whose base is this file, directly or not.
 
     Raises:
-        ConfigurationError: the file or its base cannot be read, or a file builds on itself.
+        ConfigurationError: the file or its base cannot be read, or the bases form a loop.
     """
     file = vehicle_file(path)
     table = read_table(file)
@@ -34,36 +34,36 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
     beside = file.parent / name
     if not beside.is_file() and name not in CARS:
         raise ConfigurationError(
-            f"base: found {name!r}; needed is a shipped car ({', '.join(CARS)}) or a vehicle file beside this one"
+            f"base: found {name!r}; must be a shipped car ({', '.join(CARS)}) or a vehicle file in the same folder"
         )
     base = beside if beside.is_file() else vehicle_file(name)
     if base.resolve() in (*above, file.resolve()):
-        raise ConfigurationError(f"base: {file} builds on itself; name another car")
+        raise ConfigurationError(f"base: {file} is its own base, directly or not; name another car")
     return with_body(vehicle_table(base, (*above, file.resolve())), table)
 
 
 def with_body(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a vehicle file laid over its base; what it does not give of the inertia follows its mass and CoG.
+    """Return a vehicle file merged with its base; moments of inertia that it leaves out follow its mass and CoG.
 
     Args:
-        below: the base.
-        above: the file. Where it gives all three moments of [body.inertia], that table takes the place of the base's.
+        below: table of the base.
+        above: table of the file. With all three moments, its [body.inertia] replaces the table of the base.
     """
-    body, base = (convert(dict, one.get("body", {}), "body") for one in (above, below))
+    body, base = (convert(dict, table.get("body", {}), "body") for table in (above, below))
     inertia = convert(dict, body.get("inertia", {}), "body.inertia")
     if set(MOMENTS[:3]) <= set(inertia):
         below = {**below, "body": {key: value for key, value in base.items() if key != "inertia"}}
-    found = _over(below, above)
-    if "inertia" in base and body_moves({"body": base}, found):
-        given = {f"body.{key}" for key in body} | {f"body.inertia.{key}" for key in inertia}
-        put(found, followers(base, found["body"], given))
-    return found
+    merged = _merged(below, above)
+    if "inertia" in base and body_moves({"body": base}, merged):
+        paths = {f"body.{key}" for key in body} | {f"body.inertia.{key}" for key in inertia}
+        put(merged, followers(base, merged["body"], paths))
+    return merged
 
 
-def _over(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    """A table laid over another one."""
-    found = dict(below)
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """Return two tables merged key by key; values of `above` take precedence."""
+    merged = dict(below)
     for key, value in above.items():
         both = isinstance(value, Mapping) and isinstance(below.get(key), Mapping)
-        found[key] = _over(below[key], value) if both and "template" not in value else value
-    return found
+        merged[key] = _merged(below[key], value) if both and "template" not in value else value
+    return merged

@@ -10,14 +10,14 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import Validated, quantity, validate
 
-MOST_MODES = 999
-"""Modes whose numbers may be given one by one: two of their digits more than any body model of a whole car has used."""
+MAX_MODES = 999
+"""Maximum number of a mode that may have parameters; no body model of a whole car has had as many modes."""
 
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "izx", "iyz")
 """Names of the moments and products of inertia."""
 
 DIGITS = 14
-"""Digits of a moment over a factor: numbers of a vehicle file come back to the bit, and their frame is in the cache."""
+"""Significant digits of a rescaled moment: restores the number of the vehicle file exactly, so its frame is cached."""
 
 EARLIER_KEYS = ("inertia_variant", "ixx_published", "ixx_improved", "iyy", "izz", "ixy", "izx", "iyz")
 """Keys of [body] in vehicle files before [body.inertia]."""
@@ -25,7 +25,7 @@ EARLIER_KEYS = ("inertia_variant", "ixx_published", "ixx_improved", "iyy", "izz"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyMode(Validated):
-    """What is changed of one mode of the body model, as [body.modes.3]; its shape stays."""
+    """Corrections of one mode of the body model, as [body.modes.3]; the mode shape is not changed."""
 
     frequency_factor: float = quantity(
         "-",
@@ -49,7 +49,7 @@ class BodyMode(Validated):
 class BodyInertia(Validated):
     """Moments and products of inertia of the trimmed body in axes parallel to the vehicle frame; products as integrals.
 
-    About the origin Izx > 0 because m x z is; a body that is symmetric about y = 0 has Ixy = Iyz = 0 about its CoG.
+    About the origin Izx > 0 because m x z > 0; a body that is symmetric about y = 0 has Ixy = Iyz = 0 about its CoG.
     """
 
     about: str = quantity(
@@ -108,9 +108,9 @@ class TrimmedBody:
     def __post_init__(self) -> None:
         validate(self)
         for number in self.modes:
-            if not (number.isascii() and number.isdigit() and 1 <= int(number) <= MOST_MODES and number[0] != "0"):
+            if not (number.isascii() and number.isdigit() and 1 <= int(number) <= MAX_MODES and number[0] != "0"):
                 raise ConfigurationError(
-                    f"TrimmedBody.modes.{number}: needed is the number of a mode from 1, as body.modes.3"
+                    f"TrimmedBody.modes.{number}: must be the number of a mode from 1, as body.modes.3"
                 )
         if self.flexible and self.superelement is None:
             raise ConfigurationError(
@@ -126,12 +126,12 @@ class TrimmedBody:
 
     @property
     def model_factor(self) -> float:
-        """Factor on all masses of the elastic model [1]: frequencies and mass-normalised shapes go with its root."""
+        """Factor on all masses of the elastic model [1]; frequencies and mass-normalised shapes scale by 1/sqrt."""
         return 1.0 if self.model_mass is None else self.mass / self.model_mass
 
     @property
     def of_model(self) -> TrimmedBody:
-        """The body that the elastic model is of, before its mass was varied alone; moments to `DIGITS` digits."""
+        """The body before its mass was varied, to which the elastic model belongs; moments to `DIGITS` digits."""
         if self.model_mass is None:
             return self
         moments: dict[str, Any] = {
@@ -141,13 +141,13 @@ class TrimmedBody:
 
 
 def require_inertia_table(body: Mapping[str, Any]) -> None:
-    """Refuse the moments of earlier vehicle files, which were keys of [body].
+    """Raise an error for the moments of earlier vehicle files, which were keys of [body].
 
     Args:
         body: table [body] of a vehicle file.
 
     Raises:
-        ConfigurationError: naming the keys and the table to write instead.
+        ConfigurationError: earlier keys are present; the message gives the table to write instead.
     """
     if not (old := [key for key in body if key in EARLIER_KEYS]):
         return
@@ -158,6 +158,6 @@ def require_inertia_table(body: Mapping[str, Any]) -> None:
         ['about = "origin"', *(f"{key} = {value}" for key, value in moments.items() if value is not None)]
     )
     raise ConfigurationError(
-        f"body: found {', '.join(old)}; moments of inertia are a table of their own. Write inertia = {{ {table} }} in "
+        f"body: found {', '.join(old)}; moments of inertia have a separate table. Write inertia = {{ {table} }} in "
         "[body], or the moments about the centre of gravity without `about`"
     )

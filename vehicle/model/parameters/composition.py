@@ -1,21 +1,60 @@
-"""A car as file and templates compose it: parts, joints, connections, springs, dampers, outputs, wheels, placed."""
+"""The composition of a car: parts, joints, connections, springs, dampers, outputs and wheels, placed, with numbers.
+
+Elements with numbers have a `path`, of the table of their numbers in the vehicle file, and `tables`: the paths of all
+tables that hold them, that of the instance and that of one side, which takes precedence. `with_numbers` reads them
+again from a file in which only numbers of the element differ.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Self, TypeVar
 
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes
-from vehicle.model.parameters.elements import Bushing, Damper, ForceTable, Hydromount
+from vehicle.model.parameters.force_elements import (
+    Bushing,
+    Damper,
+    ForceTable,
+    Hydromount,
+    MainSpring,
+    SlideSpring,
+    Stabilizer,
+)
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.loads import Load
-from vehicle.model.parameters.parts import Part
+from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.rigid_part import Part
+from vehicle.model.parameters.toml_file import build
+from vehicle.names import AXES
+
+T = TypeVar("T")
+
+
+def _numbers(parameters: type[T], file: Mapping[str, Any], tables: tuple[str, ...]) -> T:
+    """Build the numbers of an element from its tables in a vehicle file."""
+    merged = {key: value for path in tables for key, value in value_at(file, path).items()}
+    fields = {entry.name for entry in dataclasses.fields(parameters)}  # type: ignore[arg-type]
+    return build(parameters, {key: value for key, value in merged.items() if key in fields}, tables[-1])
+
+
+class _WithLaw:
+    """An element whose numbers are one law."""
+
+    __slots__ = ()
+    law: Any
+    tables: tuple[str, ...]
+
+    def with_numbers(self, file: Mapping[str, Any]) -> Self:
+        """Return the element with the numbers of another vehicle file."""
+        return replace(self, law=_numbers(type(self.law), file, self.tables))  # type: ignore[type-var]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedJoint:
-    """One freedom of a part: `kind` free, ball, hinge or slide, at a point [m] and along an axis."""
+    """A joint of a part: `kind` free, ball, hinge or slide, at a point [m] and along an axis."""
 
     name: str
     kind: str
@@ -25,19 +64,21 @@ class PlacedJoint:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedPart:
-    """A rigid part on another one; a parent comes before its children.
+    """A rigid part on its parent.
 
     Attributes:
-        name: as "knuckle_fr".
-        parent: name of the part that it is on; "world", or "body" for the trimmed body.
+        name: name in the model, as "knuckle_fr".
+        parent: name of the part that carries it; "world", or "body" for the trimmed body.
         cog: centre of gravity [m].
-        numbers: mass and inertia, as of the right side; of a load on a part, those of the load.
-        side: +1, or -1 where it is mirrored: its products xy and yz turn.
-        shape: role of its shape.
-        points: what it hangs on, by name without the side [m].
-        joints: its freedoms; none where it is fixed.
-        seat: where a part that is fixed to the trimmed body sits [m], None of others.
-        path: of its numbers in the vehicle file.
+        numbers: mass and inertia, of the right side; a `Load` for a load of the vehicle file.
+        side: +1, or -1 if the part is mirrored: its products xy and yz change their sign.
+        shape: role of its visible shape.
+        points: points of other parts on it, by name without the side [m].
+        joints: its joints to the parent; none for a fixed part.
+        seat: point at which a part is fixed to the trimmed body [m]; None for other parts.
+        path, tables: see the module.
+        center: mean of the points that define the centre of gravity, without the offset of the numbers [m].
+        rod: ends of a part whose inertia is that of a rod, right side [m]; None for other parts.
     """
 
     name: str
@@ -50,20 +91,43 @@ class PlacedPart:
     joints: tuple[PlacedJoint, ...]
     seat: Point | None
     path: str
+    tables: tuple[str, ...] = field(default=(), compare=False)
+    center: Point = field(default=(0.0, 0.0, 0.0), compare=False)
+    rod: tuple[Point, Point] | None = field(default=None, compare=False)
+
+    def with_numbers(self, file: Mapping[str, Any]) -> PlacedPart:
+        """Return the part with the numbers of another vehicle file."""
+        if isinstance(self.numbers, Load):
+            return replace(self, numbers=_numbers(Load, file, self.tables))
+        numbers = _numbers(Part, file, self.tables)
+        numbers = numbers if self.rod is None else numbers.as_rod(*self.rod)
+        return replace(self, numbers=numbers, cog=numbers.cog(self.center, self.side))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rolling:
-    """A tyre that rolls: speed of the car [m/s], wheel centre from the patch [m]."""
+    """Data of a rolling tyre: speed of the car [m/s], vector from the contact patch to the wheel centre [m]."""
 
     speed: float
     arm: Point
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class PlacedConnection:
-    """Two parts that meet at a point [m]; `law` None of an ideal ball joint; `path` of its numbers; `axes` of the law,
-    by default those of the carrier; `rolling` None of all but tyres that roll."""
+class PlacedConnection(_WithLaw):
+    """A connection of two parts at a point [m].
+
+    Attributes:
+        name, moving, carrier: names of the connection and of both parts.
+        at: the point [m].
+        point: name of the point.
+        law: numbers of the force law; None for an ideal ball joint.
+        ground: True for a contact with the ground.
+        path, tables: see the module.
+        axes: axes of the law; None: those of the carrier.
+        rolling: data of a rolling tyre; None for all other connections.
+        lowest_stiffness: limit of the template along each axis [N/m].
+        reason: reason of that limit.
+    """
 
     name: str
     moving: str
@@ -75,36 +139,71 @@ class PlacedConnection:
     path: str
     axes: Axes | None = None
     rolling: Rolling | None = None
+    tables: tuple[str, ...] = field(default=(), compare=False)
+    lowest_stiffness: float = 0.0
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        for axis, stiffness in zip(AXES, self.law.stiffness if self.law else (), strict=False):
+            if stiffness < self.lowest_stiffness:
+                raise ConfigurationError(
+                    f"{self.path}.stiffness.{axis}: found {stiffness:g} N/m, must be at least "
+                    f"{self.lowest_stiffness:g} N/m ({self.reason})"
+                )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class PlacedSpring:
-    """A spring between points of two parts [N/m]; a table takes the place of its stiffness."""
+class PlacedSpring(_WithLaw):
+    """A spring between points of two parts; `point`: name of the point on the trimmed body."""
 
     name: str
     parts: tuple[str, str]
     at: tuple[Point, Point]
     point: str
-    stiffness: float
+    law: MainSpring
     path: str
     shape: str
-    table: ForceTable | None = None
+    tables: tuple[str, ...] = field(default=(), compare=False)
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness [N/m]; a table replaces it."""
+        return self.law.stiffness
+
+    @property
+    def table(self) -> ForceTable | None:
+        """Force over displacement; None for a linear spring."""
+        return self.law.table
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class JointSpring:
-    """A spring on a joint: [N/m] and [N s/m] on a slide, [N m/rad] on a hinge; `parameter`: name of its stiffness."""
+class JointSpring(_WithLaw):
+    """A spring on a slide or on a hinge."""
 
     joint: str
-    stiffness: float
+    law: SlideSpring | Stabilizer
     path: str
-    parameter: str
-    damping: float = 0.0
+    tables: tuple[str, ...] = field(default=(), compare=False)
+
+    @property
+    def parameter(self) -> str:
+        """Name of the stiffness parameter."""
+        return "stiffness" if isinstance(self.law, SlideSpring) else "torsional_stiffness"
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness [N/m] on a slide, [N m/rad] on a hinge."""
+        return self.law.stiffness if isinstance(self.law, SlideSpring) else self.law.torsional_stiffness
+
+    @property
+    def damping(self) -> float:
+        """Damping [N s/m] on a slide; zero on a hinge."""
+        return self.law.damping if isinstance(self.law, SlideSpring) else 0.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class PlacedDamper:
-    """A damper on a slide; of a controlled one, parts and points [m] of its sensors, on the wheel and on the body."""
+class PlacedDamper(_WithLaw):
+    """A damper on a slide; for a controlled damper, parts and points [m] of its sensors on wheel and body."""
 
     name: str
     joint: str
@@ -112,11 +211,12 @@ class PlacedDamper:
     path: str
     sensors: tuple[str, ...] = ()
     at: tuple[Point, ...] = ()
+    tables: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedOutput:
-    """A place on a part [m] whose acceleration is recorded."""
+    """A measurement point [m] on a part, whose acceleration is recorded."""
 
     name: str
     on: str
@@ -126,17 +226,17 @@ class PlacedOutput:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedWheel:
-    """A wheel on its plate.
+    """Placed wheel with the plate below.
 
     Attributes:
-        name: as "fr".
+        name: name of the wheel, as "fr".
         axle: name of its instance, as "front".
-        side: +1 of a right wheel, -1 of a left one.
-        part: the part that rolls.
-        plate: body under it.
-        center: its centre [m].
-        patch: middle of its contact patch [m].
-        paths: of both points in the vehicle file.
+        side: +1 for a right wheel, -1 for a left wheel.
+        part: name of the rolling part.
+        plate: name of the plate.
+        center: wheel centre [m].
+        patch: middle of the contact patch [m].
+        paths: paths of both points in the vehicle file.
     """
 
     name: str
@@ -149,25 +249,19 @@ class PlacedWheel:
     paths: tuple[str, str]
 
 
-class Source(NamedTuple):
-    """What an element was made from: `make(instance, entry, side)` makes it again."""
-
-    make: Callable[[Any, Any, str | None], Any]
-    instance: Any
-    entry: Any
-    side: str | None
+WITH_NUMBERS = ("parts", "connections", "springs", "joint_springs", "dampers")
+"""Elements of a composition that have numbers."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Composition:
-    """Everything that a car consists of beside its trimmed body, in the order of the model.
+    """All elements of a car other than its trimmed body, in the order of the model.
 
     Attributes:
-        parts, connections, springs, joint_springs, dampers, outputs, wheels: as of their classes.
+        parts, connections, springs, joint_springs, dampers, outputs, wheels: elements, parents before children.
         points: hardpoints by name, as "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
-        meanings: of each hardpoint, by its path.
-        sources: of the elements of instances, by the kind of element, in the order of its first ones.
+        meanings: meaning of each hardpoint, by its path.
     """
 
     parts: tuple[PlacedPart, ...] = ()
@@ -180,23 +274,49 @@ class Composition:
     points: Mapping[str, Point] = field(default_factory=dict)
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)
-    sources: Mapping[str, tuple[Source, ...]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def loads(self) -> tuple[PlacedPart, ...]:
         """Parts that are loads of the vehicle file."""
-        return tuple(one for one in self.parts if isinstance(one.numbers, Load))
+        return tuple(part for part in self.parts if isinstance(part.numbers, Load))
+
+    def with_numbers(self, file: Mapping[str, Any], changed: Mapping[str, None]) -> Composition | None:
+        """Return the composition with the numbers of another vehicle file.
+
+        Args:
+            file: vehicle file that differs in numbers of the changed tables alone.
+            changed: paths of the changed tables.
+
+        Returns:
+            The composition; None if an element of a changed table is not covered.
+
+        Raises:
+            ConfigurationError: a value is wrong.
+        """
+        updated: dict[str, Any] = {}
+        left = set(changed)
+        for group in WITH_NUMBERS:
+            before: tuple[Any, ...] = getattr(self, group)
+            chosen = {element.path for element in before if element.tables and element.path in changed}
+            if chosen:
+                updated[group] = tuple(
+                    element.with_numbers(file) if element.path in chosen else element for element in before
+                )
+                left -= chosen
+        return None if left else replace(self, **updated)
 
     def attachments(self) -> dict[str, Point]:
-        """Points at which something acts on the trimmed body, or is measured on it, by name [m]."""
-        found = {one.point: one.at for one in self.connections if "body" in (one.moving, one.carrier)}
-        found |= {one.point: one.at[1] for one in self.springs if one.parts[1] == "body"}
-        found |= {one.point: one.at[0] for one in self.springs if one.parts[0] == "body"}
-        found |= {
-            f"sensor/{one.name}/{end}": at
-            for one in self.dampers
-            for end, (part, at) in enumerate(zip(one.sensors, one.at, strict=True))
-            if part == "body" and at not in found.values()
+        """Return the points [m] of the trimmed body at which a force acts or an output is measured, by name."""
+        points = {link.point: link.at for link in self.connections if "body" in (link.moving, link.carrier)}
+        points |= {spring.point: spring.at[1] for spring in self.springs if spring.parts[1] == "body"}
+        points |= {spring.point: spring.at[0] for spring in self.springs if spring.parts[0] == "body"}
+        points |= {
+            f"sensor/{damper.name}/{end}": at
+            for damper in self.dampers
+            for end, (part, at) in enumerate(zip(damper.sensors, damper.at, strict=True))
+            if part == "body" and at not in points.values()
         }
-        found |= {one.name: one.seat for one in self.parts if one.seat is not None and one.seat not in found.values()}
-        return found | {one.point: one.at for one in self.outputs if one.on == "body"}
+        points |= {
+            part.name: part.seat for part in self.parts if part.seat is not None and part.seat not in points.values()
+        }
+        return points | {output.point: output.at for output in self.outputs if output.on == "body"}

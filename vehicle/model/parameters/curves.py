@@ -1,4 +1,4 @@
-"""Laws as tables of points: numbers in the vehicle file, or a file of a test that it names."""
+"""Force laws as tables of points: numbers in the vehicle file, or a measurement file that it names."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from vehicle.errors import ConfigurationError, VehicleError
 if TYPE_CHECKING:
     from vehicle.signals.records.table import Header
 
-MOST_POINTS = 40
-"""A row of the solver for each piece: more points than this only cost time."""
+MAX_POINTS = 40
+"""Maximum number of points: each segment is a row of the solver, and more would only cost time."""
 
 HEADS = {"velocity": "velocity [m/s]", "displacement": "displacement [m]"}
-"""Heads of the columns of a file, beside `force [N]`."""
+"""Headers of the abscissa column of a file; the other column is `force [N]`."""
 SI = {"velocity": "m/s", "displacement": "m"}
-"""Units of what they hold; a file of another program may have any other of the same quantity."""
+"""SI units of the abscissae; a file of another program may have any unit of the same quantity."""
 
 
 def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequence[float]) -> None:
-    """Refuse points that are no rising curve through both signs of its abscissa.
+    """Check that points form a rising curve; a curve over velocity must extend to both sides of zero.
 
     Args:
         where: path of the table.
         key: name of the abscissa, a key of `HEADS`.
-        positions: abscissae.
-        forces: [N].
+        positions: abscissae [m] or [m/s].
+        forces: forces [N].
 
     Raises:
-        ConfigurationError: naming the key and the first bad point.
+        ConfigurationError: a wrong number of points, or the first wrong point.
     """
     if len(positions) != len(forces):
-        raise ConfigurationError(f"{where}.force: found {len(forces)} numbers for {len(positions)} of {key}; needed is "
+        raise ConfigurationError(f"{where}.force: found {len(forces)} numbers for {len(positions)} of {key}; set "
                                  "a force for each")  # fmt: skip
-    if not 2 <= len(positions) <= MOST_POINTS:
-        raise ConfigurationError(f"{where}.{key}: found {len(positions)} points, needed are 2 to {MOST_POINTS}; leave "
+    if not 2 <= len(positions) <= MAX_POINTS:
+        raise ConfigurationError(f"{where}.{key}: found {len(positions)} points, must be 2 to {MAX_POINTS}; leave "
                                  "out points on a straight line")  # fmt: skip
     for x, following in itertools.pairwise(positions):
         if not x < following:
@@ -52,39 +52,37 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
                                  "of 0: compression (bump) is negative, extension (rebound) positive")  # fmt: skip
 
 
-def with_curve_files(table: Mapping[str, Any], folder: Path, place: str = "") -> dict[str, Any]:
-    """A vehicle file with the points of every `curve = FILE` in its place.
+def with_curve_files(table: Mapping[str, Any], folder: Path, prefix: str = "") -> dict[str, Any]:
+    """Return a vehicle file with every `curve = FILE` replaced by the points of the file.
 
     Args:
-        table: as of a vehicle file.
-        folder: that the names of files are relative to.
-        place: path of this table, for messages.
-
-    Returns:
-        A copy, that needs no other file.
+        table: vehicle file.
+        folder: folder that the file names are relative to.
+        prefix: path of this table, for messages.
 
     Raises:
-        ConfigurationError: there is no such file, it holds no such columns, or the points are given twice; the message
-            names the place.
+        ConfigurationError: a file or one of its columns is missing, or the points are given twice; with the path.
     """
-    found: dict[str, Any] = {}
+    filled: dict[str, Any] = {}
     for key, value in table.items():
-        path = f"{place}.{key}" if place else key
+        path = f"{prefix}.{key}" if prefix else key
         if isinstance(value, Mapping):
-            found[key] = with_curve_files(value, folder, path)
+            filled[key] = with_curve_files(value, folder, path)
         elif key != "curve":
-            found[key] = value
+            filled[key] = value
         elif not isinstance(value, str) or "force" in table:
-            raise ConfigurationError(f"{path}: found {value!r}; needed is the name of a file, and no force beside it")
+            raise ConfigurationError(
+                f"{path}: found {value!r}; must be the name of a file, without force in the same table"
+            )
         else:
-            # What has a law of damping is a damper.
-            found |= _points(folder / value, path, "velocity" if "viscous_law" in table else "displacement")
-    return found
+            # Only dampers have a law of damping.
+            filled |= _points(folder / value, path, "velocity" if "viscous_law" in table else "displacement")
+    return filled
 
 
 def _points(file: Path, path: str, key: str) -> dict[str, Any]:
-    """The columns of a file by their keys."""
-    # Parameters are known without numpy, which tables are read with.
+    """Return the columns of a file by their keys: the abscissa and "force"."""
+    # Imported here: parameters are read without numpy, tables are not.
     from vehicle.signals.records.named_columns import named_columns
     from vehicle.signals.records.reader import read_table
     from vehicle.signals.records.table import Wanted
@@ -94,14 +92,14 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
 
     def column(header: Header) -> int:
         if missing := set(heads.values()) - set(header.cells):
-            raise ConfigurationError(f"{header.where}: no column {min(missing)!r}; found {header.found}, needed are "
+            raise ConfigurationError(f"{header.where}: no column {min(missing)!r}; found {header.found}, must have "
                                      f"{needed}")  # fmt: skip
         return header.cells.index(HEADS[key])
 
     try:
         table = read_table(file, Wanted(needed=needed, key=column, remedy="repair or remove the row"))
     except VehicleError as error:
-        # Of a machine, in a format or in units of its own.
+        # A file of a test bench may have another format and other units.
         try:
             return {name: values.tolist() for name, values in named_columns(file, {key: SI[key], "force": "N"}).items()}
         except VehicleError:

@@ -15,7 +15,7 @@ FITTED = Path(__file__).with_name("damper_choice.toml")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadHoldingQuarterCar(Validated):
-    """Sprung mass on one wheel."""
+    """Sprung mass and wheel of a quarter car."""
 
     sprung_mass: float = quantity("kg", "sprung mass Ms", above=0.0)
     wheel: Axle
@@ -58,7 +58,7 @@ class FrequencyBands:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DamperChoiceParameters:
-    """Everything the damper study needs."""
+    """Parameters of the damper study."""
 
     quarter_car: RoadHoldingQuarterCar
     half_car: RoadHoldingHalfCar

@@ -1,4 +1,4 @@
-"""How a car drives: whether its wheels roll, and what its driver holds; what a template becomes when they roll."""
+"""Driving state of a car: speed and hold of the course; templates with rolling or fixed wheels."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.elements import Tyre
+from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.quantity import Validated, quantity
 from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.topology import Template
@@ -19,15 +19,15 @@ SPIN = "spin"
 """Name of the hinge about which a wheel turns on its hub."""
 
 ROUND = 1e-6
-"""Largest difference [m, kg m2] that a part which turns with the wheel may have from a body of revolution."""
+"""Tolerance [m, kg m2] within which a part that turns with the wheel is a body of revolution."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Driving(Validated):
-    """A car at constant speed straight ahead, with free wheels; at speed 0 its tyres stand, as on a rig.
+    """Constant speed straight ahead with freely rolling wheels; at speed 0 the tyres are at rest, as on a rig.
 
-    The hold of the course stands for the driver: free rolling leaves the place of the car along x and y and its heading
-    without any stiffness. Comfort does not depend on it: `docs/theory.md`.
+    The hold of the course represents the driver: free rolling leaves the position of the car along x and y and its
+    heading without any stiffness. Comfort does not depend on it: `docs/theory/rolling-tyre.md`.
     """
 
     speed: float = quantity(
@@ -50,12 +50,12 @@ class Driving(Validated):
 
     @property
     def rolling(self) -> bool:
-        """Whether the wheels turn."""
+        """True if the wheels turn."""
         return self.speed > 0.0
 
     @property
     def words(self) -> str:
-        """What the tyres do, for summaries and captions."""
+        """State of the tyres for summaries and captions, as "rolling at 80 km/h"."""
         return tyre_words([self])
 
 
@@ -63,10 +63,10 @@ STANDING = Driving()
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:
-    """Return what the tyres do in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
+    """Return the state of the tyres in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
 
     Args:
-        cars: how the car of each run drives.
+        cars: driving state of each run.
     """
     speeds = sorted({car.speed for car in cars})
     rolling = [f"{3.6 * speed:.4g}" for speed in speeds if speed > 0.0]
@@ -75,19 +75,19 @@ def tyre_words(cars: Iterable[Driving]) -> str:
 
 
 def driving_of(table: Mapping[str, Any]) -> Driving:
-    """The table `driving` of a vehicle file; standing where it has none. Errors as of `build`."""
+    """Return the table `driving` of a vehicle file; without it the tyres are at rest. Errors: see `build`."""
     return build(Driving, convert(dict, table.get("driving", {}), "driving"), "driving")
 
 
 def as_driven(template: Template, driving: Driving) -> Template:
-    """A template whose wheels turn on their hubs, or are fixed to them, as the car drives.
+    """Return a template with its "spin" joints replaced: hinges if the car drives, fixed joints otherwise.
 
-    What rolls hangs on a hinge about y on its hub, the tyre first and what turns with it on the tyre. The force of the
+    A rolling tyre is on a hinge about y on its hub; parts that turn with it are fixed to the tyre. The force of the
     road then acts on the hub: the steady spin turns the point of contact back as fast as the wheel turns.
 
     Args:
-        template: with joints of kind "spin".
-        driving: of the car.
+        template: template, with or without joints of kind "spin".
+        driving: driving state of the car.
     """
     spins = [joint for joint in template.joint if joint.kind == SPIN]
     if not spins:
@@ -105,27 +105,30 @@ def as_driven(template: Template, driving: Driving) -> Template:
             if others:
                 joints.append(replace(joint, kind="fixed", at=None, child=tuple(others), parent=tyre))
     connections = tuple(
-        replace(one, moving=hubs.get(one.moving, one.moving)) if one.carrier == "plate" else one
-        for one in template.connection
+        replace(connection, moving=hubs.get(connection.moving, connection.moving))
+        if connection.carrier == "plate"
+        else connection
+        for connection in template.connection
     )
     return replace(template, joint=tuple(joints), connection=connections)
 
 
 def require_rolling(vehicle: Vehicle) -> None:
-    """Refuse a rolling car whose tyres or wheels are not known well enough.
+    """Check the data that tyres and wheels of a rolling car need.
 
     Raises:
-        ConfigurationError: naming what is missing.
+        ConfigurationError: the first parameter that is missing or wrong.
     """
     driving, car = vehicle.driving, vehicle.composition
     if not driving.rolling:
         return
     standing = "let the tyres stand: --tyre standing, or driving.speed=0"
-    mend = f"give it, or {standing}"
-    on_plates = {one.carrier: one for one in car.connections}
-    if not car.wheels or any(one.ground and one.rolling is None for one in car.connections):
+    remedy = f"set it, or {standing}"
+    on_plates = {link.carrier: link for link in car.connections}
+    if not car.wheels or any(link.ground and link.rolling is None for link in car.connections):
         raise ConfigurationError(
-            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} does not stand on wheels alone; {standing}"
+            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} has other ground contacts "
+            f"than wheels; {standing}"
         )
     for wheel in car.wheels:
         tyre = on_plates[wheel.plate]
@@ -134,21 +137,22 @@ def require_rolling(vehicle: Vehicle) -> None:
         for key in ("slip_stiffness", "cornering_stiffness", "carcass_longitudinal", "carcass_lateral"):
             if getattr(tyre.law, key) is None:
                 raise ConfigurationError(
-                    f"{tyre.path}.{key}: missing; a rolling tyre needs it (driving.speed {driving.speed:g} m/s); {mend}"
+                    f"{tyre.path}.{key}: missing; a rolling tyre needs it (driving.speed {driving.speed:g} m/s); "
+                    f"{remedy}"
                 )
         if tyre.moving == wheel.part:
             raise ConfigurationError(
-                f'{tyre.path}: its template fixes {wheel.part} to the hub; give it a joint of kind = "spin", as '
-                f"wheel.toml has; {mend}"
+                f'{tyre.path}: its template fixes {wheel.part} to the hub; use a joint of kind = "spin", as '
+                f"wheel.toml has; {remedy}"
             )
         if abs(wheel.center[0] - wheel.patch[0]) > ROUND:
             raise ConfigurationError(
-                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, needed is that of {wheel.paths[0]}, "
+                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be that of {wheel.paths[0]}, "
                 f"{wheel.center[0]:g} m: ahead of the centre the load would drive or brake a rolling wheel"
             )
         spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
-        held = [(one.path, {one.moving, one.carrier}) for one in car.connections]
-        held += [(f"outputs.{one.name}", {one.on}) for one in car.outputs]
+        held = [(link.path, {link.moving, link.carrier}) for link in car.connections]
+        held += [(f"outputs.{link.name}", {link.on}) for link in car.outputs]
         for path, parts in held:
             if parts & spinning:
                 raise ConfigurationError(
@@ -162,6 +166,6 @@ def require_rolling(vehicle: Vehicle) -> None:
             ixx, _, izz = part.numbers.inertia or (0.0, 0.0, 0.0)
             if max(abs(x), abs(z), abs(ixx - izz), *map(abs, part.numbers.products)) > ROUND:
                 raise ConfigurationError(
-                    f"{part.path}: turns with the wheel and is no body of revolution about its axle; needed are "
+                    f"{part.path}: turns with the wheel and is no body of revolution about its axle; must have "
                     "inertia.x = inertia.z, no products, and an offset along y alone"
                 )

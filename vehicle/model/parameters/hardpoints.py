@@ -11,39 +11,37 @@ from vehicle.errors import ConfigurationError
 Point = tuple[float, float, float]
 
 COINCIDENT_M = 1e-3
-"""Two hardpoints of one part closer than this are taken for the same point."""
+"""Minimum distance of two hardpoints of one part [m]; closer points count as coincident."""
 
 LARGEST_M = 20.0
-"""No car has a hardpoint farther from its origin: larger numbers are millimetres."""
+"""Maximum coordinate of a hardpoint [m]; larger values are millimetres."""
 
 SMALLEST_SINE = 0.02
-"""Three points of an arm with a smaller angle between them lie on one line."""
+"""Minimum sine of the angle at the first of three points of an arm; smaller: the points are collinear."""
 
 
 def mirrored(point: Point, sign: float) -> Point:
-    """The point for the right side (sign 1) or its mirror image on the left side (sign -1)."""
+    """Return a point of the right side (sign 1) or its mirror image on the left side (sign -1)."""
     return (point[0], sign * point[1], point[2])
 
 
 def require_point(path: str, point: Point, *, right: bool) -> None:
-    """Refuse a point that is none.
+    """Check the coordinates of a point.
 
     Args:
-        path: of the parameter.
-        point: [m].
-        right: whether it is one of the right side.
+        path: path of the parameter.
+        point: coordinates [m].
+        right: the point must be on the right side.
 
     Raises:
         ConfigurationError: not three finite numbers, in millimetres, or on the wrong side.
     """
     if len(point) != 3:
-        raise ConfigurationError(f"{path}: found {point!r}, needed is a list of 3 numbers [m]")
+        raise ConfigurationError(f"{path}: found {point!r}, must be a list of 3 numbers [m]")
     if not all(map(math.isfinite, point)):
-        raise ConfigurationError(f"{path}: found {list(point)} m, needed are finite numbers")
+        raise ConfigurationError(f"{path}: found {list(point)} m, must be finite numbers")
     if max(map(abs, point)) > LARGEST_M:
-        raise ConfigurationError(
-            f"{path}: found {list(point)} m, farther than {LARGEST_M} m: looks like mm; give metres"
-        )
+        raise ConfigurationError(f"{path}: found {list(point)} m, farther than {LARGEST_M} m: probably mm; set metres")
     if right and point[1] <= 0.0:
         raise ConfigurationError(
             f"{path}: found y = {point[1]} m, side points are those of the right side (y > 0); the left side is "
@@ -52,10 +50,10 @@ def require_point(path: str, point: Point, *, right: bool) -> None:
 
 
 def require_apart(points: Mapping[str, Point]) -> None:
-    """Refuse points of one part that coincide; by their paths [m].
+    """Check that the points of a part do not coincide; points [m] by their paths.
 
     Raises:
-        ConfigurationError: naming two of them.
+        ConfigurationError: two points coincide.
     """
     for (first, a), (second, b) in itertools.combinations(points.items(), 2):
         if (distance := math.dist(a, b)) < COINCIDENT_M:
@@ -66,10 +64,10 @@ def require_apart(points: Mapping[str, Point]) -> None:
 
 
 def require_triangle(points: Mapping[str, Point]) -> None:
-    """Refuse an arm whose points, the first three of the mapping, lie on one line.
+    """Check that the first three points of an arm span a triangle.
 
     Raises:
-        ConfigurationError: naming the points.
+        ConfigurationError: the points are collinear.
     """
     corner, first, second = list(points.values())[:3]
     if _sine(corner, first, second) < SMALLEST_SINE:
@@ -79,7 +77,7 @@ def require_triangle(points: Mapping[str, Point]) -> None:
 
 
 def _sine(corner: Sequence[float], first: Sequence[float], second: Sequence[float]) -> float:
-    """Sine of the angle at `corner` of a triangle."""
+    """Return the sine of the angle at `corner` of a triangle."""
     u = [b - a for a, b in zip(corner, first, strict=True)]
     v = [b - a for a, b in zip(corner, second, strict=True)]
     cross = (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])

@@ -1,22 +1,22 @@
-"""Parameters that were changed and do nothing, because the law they belong to is off."""
+"""Notices on overrides without effect, because the law of the parameter is switched off."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
 
-from vehicle.model.parameters.elements import Hydromount
+from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.model.parameters.paths import meant
-from vehicle.model.parameters.semi_active import SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.model.parameters.vehicle import Vehicle
 
 
 def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ...]:
-    """A sentence for each override of a parameter without effect.
+    """Return a notice for each override of a parameter without effect.
 
     Args:
         vehicle: the car.
-        overrides: texts "path=value" that it was made with.
+        overrides: texts "path=value" of the car.
     """
     rigid = not vehicle.body.flexible
     off = {f"body.{name}": (rigid, "body.flexible = true") for name in ("frequency_scale", "model_mass")}
@@ -27,17 +27,17 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         off[f"{path}.viscous"] = (not passive, f"{path}.control.law = passive")
         if passive and law.viscous_law == "table":
             off[f"{path}.viscous"] = (True, f"{path}.viscous_law = linear or degressive")
-        for name in (one.name for one in dataclasses.fields(SemiActiveDamper) if one.name != "law"):
+        for name in (entry.name for entry in dataclasses.fields(SemiActiveDamper) if entry.name != "law"):
             off[f"{path}.control.{name}"] = (passive, f"{path}.control.law = skyhook or another law")
         off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
-    for one in vehicle.composition.connections:
-        if isinstance(one.law, Hydromount):
-            none = one.law.maxwell_stiffness * one.law.maxwell_damping == 0.0
-            off[f"{one.path}.maxwell_"] = (none, "both of its values above zero")
-    said = {text: meant(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
+    for connection in vehicle.composition.connections:
+        if isinstance(connection.law, Hydromount):
+            none = connection.law.maxwell_stiffness * connection.law.maxwell_damping == 0.0
+            off[f"{connection.path}.maxwell_"] = (none, "both of its values above zero")
+    paths = {text: meant(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
     return tuple(
         f"{override.strip()}: without effect; it belongs to {needed}"
-        for override, places in said.items()
+        for override, whole_paths in paths.items()
         for path, (idle, needed) in off.items()
-        if idle and any(whole.startswith(path) and not whole.endswith(".viscous_law") for whole in places)
+        if idle and any(whole.startswith(path) and not whole.endswith(".viscous_law") for whole in whole_paths)
     )

@@ -1,4 +1,4 @@
-"""Keys that a vehicle file may hold and need not: those with a default, further laws, and the tables of one side."""
+"""Optional keys of a vehicle file: parameters with a default, further laws, and tables of one side."""
 
 from __future__ import annotations
 
@@ -8,26 +8,26 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from vehicle.model.parameters.body import MOST_MODES, BodyInertia, BodyMode, TrimmedBody
-from vehicle.model.parameters.compose import kinds
+from vehicle.model.parameters.body import MAX_MODES, BodyInertia, BodyMode, TrimmedBody
+from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
-from vehicle.model.parameters.elements import Bushing, Damper, ForceTable, Hydromount, Tyre
-from vehicle.model.parameters.instances import instances
+from vehicle.model.parameters.force_elements import Bushing, Damper, ForceTable, Hydromount, Tyre
+from vehicle.model.parameters.instance import instances
 from vehicle.names import SIDE_SIGN
 
 
 def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
-    """Paths that a vehicle file does not hold and may be given, those of the sides last.
+    """Return the paths that a vehicle file does not contain but may contain, those of the sides last.
 
     Args:
-        table: the file, as of `read_table`.
-        folder: where it lies.
+        table: vehicle file, see `read_table`.
+        folder: folder of the file.
 
     Raises:
         ConfigurationError: its templates or their keys are wrong.
     """
     car = instances(table, (folder, folder / "templates"))
-    own, given = (
+    paths, kinds = (
         [
             "shaker_wheel",
             "shaker_wheel_in_source",
@@ -35,18 +35,19 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),
             *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
         ],
-        kinds(car, table),
+        parameter_kinds(car, table),
     )
-    own += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
+    paths += [f"body.inertia.{key}" for key in _keys(BodyInertia, everything=False)]
     # An ideal joint becomes a bushing by numbers.
-    places = [f"{i.name}.bushings.{one.name}" for i in car.values() for one in i.template.connection]
-    ideal = dict.fromkeys((path for path in places if path not in given), Bushing)
-    every = {**given, **ideal}
-    own += [f"{path}.{key}" for path in ideal for key in _keys(Bushing, everything=True)]
-    for path, kind in every.items():
+    bushings = [f"{i.name}.bushings.{link.name}" for i in car.values() for link in i.template.connection]
+    ideal = dict.fromkeys((path for path in bushings if path not in kinds), Bushing)
+    every = {**kinds, **ideal}
+    paths += [f"{path}.{key}" for path in ideal for key in _keys(Bushing, everything=True)]
+    for path, parameters in every.items():
         # A bushing becomes a hydromount by the numbers of its branch.
-        for one in (kind, Hydromount) if kind in (Bushing, Tyre) else (kind,):
-            own += [f"{path}.{key}" for key in _keys(one, everything=one is Hydromount and kind is not Hydromount)]
+        paths += [f"{path}.{key}" for key in _keys(parameters, everything=False)]
+        if parameters in (Bushing, Tyre):
+            paths += [f"{path}.{key}" for key in _keys(Hydromount, everything=True)]
     sides = []
     for i in car.values():
         inside = [path.removeprefix(f"{i.name}.") for path in every if path.startswith(f"{i.name}.")]
@@ -54,16 +55,16 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
         keys += [f"hardpoints.{name}" for name in i.template.hardpoints]
         sides += [f"{i.name}.{side}.{key}" for side in SIDE_SIGN if i.template.mirrored for key in keys]
     changes = list(_keys(BodyMode, everything=False))
-    modes = [f"body.modes.{number}.{key}" for number in range(1, MOST_MODES + 1) for key in changes]
-    return list(dict.fromkeys(path for path in (*own, *sides, *modes) if _missing(table, path)))
+    modes = [f"body.modes.{number}.{key}" for number in range(1, MAX_MODES + 1) for key in changes]
+    return list(dict.fromkeys(path for path in (*paths, *sides, *modes) if _missing(table, path)))
 
 
-def _keys(kind: type[Any], *, everything: bool) -> Iterator[str]:
-    """Keys of a class of numbers that have a default, or all; tables of points key by key."""
-    hints = typing.get_type_hints(kind)
-    if kind in (Damper, ForceTable):
+def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
+    """Yield the keys of a parameter class that have a default, or all keys; tables of points key by key."""
+    hints = typing.get_type_hints(parameters)
+    if parameters in (Damper, ForceTable):
         yield "curve"
-    for entry in dataclasses.fields(kind):
+    for entry in dataclasses.fields(parameters):
         needed = entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
         if ForceTable in typing.get_args(hints[entry.name]):
             yield entry.name

@@ -1,8 +1,8 @@
-"""Parameters by their dotted paths: which there are, what they hold, their units, and other values in their places.
+"""Parameters by their dotted paths: list, values, units and overrides.
 
-A path names the tables down to a value, as "front.bushings.suspension_mount.stiffness"; a component of a vector has
-its axis behind it, as in "front.bushings.suspension_mount.stiffness.z". The end of a path is enough where only one path
-ends so, as in "suspension_mount.stiffness.z". A file may give other names of its own in the table `alias`.
+A path names the tables down to a value, as "front.bushings.suspension_mount.stiffness"; the component of a vector is
+the last name, as in "front.bushings.suspension_mount.stiffness.z". The end of a path is sufficient if it is unique, as
+"suspension_mount.stiffness.z". A vehicle file may define further names in the table `alias`.
 """
 
 from __future__ import annotations
@@ -20,61 +20,61 @@ from vehicle.model.parameters.toml_file import as_table, copy_table
 from vehicle.names import AXES
 
 Optional = Callable[[], Iterable[str]]
-"""Paths that may be given beside those of a table."""
+"""Function that returns the optional paths of a table, see `optional_paths`."""
 
 DECIMAL = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)")
-"""A TOML number that is not whole."""
+"""TOML number with a decimal point or an exponent."""
 
 SHOWN = 4
-"""Most paths that a message lists."""
+"""Maximum number of paths that a message lists."""
 
 
 def full_path(table: Mapping[str, Any], path: str) -> str:
-    """The whole path of a parameter or of a group.
+    """Return the whole path of a parameter or of a group.
 
     Args:
-        table: nested dictionaries, as of `read_table`.
-        path: a whole path, or the end of one.
+        table: nested dictionaries, see `read_table`.
+        path: whole path, or the end of a path.
 
     Raises:
-        ConfigurationError: nothing is called so (with the nearest path), or more than one thing is.
+        ConfigurationError: the path does not exist (with the nearest path), or is ambiguous.
     """
     if value_at(table, path) is not None:
         return path
     if isinstance(other := table.get("alias", {}).get(path), str):
         return full_path({**table, "alias": {}}, other)
-    known = paths(table)
-    groups = [one.rpartition(".")[0] for one in known]
-    found = [one for one in dict.fromkeys([*known, *groups]) if one.endswith(f".{path}")]
-    if not found:
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, known)}")
-    return _only(found, path)
+    every_path = paths(table)
+    groups = [candidate.rpartition(".")[0] for candidate in every_path]
+    matches = [candidate for candidate in dict.fromkeys([*every_path, *groups]) if candidate.endswith(f".{path}")]
+    if not matches:
+        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, every_path)}")
+    return _only(matches, path)
 
 
-def _only(found: Sequence[str], path: str) -> str:
-    if len(found) > 1:
-        more = f" or one of {len(found) - SHOWN} others" if len(found) > SHOWN else ""
-        raise ConfigurationError(f"parameter {path} may be {', '.join(found[:SHOWN])}{more}; give more of its path")
-    return found[0]
+def _only(matches: Sequence[str], path: str) -> str:
+    if len(matches) > 1:
+        more = f" or one of {len(matches) - SHOWN} others" if len(matches) > SHOWN else ""
+        raise ConfigurationError(f"parameter {path} may be {', '.join(matches[:SHOWN])}{more}; give more of its path")
+    return matches[0]
 
 
 def paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
-    """Paths of all values and of the components of all vectors, in the order of the file."""
-    found: list[str] = []
+    """Return the paths of all values and of the components of all vectors, in the order of the file."""
+    listed: list[str] = []
     for key, value in table.items():
         if key == "alias" and not prefix:
             continue
-        place = f"{prefix}{key}"
+        path = f"{prefix}{key}"
         if isinstance(value, Mapping):
-            found += paths(value, f"{place}.")
+            listed += paths(value, f"{path}.")
         else:
-            found += [place, *(f"{place}.{axis}" for axis in AXES if _is_vector(value))]
-    return found
+            listed += [path, *(f"{path}.{axis}" for axis in AXES if _is_vector(value))]
+    return listed
 
 
 def nearest(path: str, known: Iterable[str]) -> str:
-    """The known path that another one begins, else the one that is spelt most like it."""
-    # A short path is compared with the ends of the known ones; of equal ones the first wins.
+    """Return the path that starts with the given path, otherwise the path with the most similar spelling."""
+    # A short path is compared with the ends of all paths; of equal ends the first path counts.
     ends = {".".join(one.split(".")[-(path.count(".") + 1) :]): one for one in reversed(list(known))}
     begun = min((end for end in ends if end.startswith(path)), key=len, default=None)
     if begun is not None:
@@ -83,15 +83,15 @@ def nearest(path: str, known: Iterable[str]) -> str:
 
 
 def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> list[str]:
-    """Whole paths of what is to be set: one, or with "*." before it all that end so.
+    """Return the whole paths of the parameters that an override sets: one, or with a leading "*." all with this end.
 
     Args:
         table: nested dictionaries.
-        path: a whole path, or the end of one.
-        optional: paths that may be given beside those of the table, of sides too; asked for where it has none.
+        path: whole path, or the end of a path.
+        optional: function that returns further paths, including those of sides; called if the table has no match.
 
     Raises:
-        ConfigurationError: nothing is called so (with the nearest path), or more than one thing is.
+        ConfigurationError: the path does not exist (with the nearest path), or is ambiguous.
     """
     every = path.startswith("*.")
     if not every:
@@ -100,28 +100,30 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
         except ConfigurationError as error:
             if not str(error).startswith("no parameter"):
                 raise
-    # Of what is given for both sides, one side is meant only where it is named.
+    # A path without a side means both sides.
     sided = bool({"right", "left"} & set(path.split(".")))
-    known = paths(table)
-    further = [one for one in optional() if sided or not {"right", "left"} & set(one.split("."))]
-    found = [one for one in (*known, *further) if f".{one}".endswith(f".{path.removeprefix('*.')}")]
-    if not found:
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, [*known, *further])}")
-    return found if every else [path if path in found else _only(found, path)]
+    existing = paths(table)
+    further = [candidate for candidate in optional() if sided or not {"right", "left"} & set(candidate.split("."))]
+    matches = [
+        candidate for candidate in (*existing, *further) if f".{candidate}".endswith(f".{path.removeprefix('*.')}")
+    ]
+    if not matches:
+        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, [*existing, *further])}")
+    return matches if every else [path if path in matches else _only(matches, path)]
 
 
 def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
     """Return overrides as texts "path=value".
 
     Args:
-        overrides: such texts, or path to value: numbers, texts, booleans, vectors.
+        overrides: texts "path=value", or path to value: numbers, texts, booleans, vectors.
 
     Raises:
-        ConfigurationError: a single text, whose letters would be taken for overrides, or a value of another type.
+        ConfigurationError: a single text, whose letters would count as overrides, or a value of another type.
     """
     if isinstance(overrides, str | bytes):
         raise ConfigurationError(
-            f"overrides: found the text {overrides!r}; needed is a list, as [{str(overrides)!r}], or {{path: value}}"
+            f"overrides: found the text {overrides!r}; must be a list, as [{str(overrides)!r}], or {{path: value}}"
         )
     if isinstance(overrides, Mapping):
         return [f"{path}={_toml(path, value)}" for path, value in overrides.items()]
@@ -129,7 +131,7 @@ def assignments(overrides: Iterable[str] | Mapping[str, Any]) -> list[str]:
 
 
 def _toml(path: str, value: Any) -> str:
-    """A value as in a TOML file."""
+    """Return a value as TOML text."""
     if hasattr(value, "tolist"):  # of numpy
         value = value.tolist()
     if isinstance(value, bool):
@@ -142,50 +144,47 @@ def _toml(path: str, value: Any) -> str:
         return "{" + ", ".join(f"{key} = {_toml(path, inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, Sequence):
         return "[" + ", ".join(_toml(path, inner) for inner in value) + "]"
-    raise ConfigurationError(f"overrides: {path} is a {type(value).__name__}; needed is a number, a text or a list")
+    raise ConfigurationError(f"overrides: {path} is a {type(value).__name__}; must be a number, a text or a list")
 
 
 def override(table: Mapping[str, Any], assignments: Iterable[str], optional: Optional = list) -> dict[str, Any]:
-    """Replace single values of nested dictionaries, or give optional ones.
+    """Return nested dictionaries with other values; an optional parameter is added.
 
     Args:
-        table: as of `read_table`; not changed.
+        table: nested dictionaries, see `read_table`; not changed.
         assignments: texts like "damper.coulomb_friction=93.75"; the value is written as in TOML. "*.damper.viscous=2e3"
-            is for every damper.
-        optional: as of `meant`.
-
-    Returns:
-        A new table.
+            sets the value of all dampers.
+        optional: see `meant`.
 
     Raises:
         ConfigurationError: no '=' in the text, a value that is not TOML, a group, or a path that does not exist or is
-            not complete enough.
+            ambiguous.
     """
     result: dict[str, Any] = copy_table(table)
     for assignment in assignments:
-        given, separator, text = (part.strip() for part in assignment.partition("="))
-        if not separator or not given:
-            raise ConfigurationError(f"--set {assignment}: needed is PATH=VALUE, as in damper.coulomb_friction=93.75")
+        name, separator, text = (part.strip() for part in assignment.partition("="))
+        if not separator or not name:
+            raise ConfigurationError(f"--set {assignment}: must be PATH=VALUE, as in damper.coulomb_friction=93.75")
         try:
-            places = meant(result, given, optional)
+            paths = meant(result, name, optional)
         except ConfigurationError as error:
             raise ConfigurationError(f"--set {assignment}: {error}") from None
-        for path in places:
+        for path in paths:
             _set(result, path, assignment, text)
     return result
 
 
 def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
-    """Put a value into its place; tables that an optional one needs are made."""
-    old, given = value_at(table, path), assignment.partition("=")[0].strip()
+    """Set the value of a path; create the tables of an optional parameter."""
+    old, set_path = value_at(table, path), assignment.partition("=")[0].strip()
     if isinstance(old, Mapping):
         inside = ", ".join(f"{path}.{key}" for key in list(old)[:6])
-        raise ConfigurationError(f"--set {assignment}: {given} is a group; set one of {inside}")
+        raise ConfigurationError(f"--set {assignment}: {set_path} is a group; set one of {inside}")
     value = parsed_value(assignment, text, "" if old is None else old)
     if _is_vector(old) and isinstance(value, int | float):
         raise ConfigurationError(
-            f"--set {assignment}: {given} is a vector; give all as [x, y, z], or one component with its axis "
-            f"behind the path: {given}.z={text}"
+            f"--set {assignment}: {set_path} is a vector; set all components as [x, y, z], or one by adding "
+            f"its axis to the path: {set_path}.z={text}"
         )
     *parents, name = path.split(".")
     outer: Any = table
@@ -195,14 +194,14 @@ def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
 
 
 def value_of(vehicle: Any, path: str) -> float:
-    """Value of a number in a parameter object.
+    """Return the value of a number in a parameter object.
 
     Args:
-        vehicle: the parameters.
-        path: as of `full_path`, of a number or of a component; the whole path of one that has its default.
+        vehicle: the parameter object.
+        path: path of a number or of a component, see `full_path`; the whole path for a parameter with its default.
 
     Raises:
-        ConfigurationError: the path is no number of it.
+        ConfigurationError: the path does not lead to a number.
     """
     table = as_table(vehicle)
     declared: Mapping[str, Any] = vehicle.quantity_of(path)
@@ -211,29 +210,26 @@ def value_of(vehicle: Any, path: str) -> float:
             return float(declared["default"])
         raise ConfigurationError(f"parameter {path}: not given in this vehicle, and without a default; give its value")
     try:
-        found = value_at(table, full_path(table, path))
-        if _is_number(found):
-            return float(found)
+        value = value_at(table, full_path(table, path))
+        if _is_number(value):
+            return float(value)
         raise ConfigurationError(f"the nearest is {nearest(path, _numbers(table))}")
     except ConfigurationError as error:
-        # Of a misspelt one the nearest number is wanted, not the nearest text.
+        # For a misspelt path, show the nearest number, not the nearest text.
         misspelt = str(error).startswith("no parameter")
         reason = f"the nearest is {nearest(path, _numbers(table))}" if misspelt else str(error)
         raise ConfigurationError(f"parameter {path}: no number of a vehicle; {reason}") from None
 
 
 def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
-    """Overrides "path=value" that put numbers into a parameter object.
+    """Return overrides "path=value" of numbers, for `override`.
 
     Args:
-        vehicle: the car they are for.
+        vehicle: the car.
         values: path to value.
 
-    Returns:
-        Texts for `override`.
-
     Raises:
-        ConfigurationError: a path that is no number of it.
+        ConfigurationError: a path does not lead to a number of the car.
     """
     for path in values:
         if "unit" not in vehicle.quantity_of(path):
@@ -242,29 +238,29 @@ def overrides_of(vehicle: Any, values: Mapping[str, float]) -> tuple[str, ...]:
 
 
 def unit_of(car: Any, path: str) -> str:
-    """Unit of a parameter, as it is declared; arguments as of `quantity_of`."""
+    """Return the declared unit of a parameter; arguments: see `quantity_of`."""
     return str(quantity_of(car, path)["unit"])
 
 
 def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
-    """What is declared of a parameter, as of `quantity`: unit, meaning, range.
+    """Return the declaration of a parameter, see `quantity`: unit, meaning, range.
 
     Args:
         car: a vehicle, or a parameter class, as QuarterCar.
-        path: of a value or of a component; of a class the whole path.
+        path: path of a value or of a component; for a class the whole path.
 
     Raises:
-        ConfigurationError: the path is no quantity of it.
+        ConfigurationError: the path does not lead to a quantity.
     """
-    found = field_quantity(car, path) if isinstance(car, type) else car.quantity_of(full_path(as_table(car), path))
-    if "unit" not in found:
-        what = car.__name__ if isinstance(car, type) else "a vehicle"
-        raise ConfigurationError(f"parameter {path}: no quantity of {what}; give the whole path of a value")
-    return found
+    declared = field_quantity(car, path) if isinstance(car, type) else car.quantity_of(full_path(as_table(car), path))
+    if "unit" not in declared:
+        owner = car.__name__ if isinstance(car, type) else "a vehicle"
+        raise ConfigurationError(f"parameter {path}: no quantity of {owner}; give the whole path of a value")
+    return declared
 
 
 def value_at(table: Any, path: str) -> Any:
-    """What a whole path leads to; None where it leads nowhere."""
+    """Return the value at a whole path; None if the path does not exist."""
     inner = table
     for key in path.split("."):
         if isinstance(inner, Mapping):
@@ -287,18 +283,18 @@ def _is_number(value: Any) -> bool:
 
 
 def parsed_value(assignment: str, text: str, old: Any) -> Any:
-    """Parse the value of an override; a bare word stands for a text where a text is wanted.
+    """Parse the value of an override; a word without quotes is a text if the old value is a text.
 
     Args:
         assignment: the override, for messages.
-        text: its value.
-        old: what stands there; a bare word is a text in place of one.
+        text: text of the value.
+        old: value that is replaced.
 
     Raises:
-        ConfigurationError: it is no value.
+        ConfigurationError: the text is not a TOML value.
     """
     if DECIMAL.fullmatch(text):
-        return float(text)  # by far the most of them, and a parser of files takes its time
+        return float(text)  # the most frequent case; the TOML parser is slow
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except RecursionError:
@@ -307,7 +303,7 @@ def parsed_value(assignment: str, text: str, old: Any) -> Any:
         if isinstance(old, str) and PATH_PATTERN.fullmatch(text):
             return text
         try:
-            return float(text)  # ".5" and "1." are numbers to everybody but TOML
+            return float(text)  # ".5" and "1." are numbers, but not in TOML
         except ValueError:
             pass
         raise ConfigurationError(f"--set {assignment}: {text!r} is not a number, a list of numbers or a text") from None

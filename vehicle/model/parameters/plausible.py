@@ -1,7 +1,7 @@
-"""What no road vehicle is, from a micro car to a loaded van: refused by the parameter's name, its value and the reason.
+"""Plausibility checks of a road vehicle, from a micro car to a loaded van; messages give parameter, value and reason.
 
-Ranges of single numbers stand in their declarations; here are those that need two parameters, or the role of a part.
-They are wide on purpose: they are there for slips of the pen and of the unit, not for taste.
+Ranges of single parameters are in their declarations. The checks here need two parameters, or the role of a part. They
+are wide: they detect errors of typing and of units.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body import MOMENTS
 from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.loads import Load
+from vehicle.model.parameters.load_mass import Load
 from vehicle.names import AXES
 
 if TYPE_CHECKING:
@@ -22,22 +22,22 @@ ENGINE_MASS = (20.0, 1000.0, "an electric motor has 30 kg, a large diesel with i
 PART_MASS = (0.02, 150.0, "from the screw of a rod to the wheel of a van")
 GYRATION = (1e-3, 1.0, "radius of gyration: thicker than a wire, smaller than the car is wide")
 OFFSET_M = 1.0
-"""No part lies farther from the mean of its own hardpoints [m]."""
+"""Maximum offset of a centre of gravity from the mean of the hardpoints of the part [m]."""
 
 WHEEL_RADIUS = (0.15, 0.7, "loaded radius: 0.23 m of a micro car, 0.4 m of a van")
 HALF_TRACK = (0.3, 1.3, "half the track: 0.45 m of a micro car, 0.95 m of a van")
 WHEELBASE = (0.5, 8.0, "from the first to the last point on the ground: a wheelbase of 1.5 to 5 m")
 PATCH_ASIDE_M = 0.2
-"""The contact patch lies below the wheel centre, give or take camber and trail [m]."""
+"""Maximum horizontal distance of contact patch and wheel centre, due to camber and trail [m]."""
 
 BODY_GYRATION = (0.2, 4.0, "radius of gyration of a body 2 to 8 m long")
 
 
 def require_plausible(vehicle: Vehicle) -> None:
-    """Refuse a car that no engineer could mean.
+    """Check that a car is plausible.
 
     Raises:
-        ConfigurationError: naming the parameter, the value, what is allowed and why.
+        ConfigurationError: a value out of range; with parameter, value, range and reason.
     """
     require_parts(vehicle)
     for wheel in vehicle.composition.wheels:
@@ -49,22 +49,22 @@ def require_plausible(vehicle: Vehicle) -> None:
 def _within(path: str, value: float, unit: str, limits: tuple[float, float, str]) -> None:
     low, high, why = limits
     if not low <= value <= high:
-        raise ConfigurationError(f"{path}: found {value:g} {unit}, allowed are {low:g} to {high:g} {unit} ({why})")
+        raise ConfigurationError(f"{path}: found {value:g} {unit}, must be {low:g} to {high:g} {unit} ({why})")
 
 
 def require_parts(vehicle: Vehicle) -> None:
-    """Refuse parts that no car has; errors as of `require_plausible`."""
+    """Check mass, inertia and offset of all parts; errors: see `require_plausible`."""
     for placed in vehicle.composition.parts:
         part, path = placed.numbers, placed.path
         if isinstance(part, Load):
-            continue  # its ranges stand in its declaration
+            continue  # checked by its declaration
         _within(f"{path}.mass", part.mass, "kg", ENGINE_MASS if placed.shape == "engine" else PART_MASS)
         for axis, moment in zip(AXES, part.inertia or (), strict=True):
             low, high, why = GYRATION
             limits = (part.mass * low**2, part.mass * high**2, f"{why}, at {part.mass:g} kg")
             _within(f"{path}.inertia.{axis}", moment, "kg m2", limits)
         for axis, offset in zip(AXES, part.offset, strict=True):
-            limits = (-OFFSET_M, OFFSET_M, "a part lies near its own hardpoints; give metres")
+            limits = (-OFFSET_M, OFFSET_M, "a part is near its hardpoints; set metres")
             _within(f"{path}.offset.{axis}", offset, "m", limits)
 
 
@@ -78,11 +78,11 @@ def _wheel(wheel: PlacedWheel) -> None:
 
 
 def _ground(vehicle: Vehicle) -> None:
-    """Where the car stands: long enough, and nothing below its plates."""
-    ground = [one for one in vehicle.composition.connections if one.ground]
+    """Check the ground contacts: wheelbase, and no hardpoint below the lowest plate."""
+    ground = [contact for contact in vehicle.composition.connections if contact.ground]
     if not ground:
-        raise ConfigurationError(f"{vehicle.name}: stands on nothing; give it an axle with wheels, or blocks")
-    along = [one.at[0] for one in ground]
+        raise ConfigurationError(f"{vehicle.name}: has no ground contact; add an axle with wheels, or blocks")
+    along = [contact.at[0] for contact in ground]
     first, last = (ground[along.index(end)] for end in (min(along), max(along)))
     _within(f"{last.point}.x less {first.point}.x", last.at[0] - first.at[0], "m", WHEELBASE)
     low = min(vehicle.composition.wheels, key=lambda wheel: wheel.patch[2], default=None)
@@ -95,13 +95,13 @@ def _ground(vehicle: Vehicle) -> None:
 
 
 def _point_path(vehicle: Vehicle, name: str) -> str:
-    """Path of a point of the model in the vehicle file."""
-    found = [path for path in vehicle.composition.meanings if name.startswith(path.rpartition(".")[2])]
-    return max(found, key=len, default=f"hardpoints.{name}")
+    """Return the path in the vehicle file of a point of the model."""
+    paths = [path for path in vehicle.composition.meanings if name.startswith(path.rpartition(".")[2])]
+    return max(paths, key=len, default=f"hardpoints.{name}")
 
 
 def require_body(vehicle: Vehicle) -> None:
-    """Refuse a body that no car has; errors as of `require_plausible`."""
+    """Check centre of gravity and moments of inertia of the body; errors: see `require_plausible`."""
     body, every = vehicle.body, list[Point](vehicle.points.values())
     for index, axis in enumerate(AXES):
         low, high = min(point[index] for point in every), max(point[index] for point in every)
@@ -109,7 +109,7 @@ def require_body(vehicle: Vehicle) -> None:
         _within(f"body.cog.{axis}", body.cog[index], "m", (low, high, why))
     low, high, why = BODY_GYRATION
     at_cog = body.inertia.about == "cog"
-    far, place = (0.0, "CoG") if at_cog else (sum(value**2 for value in body.cog), "origin")
+    far, reference = (0.0, "CoG") if at_cog else (sum(value**2 for value in body.cog), "origin")
     for name in MOMENTS[:3]:
-        limits = (body.mass * low**2, body.mass * (high**2 + far), f"about the {place}; {why}")
+        limits = (body.mass * low**2, body.mass * (high**2 + far), f"about the {reference}; {why}")
         _within(f"body.inertia.{name}", getattr(body.inertia, name), "kg m2", limits)

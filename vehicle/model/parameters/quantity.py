@@ -1,4 +1,4 @@
-"""Fields of parameter classes: each carries its unit, its meaning and its allowed range, and is validated from them."""
+"""Fields of parameter classes with unit, meaning and range, and their validation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vehicle.names import AXES
 
 NAME_PATTERN = re.compile(r"[A-Za-z0-9_.-]+")
 PATH_PATTERN = re.compile(r"[^\s\"'\[\]{}#\\]([^\"'\[\]{}#\\\r\n\t]*[^\s\"'\[\]{}#\\])?")
-"""Path of a file: blanks inside it, and no sign that means something in a TOML file."""
+"""Path of a file: may contain blanks, but no character with a meaning in TOML."""
 
 
 def quantity(
@@ -38,11 +38,11 @@ def quantity(
         above: the value (each component) must be greater than this.
         at_least: the value (each component) must not be less than this.
         at_most: the value (each component) must not exceed this.
-        why: reason of the range, shown where it is left.
+        why: reason of the range, shown if a value is outside.
         length: number of components of a vector; None for a scalar.
-        choices: allowed words of a text field.
-        is_file: True for a text field that may be the path of a file; other texts are names.
-        default: value where a file leaves the field out; by default it must be given.
+        choices: allowed values of a text field.
+        is_file: True for a text field that may be the path of a file; by default texts are names.
+        default: value if a file leaves the field out; by default the field is required.
 
     Returns:
         A dataclass field with the description in its metadata.
@@ -72,18 +72,18 @@ def validate(instance: Any, where: str = "") -> None:
         where: dotted path of the object, shown in messages; the class name by default.
 
     Raises:
-        ConfigurationError: naming the field, the value found, the unit and what is allowed.
+        ConfigurationError: a value is wrong; with field, value, unit and range.
     """
-    place = where or type(instance).__name__
+    prefix = where or type(instance).__name__
     for entry in dataclasses.fields(instance):
         if "unit" not in entry.metadata:
             continue
         value = getattr(instance, entry.name)
-        check(f"{place}.{entry.name}", value, entry.metadata)
+        check(f"{prefix}.{entry.name}", value, entry.metadata)
 
 
 class Validated:
-    """Parameters that are checked against the descriptions of their fields when they are made."""
+    """Base of parameter classes whose objects are validated when they are created."""
 
     __slots__ = ()
 
@@ -92,19 +92,19 @@ class Validated:
 
 
 def check(path: str, value: Any, metadata: Any) -> None:
-    """Check one value against the metadata of its field.
+    """Check a value against the metadata of a field.
 
     Args:
         path: name shown in the message.
         value: number, array of numbers, vector, word or words.
-        metadata: as made by `quantity`.
+        metadata: metadata of the field, see `quantity`.
 
     Raises:
-        ConfigurationError: naming the path, the value found (the first bad one of an array) and what is allowed.
+        ConfigurationError: with the path, the value (the first wrong value of an array) and the range.
     """
     if metadata["choices"] is not None:
         if value not in metadata["choices"]:
-            raise ConfigurationError(f"{path}: found {value!r}, allowed are {', '.join(metadata['choices'])}")
+            raise ConfigurationError(f"{path}: found {value!r}, must be one of {', '.join(metadata['choices'])}")
         return
     if type(value) is float and metadata["length"] is None:
         return _check_number(path, value, metadata)
@@ -115,57 +115,61 @@ def check(path: str, value: Any, metadata: Any) -> None:
             return
         for name in names:
             if not NAME_PATTERN.fullmatch(name):
-                raise ConfigurationError(f"{path}: found {name!r}, allowed are names of letters, digits, '_', '.', '-'")
+                raise ConfigurationError(f"{path}: found {name!r}, must be a name of letters, digits, '_', '.', '-'")
         return
     if value is None:
         return
     length = metadata["length"]
     if length is not None and (not isinstance(value, tuple) or len(value) != length):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a list of {length} numbers [{metadata['unit']}]")
-    # The package is imported without numpy; its arrays turn themselves into lists.
+        raise ConfigurationError(f"{path}: found {value!r}, must be a list of {length} numbers [{metadata['unit']}]")
+    # numpy is not imported here; only its arrays have `ravel`.
     numbers = value.ravel().tolist() if hasattr(value, "ravel") else value if isinstance(value, tuple) else (value,)
     for number in numbers:
         _check_number(path, number, metadata)
 
 
 def _check_number(path: str, number: Any, metadata: Any) -> None:
-    """Check one number against the range of its field."""
+    """Check a number against the range of a field."""
     unit = metadata["unit"]
     if isinstance(number, bool) or not isinstance(number, int | float):
-        raise ConfigurationError(f"{path}: found {number!r}, needed is a number [{unit}]")
+        raise ConfigurationError(f"{path}: found {number!r}, must be a number [{unit}]")
     if not math.isfinite(number):
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, needed is a finite number ({metadata['meaning']})")
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be a finite number ({metadata['meaning']})")
     if metadata["above"] is not None and not number > metadata["above"]:
         raise ConfigurationError(f"{path}: found {number!r} {unit}, must be greater than {metadata['above']!r}")
-    least, most = metadata["at_least"], metadata["at_most"]
-    if (least is None or number >= least) and (most is None or number <= most):
+    minimum, maximum = metadata["at_least"], metadata["at_most"]
+    if (minimum is None or number >= minimum) and (maximum is None or number <= maximum):
         return
-    why = f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""  # a negative mass needs no reason
-    if least is not None and number < least:
-        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {least!r}{why}")
-    raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {most!r}{why}")
+    why = (
+        f" ({metadata['why']})" if metadata["why"] and number >= 0.0 else ""
+    )  # no reason is needed for a negative mass
+    if minimum is not None and number < minimum:
+        raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at least {minimum!r}{why}")
+    raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {maximum!r}{why}")
 
 
-def field_quantity(kind: type[Any], path: str) -> Mapping[str, Any]:
-    """What the field of a parameter class declares, as of `quantity`; nothing where the path is no field of it.
+def field_quantity(parameters: type[Any], path: str) -> Mapping[str, Any]:
+    """Return the declaration of a field, see `quantity`; an empty mapping if the path does not exist.
 
     Args:
-        kind: a parameter class.
-        path: of a value in it, or of a component.
+        parameters: a parameter class.
+        path: path of a value in the class, or of a component.
     """
-    inner: Any = kind
-    found: Mapping[str, Any] = {}
+    inner: Any = parameters
+    declared: Mapping[str, Any] = {}
     for key in path.split("."):
         origin = typing.get_origin(inner)
-        if dataclasses.is_dataclass(inner) and key in (fields := {one.name: one for one in dataclasses.fields(inner)}):
-            found, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
+        if dataclasses.is_dataclass(inner) and key in (
+            fields := {entry.name: entry for entry in dataclasses.fields(inner)}
+        ):
+            declared, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
             if typing.get_origin(inner) is not Mapping:
-                # Of a table that may be left out, the table.
-                inner = next((one for one in typing.get_args(inner) if dataclasses.is_dataclass(one)), inner)
+                # For an optional table, continue with its class.
+                inner = next((entry for entry in typing.get_args(inner) if dataclasses.is_dataclass(entry)), inner)
         elif isinstance(origin, type) and issubclass(origin, Mapping):
             inner = typing.get_args(inner)[1]
-        elif key in AXES and found.get("length") == len(AXES):
-            found, inner = {**found, "length": None}, float
+        elif key in AXES and declared.get("length") == len(AXES):
+            declared, inner = {**declared, "length": None}, float
         else:
             return {}
-    return found
+    return declared

@@ -1,4 +1,4 @@
-"""A parameter between two values: varied evenly in a sample, or fitted from a start."""
+"""Range of a parameter: sampled uniformly, or fitted from a start value."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from vehicle.errors import ConfigurationError
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Range:
-    """A parameter with its limits.
+    """Limits of a parameter.
 
-    A sample fills a range evenly. A fit needs a start and moves on a logarithmic scale: u = ln(value / start).
+    A sample is uniform in the range. A fit needs a start value and is logarithmic: u = ln(value / start).
 
     Args:
-        path: of the parameter, as of `vehicle.model.parameters.paths`.
-        low: smallest value; above 0 with a start.
-        high: largest value.
-        start: where a fit begins, between both; NaN for a sample.
-        reason: why these limits.
+        path: path of the parameter, see `vehicle.model.parameters.paths`.
+        low: minimum; above 0 for a fit.
+        high: maximum.
+        start: start value of a fit, between both; NaN for a sample.
+        reason: reason of the limits.
 
     Raises:
-        ConfigurationError: limits that are not finite or out of order, or a start outside of them.
+        ConfigurationError: limits that are not finite or not ascending, or a start value outside the limits.
     """
 
     path: str
@@ -44,27 +44,27 @@ class Range:
 
     @property
     def half_width(self) -> float:
-        """Half the distance of the limits on the logarithmic scale [-]."""
+        """Half the logarithmic distance of the limits [-]."""
         return 0.5 * math.log(self.high / self.low)
 
     def value(self, logarithm: float) -> float:
-        """Value at u = ln(value / start)."""
+        """Return the value at u = ln(value / start)."""
         return self.start * math.exp(logarithm)
 
 
 def checked_ranges(ranges: Sequence[Range]) -> tuple[Range, ...]:
-    """The parameters of a fit.
+    """Check and return the parameters of a fit.
 
     Raises:
-        ConfigurationError: there is none, one has no start, or a path is there twice.
+        ConfigurationError: no parameter, a parameter without a start value, or a path that occurs twice.
     """
-    paths = [one.path for one in ranges]
+    paths = [parameter.path for parameter in ranges]
     if not paths:
-        raise ConfigurationError("parameters: none to fit; give at least one with its bounds")
+        raise ConfigurationError("parameters: none to fit; set at least one with its bounds")
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice is not None:
-        raise ConfigurationError(f"parameter {twice}: given {paths.count(twice)} times; give each once")
-    without = next((one.path for one in ranges if math.isnan(one.start)), None)
+        raise ConfigurationError(f"parameter {twice}: given {paths.count(twice)} times; set each once")
+    without = next((parameter.path for parameter in ranges if math.isnan(parameter.start)), None)
     if without is not None:
-        raise ConfigurationError(f"parameter {without}: has no start; give where its fit begins")
+        raise ConfigurationError(f"parameter {without}: has no start value; set one")
     return tuple(ranges)

@@ -1,4 +1,4 @@
-"""What a vehicle file names must be there, and what it gives must be taken: slips of the pen that no number shows."""
+"""Checks of a composition: geometry, names that must exist, and entries that no element uses."""
 
 from __future__ import annotations
 
@@ -8,73 +8,119 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.composition import Composition
-from vehicle.model.parameters.hardpoints import require_apart
-from vehicle.model.parameters.instance import Instance
+from vehicle.model.parameters.hardpoints import require_apart, require_triangle
+from vehicle.model.parameters.instance import RIGHT, Instance
 from vehicle.model.parameters.paths import full_path
 from vehicle.model.parameters.toml_file import convert, nearest
+from vehicle.model.parameters.topology import Template
 from vehicle.names import SIDE_SIGN
 
 GROUPS = ("hardpoints", "parts", "bushings", "ports")
-"""Tables of an instance that hold a table or a value for each name."""
+"""Tables of an instance with one entry for each name."""
 
 
 def require_ports(car: Mapping[str, Instance], names: set[str]) -> None:
-    """Refuse a port that is bound to no part.
+    """Check that every port is bound to a part.
 
     Args:
         car: instances by name.
-        names: of all parts.
+        names: names of all parts.
 
     Raises:
-        ConfigurationError: naming the port.
+        ConfigurationError: a port is bound to an unknown part.
     """
     for i in car.values():
         for port in i.numbers.get("ports", {}):
             for side in i.sides():
-                if (found := i.part(port, side)) not in names:
-                    near = nearest(found, names)
-                    raise ConfigurationError(f"{i.name}.ports.{port}: {found!r} is no part; the nearest is {near}")
+                if (part := i.part(port, side)) not in names:
+                    near = nearest(part, names)
+                    raise ConfigurationError(
+                        f"{i.name}.ports.{port}: found {part!r}, unknown part; the nearest is {near}"
+                    )
+
+
+def require_geometry(car: Mapping[str, Instance]) -> None:
+    """Check the geometry of all instances: pairs of points above each other, distinct points, triangles of arms.
+
+    Args:
+        car: instances by name.
+
+    Raises:
+        ConfigurationError: naming the points.
+    """
+    for i in car.values():
+        for high, low in i.template.above:
+            top, bottom = (i.point(name, RIGHT) for name in (high, low))
+            if top[2] <= bottom[2]:
+                raise ConfigurationError(
+                    f"{i.name}.hardpoints.{high}: found z = {top[2]} m, must lie above {i.name}.hardpoints.{low} "
+                    f"(z = {bottom[2]} m)"
+                )
+        for names in _distinct_points(i.template):
+            require_apart({f"{i.name}.hardpoints.{name}": i.point(name, RIGHT) for name in names})
+        for part in i.template.parts.values():
+            if part.shape.endswith("arm") and len(part.points) > 2:
+                require_triangle({f"{i.name}.hardpoints.{name}": i.point(name, RIGHT) for name in part.points})
+
+
+def _distinct_points(template: Template) -> Iterator[tuple[str, ...]]:
+    """Yield groups of points that must not coincide: of a part, an axis, a wheel, the joints of a part."""
+    yield from (part.points for part in template.parts.values())
+    yield from (joint.along for joint in template.joint if joint.along)
+    yield from (connection.axes for connection in template.connection if connection.axes)
+    for name in template.parts:
+        points = [
+            connection.at for connection in template.connection if name in (connection.moving, connection.carrier)
+        ]
+        points += [
+            joint.at
+            for joint in template.joint
+            if joint.at and name in (*joint.child, joint.parent) and not joint.along
+        ]
+        yield tuple(dict.fromkeys(points))
+    if template.wheel is not None:
+        yield (template.wheel.center, template.wheel.patch)
 
 
 def require_sound(car: Composition) -> None:
-    """Refuse two elements of one name, and one that lies between a part and itself, or between a point and itself.
+    """Check that names are unique and that connections and springs join two different parts or points.
 
     Raises:
-        ConfigurationError: naming the element.
+        ConfigurationError: the first wrong element.
     """
     for connection in car.connections:
         if connection.moving == connection.carrier:
-            raise ConfigurationError(f"{connection.path}: holds {connection.moving} on itself; name two parts")
+            raise ConfigurationError(f"{connection.path}: connects {connection.moving} to itself; name two parts")
         if getattr(connection.law, "one_sided", False) and not connection.ground:
             raise ConfigurationError(
-                f"{connection.path}.one_sided: found true, allowed is false; only a contact with the ground lifts off"
+                f"{connection.path}.one_sided: found true, must be false; only a contact with the ground lifts off"
             )
     for spring in car.springs:
         require_apart(dict(zip((f"{spring.path}, lower end", "upper end"), spring.at, strict=True)))
     joints = [joint.name for part in car.parts for joint in part.joints]
-    parts, links = [one.name for one in car.parts], [one.name for one in car.connections]
-    laws, outputs = [one.name for one in car.springs], [one.name for one in car.outputs]
-    laws += [one.name for one in car.dampers]
+    parts, links = [element.name for element in car.parts], [element.name for element in car.connections]
+    laws, outputs = [element.name for element in car.springs], [element.name for element in car.outputs]
+    laws += [element.name for element in car.dampers]
     for names in (parts, joints, links, laws, outputs):
         for name, other in itertools.pairwise(sorted(names)):
             if name == other:
                 raise ConfigurationError(
-                    f"{name}: two elements have this name; rename one, or give its template a prefix"
+                    f"{name}: two elements have this name; rename one, or set a prefix for its template"
                 )
 
 
 def require_taken(car: Mapping[str, Instance]) -> None:
-    """Refuse numbers of one side that nothing takes: of what exists once, or of a template that is not mirrored.
+    """Check that every table of a side is used; elements that exist once do not use them.
 
     Raises:
-        ConfigurationError: naming the table.
+        ConfigurationError: a table of one side is not used.
     """
     for i in car.values():
         for side in SIDE_SIGN:
-            for place in _places(i.numbers.get(side, {})):
-                if f"{side}.{place}" not in i.taken:
+            for table in _places(i.numbers.get(side, {})):
+                if f"{side}.{table}" not in i.taken:
                     why = "what it is for exists once, on no side" if i.template.mirrored else "it is not mirrored"
-                    raise ConfigurationError(f"{i.name}.{side}.{place}: {i.template.file} does not take it; {why}")
+                    raise ConfigurationError(f"{i.name}.{side}.{table}: {i.template.file} does not use it; {why}")
 
 
 def _places(table: Mapping[str, Any]) -> Iterator[str]:
@@ -83,27 +129,27 @@ def _places(table: Mapping[str, Any]) -> Iterator[str]:
 
 
 def require_points(table: Mapping[str, Any], car: Mapping[str, Instance]) -> None:
-    """Refuse a point of the vehicle file that nothing uses; a body with a model may stand on any.
+    """Check that every hardpoint of the vehicle file is used; skipped with a body model, which may use any hardpoint.
 
     Raises:
-        ConfigurationError: naming the point.
+        ConfigurationError: a point is not used.
     """
     if "superelement" in table["body"]:
         return
-    users = [one for key in ("outputs", "connection", "load") for one in table.get(key, {}).values()]
-    used = {one.get("at") for one in users if isinstance(one.get("at"), str)}
+    users = [entry for key in ("outputs", "connection", "load") for entry in table.get(key, {}).values()]
+    used = {entry.get("at") for entry in users if isinstance(entry.get("at"), str)}
     tables = [side for i in car.values() for side in (i.numbers, *(i.numbers.get(word, {}) for word in SIDE_SIGN))]
-    used |= {value for one in tables for value in one.get("hardpoints", {}).values() if isinstance(value, str)}
+    used |= {value for entry in tables for value in entry.get("hardpoints", {}).values() if isinstance(value, str)}
     for name in table.get("hardpoints", {}):
         if name not in used:
-            raise ConfigurationError(f"hardpoints.{name}: nothing uses it; take it out, or name it in an output")
+            raise ConfigurationError(f"hardpoints.{name}: nothing uses it; remove it, or name it in an output")
 
 
 def require_aliases(table: Mapping[str, Any]) -> None:
-    """Refuse an alias that leads nowhere.
+    """Check that every alias is the name of a parameter.
 
     Raises:
-        ConfigurationError: naming the alias.
+        ConfigurationError: an alias of an unknown parameter.
     """
     for name, path in table.get("alias", {}).items():
         try:

@@ -1,4 +1,4 @@
-"""The cars of the package, by their names."""
+"""Cars of the package, by their names."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ CARS = tuple(sorted(folder.parent.name for folder in VEHICLES.glob("*/vehicle.to
 
 
 def shipped_cars() -> tuple[str, ...]:
-    """Return the names of the cars of the package, as `Car.load` takes them."""
+    """Return the names of the cars of the package, for `Car.load`."""
     return CARS
 
 
 def vehicle_file(path: Path | str) -> Path:
-    """The file of a car: the path as given, or that of the shipped car of this name.
+    """Return the vehicle file of a car: the given path, or the file of the shipped car of this name.
 
     Raises:
-        ConfigurationError: a name that is neither, or the folder of a car.
+        ConfigurationError: neither a file nor a shipped car, or the folder of a car.
     """
     path = Path(path)
     if path.is_dir() and (path / "vehicle.toml").is_file():

@@ -1,10 +1,10 @@
-"""Templates: what an axle, an engine suspension or a seat is made of, as TOML without a number.
+"""Templates: elements of an axle, an engine suspension or a seat, as TOML without numbers.
 
 A template lists hardpoints with their meaning, parts with the role of their shape, joints, connections, springs,
-dampers and outputs. It may use others: `use = [{template, prefix, with, when}]` puts in the elements of another one,
-their names behind `prefix`, its ports bound to parts by `with`, all of it only `when` the vehicle gives a table of that
-name. What is `mirrored` is written for the right side and exists on both; `part:left` and `point:middle` name a side,
-and an element that does so exists once.
+dampers and outputs. It may include other templates: `use = [{template, prefix, with, when}]` adds the elements of a
+template with `prefix` before their names and its ports bound to parts by `with`, but only if the vehicle file has the
+table `when`. A `mirrored` template describes the right side and exists on both; `part:left` and `point:middle` name a
+side, and an element with such a name exists once.
 """
 
 from __future__ import annotations
@@ -23,60 +23,61 @@ from vehicle.model.parameters.topology import RolePart, Template, Wheel
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
-"""Parts of others that every template may name: the trimmed body, the ground, what the tyre of this side stands on."""
+"""Names that every template may use: the trimmed body, the ground, the plate under the tyre of this side."""
 
 _POINTS, _PARTS = (
     {"at", "along", "axes", "points", "center", "patch"},
     {"child", "parent", "moving", "carrier", "part", "on"},
 )
 _ON = {"damper": ("slide",), "spring": ("slide", "hinge")}
-"""Kinds of joints that these elements may be on."""
+"""Types of joints on which these elements may act."""
 
 
 def read_template(name: str, options: Iterable[str], folders: Iterable[Path]) -> Template:
-    """Read a template with all that it uses.
+    """Read a template and merge the templates that it includes.
 
     Args:
-        name: of its file, without the ending.
-        options: tables that the vehicle gives: what is used `when` one of them is there.
-        folders: where it is looked for before the shipped ones.
+        name: name of the file, without its extension.
+        options: tables of the vehicle file that enable a `use` with `when`.
+        folders: folders searched before that of the package.
 
     Raises:
-        ConfigurationError: no such template, an unknown key, or a name that leads nowhere; with file and table.
+        ConfigurationError: a missing template, an unknown key, or a name that does not exist; with file and table.
     """
-    places = (*folders, SHIPPED)
-    files = [file for place in places[:-1] for file in sorted(place.glob("*.toml")) if file.is_file()]
-    return _read_once(name, frozenset(options), places, tuple((file, file.stat().st_mtime_ns) for file in files))
+    searched = (*folders, SHIPPED)
+    files = [file for folder in searched[:-1] for file in sorted(folder.glob("*.toml")) if file.is_file()]
+    return _read_once(name, frozenset(options), searched, tuple((file, file.stat().st_mtime_ns) for file in files))
 
 
 def own_templates(names: Iterable[str], folders: Iterable[Path]) -> list[Path]:
-    """Files of templates, and of those that they use, that lie in one of these folders and not in the package.
+    """Return the user files of templates and of the templates that they include.
 
     Args:
-        names: of the templates.
-        folders: as of `read_template`.
+        names: names of the templates.
+        folders: see `read_template`.
     """
-    found, wanted = dict[str, Path](), list(names)
-    for name in wanted:
-        path = next(place / f"{name}.toml" for place in (*folders, SHIPPED) if (place / f"{name}.toml").is_file())
-        if name not in found:
-            found[name] = path
-            wanted += [use["template"] for use in read_template_file(path)["use"]]
-    return [path for path in found.values() if path.parent != SHIPPED]
+    files, listed = dict[str, Path](), list(names)
+    for name in listed:
+        path = next(folder / f"{name}.toml" for folder in (*folders, SHIPPED) if (folder / f"{name}.toml").is_file())
+        if name not in files:
+            files[name] = path
+            listed += [use["template"] for use in read_template_file(path)["use"]]
+    return [path for path in files.values() if path.parent != SHIPPED]
 
 
-# A sweep composes thousands of cars of the same templates; a file that has changed is read again.
+# A sweep composes thousands of cars of the same templates; a changed file is read again.
 @functools.lru_cache(maxsize=32)
 def _read_once(
-    name: str, options: frozenset[str], places: tuple[Path, ...], stamps: tuple[tuple[Path, int], ...]
+    name: str, options: frozenset[str], searched: tuple[Path, ...], stamps: tuple[tuple[Path, int], ...]
 ) -> Template:
-    raw = _merged(name, options, places, ())
+    raw = _merged(name, options, searched, ())
     try:
         lists: dict[str, Any] = {
             key: tuple(
-                build(kind, entry, f"{key}.{entry.get('name', position)}") for position, entry in enumerate(raw[key])
+                build(parameters, entry, f"{key}.{entry.get('name', position)}")
+                for position, entry in enumerate(raw[key])
             )
-            for key, kind in LISTS.items()
+            for key, parameters in LISTS.items()
         }
         parts = {part: build(RolePart, table, f"parts.{part}") for part, table in raw["parts"].items()}
         wheel = None if raw["wheel"] is None else build(Wheel, raw["wheel"], "wheel")
@@ -94,45 +95,47 @@ def _read_once(
     return template
 
 
-def _merged(name: str, options: frozenset[str], places: tuple[Path, ...], above: tuple[str, ...]) -> dict[str, Any]:
-    """Tables of a template and of what it uses: what it always uses, its own, what it uses on request."""
-    path = next((place / f"{name}.toml" for place in places if (place / f"{name}.toml").is_file()), None)
+def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], above: tuple[str, ...]) -> dict[str, Any]:
+    """Return the merged tables of a template: included templates, the template, templates included by option."""
+    path = next((folder / f"{name}.toml" for folder in searched if (folder / f"{name}.toml").is_file()), None)
     if path is None or not NAME_PATTERN.fullmatch(name) or name in above:
-        known = sorted({file.stem for place in places for file in place.glob("*.toml")})
+        names = sorted({file.stem for folder in searched for file in folder.glob("*.toml")})
         reason = "uses itself" if name in above else "no such file beside the vehicle file nor in the package"
         raise ConfigurationError(
-            f"template {name!r}: {reason}; the nearest is {nearest(name, set(known) - {name})}, there are "
-            f"{', '.join(known)}"
+            f"template {name!r}: {reason}; the nearest is {nearest(name, set(names) - {name})}, there are "
+            f"{', '.join(names)}"
         )
-    own = read_template_file(path)
-    chosen = [use for use in own.pop("use") if use.get("when") is None or use["when"] in options]
-    used = [(use, _merged(use["template"], options, places, (*above, name))) for use in chosen]
-    found: dict[str, Any] = {"mirrored": own["mirrored"], "wheel": None}
+    template = read_template_file(path)
+    chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]
+    used = [(use, _merged(use["template"], options, searched, (*above, name))) for use in chosen]
+    merged: dict[str, Any] = {"mirrored": template["mirrored"], "wheel": None}
     try:
         first = [_renamed(other, use) for use, other in used if "when" not in use]
-        for one in [*first, own, *(_renamed(other, use) for use, other in used if "when" in use)]:
+        for table in [*first, template, *(_renamed(other, use) for use, other in used if "when" in use)]:
             for key in ("hardpoints", "parts"):
-                twice = set(found.setdefault(key, {})) & set(one[key])
+                twice = set(merged.setdefault(key, {})) & set(table[key])
                 if twice:
-                    raise ConfigurationError(f"{key}.{min(twice)}: comes twice; give what it uses a prefix")
-                found[key] |= one[key]
+                    raise ConfigurationError(
+                        f"{key}.{min(twice)}: defined twice; set a prefix for an included template"
+                    )
+                merged[key] |= table[key]
             for key in (*LISTS, "above"):
-                found[key] = [*found.get(key, []), *one[key]]
-            if found["wheel"] and one["wheel"]:
-                raise ConfigurationError("wheel: comes twice; a template has one wheel, on both sides")
-            found["wheel"] = found["wheel"] or one["wheel"]
+                merged[key] = [*merged.get(key, []), *table[key]]
+            if merged["wheel"] and table["wheel"]:
+                raise ConfigurationError("wheel: defined twice; a template has one wheel, on both sides")
+            merged["wheel"] = merged["wheel"] or table["wheel"]
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
-    return {**found, "ports": own["ports"]}
+    return {**merged, "ports": template["ports"]}
 
 
 def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
-    """A used template with its own names behind a prefix and its ports bound."""
+    """Return an included template with a prefix before its names and with its ports bound."""
     prefix, bound = use.get("prefix", ""), use.get("with", {})
     for port in bound:
         if port not in table["ports"] and port not in FREE_PORTS:
             raise ConfigurationError(
-                f"use.with.{port}: {use['template']}.toml has no such port; it has {[*table['ports']]}"
+                f"use.with.{port}: {use['template']}.toml has no port of this name; it has {[*table['ports']]}"
             )
     free = [port for port in table["ports"] if port not in bound]
     if free:
@@ -140,7 +143,7 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
             f"use.with.{free[0]}: missing; {use['template']}.toml needs it ({table['ports'][free[0]]})"
         )
     elements = [entry["name"] for key in LISTS for entry in table[key] if "name" in entry]
-    own = {name: prefix + name for name in (*table["parts"], *table["hardpoints"], *elements)}
+    new_names = {name: prefix + name for name in (*table["parts"], *table["hardpoints"], *elements)}
 
     def turned(value: Any, key: str = "") -> Any:
         if isinstance(value, Mapping):
@@ -149,12 +152,15 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
             return [turned(inner, key) for inner in value]
         if isinstance(value, str) and key in {"name", "joint", *_POINTS, *_PARTS}:
             word, colon, side = value.partition(":")
-            return ({**own, **bound} if key in _PARTS else own).get(word, word) + colon + side
+            return ({**new_names, **bound} if key in _PARTS else new_names).get(word, word) + colon + side
         return value
 
     return {
         **table,
-        **{key: {own[name]: turned(value) for name, value in table[key].items()} for key in ("parts", "hardpoints")},
+        **{
+            key: {new_names[name]: turned(value) for name, value in table[key].items()}
+            for key in ("parts", "hardpoints")
+        },
         **{key: [turned(entry) for entry in table[key]] for key in LISTS},
         "above": turned(table["above"], "at"),
         "wheel": turned(table["wheel"]),
@@ -162,18 +168,18 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _check(template: Template, raw: Mapping[str, Any]) -> None:
-    """Every name of a part, point and joint leads somewhere, and names are names."""
+    """Check that all names of parts, points and joints exist and are valid."""
     parts = {*template.parts, *template.ports, *FREE_PORTS}
     joints = {joint.name: joint.kind for joint in template.joint if joint.name is not None}
     names = [joint.name for joint in template.joint if joint.name is not None]
     for name in names:
         if names.count(name) > 1:
-            raise ConfigurationError(f"joint.{name}: comes twice; a joint has a name of its own")
+            raise ConfigurationError(f"joint.{name}: defined twice; rename one joint")
     for key, kinds in _ON.items():
         for element in getattr(template, key):
             if joints.get(element.joint, kinds[0]) not in kinds:
                 raise ConfigurationError(
-                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, needed is a "
+                    f"{key}.{element.name}.joint: {element.joint!r} is a {joints[element.joint]}, must be a "
                     f"{' or a '.join(kinds)}"
                 )
 
@@ -184,7 +190,7 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
             if isinstance(value, Mapping):
                 look(f"{where}.{key}", value)
                 continue
-            known = (
+            allowed = (
                 parts
                 if key in _PARTS
                 else template.hardpoints
@@ -197,16 +203,16 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
                 head, _, side = str(word).partition(":")
                 if key == "name" and not NAME_PATTERN.fullmatch(head):
                     raise ConfigurationError(
-                        f"{where}.name: found {word!r}, allowed are letters, digits, '_', '.', '-'"
+                        f"{where}.name: found {word!r}, must consist of letters, digits, '_', '.', '-'"
                     )
-                if known is not None and head not in known:
-                    besides = f", and beside its own there are {', '.join(FREE_PORTS)}" if known is parts else ""
+                if allowed is not None and head not in allowed:
+                    besides = f", and in every template there are {', '.join(FREE_PORTS)}" if allowed is parts else ""
                     raise ConfigurationError(
-                        f"{where}.{key}: {word!r} leads nowhere; the nearest is {nearest(head, known)}{besides}"
+                        f"{where}.{key}: found {word!r}, unknown name; the nearest is {nearest(head, allowed)}{besides}"
                     )
-                if known is not None and side not in ("", "left", "right", "middle"):
-                    raise ConfigurationError(f"{where}.{key}: found side {side!r}, allowed are left, right, middle")
-                if known is template.hardpoints:
+                if allowed is not None and side not in ("", "left", "right", "middle"):
+                    raise ConfigurationError(f"{where}.{key}: found side {side!r}, must be left, right or middle")
+                if allowed is template.hardpoints:
                     used.add(head)
 
     for key in LISTS:
@@ -218,6 +224,6 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
     look("above", {"at": [point for pair in raw["above"] for point in pair]})
     if spare := [name for name in template.hardpoints if name not in used]:
         raise ConfigurationError(
-            f"hardpoints.{spare[0]}: nothing of the template uses it; take it out, or put it into [hardpoints] of the "
+            f"hardpoints.{spare[0]}: not used in the template; remove it, or move it to [hardpoints] of the "
             "vehicle file"
         )

@@ -1,4 +1,4 @@
-"""One template file as it is written: its keys, and of which types they are."""
+"""Reading one template file, without the templates that it includes: keys and types."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vehicle.model.parameters.topology import Connection, Damper, Joint, Output,
 LISTS = {"joint": Joint, "connection": Connection, "spring": Spring, "damper": Damper, "output": Output}
 """Lists of elements, and their classes."""
 
-_KEYS: dict[str, Any] = {
+TEMPLATE_KEYS: dict[str, Any] = {
     "mirrored": bool,
     "use": tuple[dict, ...],  # type: ignore[type-arg]
     "hardpoints": Mapping[str, str],
@@ -23,35 +23,35 @@ _KEYS: dict[str, Any] = {
     "above": tuple[tuple[str, ...], ...],
     **dict.fromkeys(LISTS, tuple[dict, ...]),  # type: ignore[type-arg]
 }
-_USE: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str, str], "when": str}
+USE_KEYS: dict[str, Any] = {"template": str, "prefix": str, "with": Mapping[str, str], "when": str}
 
 
 def read_template_file(path: Path) -> dict[str, Any]:
-    """Read a template without what it uses.
+    """Read a template file without included templates.
 
     Args:
         path: the file.
 
     Returns:
-        Its tables and lists; empty ones for those that it does not have, None for a missing wheel.
+        Tables and lists; missing tables and lists are empty, a missing wheel is None.
 
     Raises:
-        ConfigurationError: it is no TOML file, or holds an unknown key or a wrong type; the message names the file.
+        ConfigurationError: not a TOML file, an unknown key or a wrong type; the message names the file.
     """
     table = read_table(path)
     try:
         for key, value in table.items():
-            if key not in _KEYS:
-                raise ConfigurationError(f"{key}: unknown; the nearest known name is {nearest(key, _KEYS)}")
-            convert(_KEYS[key], value, key)
+            if key not in TEMPLATE_KEYS:
+                raise ConfigurationError(f"{key}: unknown; the nearest known name is {nearest(key, TEMPLATE_KEYS)}")
+            convert(TEMPLATE_KEYS[key], value, key)
         for position, use in enumerate(table.get("use", [])):
-            if "template" not in use or set(use) - set(_USE):
-                raise ConfigurationError(f"use: needed is template, allowed are prefix, with, when; found {use}")
+            if "template" not in use or set(use) - set(USE_KEYS):
+                raise ConfigurationError(f"use: found {use}; must have template, and may have prefix, with, when")
             for key, value in use.items():
-                convert(_USE[key], value, f"use.{position}.{key}")
+                convert(USE_KEYS[key], value, f"use.{position}.{key}")
         for pair in table.get("above", []):
             if len(pair) != 2:
-                raise ConfigurationError(f"above: found {pair}; needed are two points, the upper one first")
+                raise ConfigurationError(f"above: found {pair}; must be two points, the upper one first")
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
     return {
@@ -65,5 +65,5 @@ def read_template_file(path: Path) -> dict[str, Any]:
 
 
 def _listed(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """One child is a list of one."""
+    """Return an entry whose child is a list of names."""
     return {**entry, "child": [entry["child"]]} if isinstance(entry.get("child"), str) else dict(entry)

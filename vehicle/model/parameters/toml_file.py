@@ -1,4 +1,4 @@
-"""TOML files into parameter objects and back: strict names, strict types."""
+"""Conversion of TOML files to parameter objects and back, with strict names and types."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from vehicle.model.parameters.quantity import NAME_PATTERN, field_quantity
 T = TypeVar("T")
 
 LARGEST_FILE = 10_000_000
-"""Largest parameter file [byte], far above that of any body."""
+"""Maximum size of a parameter file [byte], far above that of any body."""
 
 
 def read_table(path: Path) -> dict[str, Any]:
@@ -59,15 +59,15 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     """Build a parameter object from nested dictionaries.
 
     Args:
-        cls: a dataclass whose fields are numbers, texts, vectors (tuples), other such classes or mappings of them.
-        table: the values, named as the fields.
+        cls: a dataclass whose fields are numbers, texts, vectors (tuples), parameter classes or mappings of them.
+        table: values by the names of the fields.
         path: dotted path of this table, shown in messages.
 
     Returns:
         The validated object.
 
     Raises:
-        ConfigurationError: an unknown name (with the nearest known one), a missing name or a wrong type.
+        ConfigurationError: an unknown name (with the nearest known name), a missing name or a wrong type.
     """
     hints = type_hints(cls)  # type: ignore[arg-type]
     fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
@@ -84,14 +84,14 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
             missing.append(entry)
     if missing:
         first, *others = missing
-        also = f"; so must {', '.join(f'{one.name}{_needed(one)}' for one in others)}" if others else ""
+        also = f"; so must {', '.join(f'{entry.name}{_needed(entry)}' for entry in others)}" if others else ""
         raise ConfigurationError(
             f"{_join(path, first.name)}: missing; every parameter must be given{_needed(first)}{also}"
         )
     try:
         return cls(**values)
     except ConfigurationError as error:
-        # The class only knows its own name; the user knows the path in the file.
+        # Replace the name of the class by the path in the file.
         message = str(error)
         if path and message.startswith(cls.__name__ + "."):
             message = path + message[len(cls.__name__) :]
@@ -101,15 +101,15 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
 
 
 def _needed(entry: dataclasses.Field[Any]) -> str:
-    """What a field wants, in brackets: one of its words, or a number in its unit."""
-    words, unit = entry.metadata.get("choices"), entry.metadata.get("unit")
-    return f" [{' or '.join(words)}]" if words else f" [{unit}]" if unit else ""
+    """Return the choices or the unit of a field, in brackets, for messages."""
+    choices, unit = entry.metadata.get("choices"), entry.metadata.get("unit")
+    return f" [{' or '.join(choices)}]" if choices else f" [{unit}]" if unit else ""
 
 
 def as_table(instance: Any) -> dict[str, Any]:
-    """Nested dictionaries of a parameter object: the inverse of `build`. A vehicle keeps the table it was made from."""
-    if isinstance(own := getattr(instance, "table", None), Mapping):
-        return copy_table(own)
+    """Return nested dictionaries of a parameter object, the inverse of `build`; for a vehicle, its stored table."""
+    if isinstance(table := getattr(instance, "table", None), Mapping):
+        return copy_table(table)
     return {
         entry.name: _plain(getattr(instance, entry.name))
         for entry in dataclasses.fields(instance)
@@ -118,14 +118,14 @@ def as_table(instance: Any) -> dict[str, Any]:
 
 
 def write_text(instance: Any, header: str = "") -> str:
-    """TOML text of a parameter object, each value with its unit and meaning behind it.
+    """Return the TOML text of a parameter object, with unit and meaning of each value as a comment.
 
     Args:
         instance: the object.
-        header: lines put on top, without the comment sign.
+        header: first lines of the text, without the comment sign.
 
     Returns:
-        The text; `build(type(instance), tomllib.loads(text))` gives an equal object.
+        The text; `build(type(instance), tomllib.loads(text))` returns an equal object.
     """
     lines = [f"# {line}".rstrip() for line in header.splitlines()]
     describe = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
@@ -136,15 +136,15 @@ def write_text(instance: Any, header: str = "") -> str:
 def _write(table: Mapping[str, Any], path: str, lines: list[str], describe: Callable[[str], Mapping[str, Any]]) -> None:
     for key, value in table.items():
         if not isinstance(value, Mapping):
-            known = describe(_join(path, key))
-            said = f"  # [{known['unit']}] {known['meaning']}".rstrip() if "unit" in known else ""
-            lines.append(f"{_key(key)} = {_literal(value)}{said}")
+            declared = describe(_join(path, key))
+            comment = f"  # [{declared['unit']}] {declared['meaning']}".rstrip() if "unit" in declared else ""
+            lines.append(f"{_key(key)} = {_literal(value)}{comment}")
     for key, value in table.items():
         if isinstance(value, Mapping):
-            place = _join(path, _key(key))
+            prefix = _join(path, _key(key))
             if not value or any(not isinstance(inner, Mapping) for inner in value.values()):
-                lines.extend(["", f"[{place}]"])
-            _write(value, place, lines, describe)
+                lines.extend(["", f"[{prefix}]"])
+            _write(value, prefix, lines, describe)
 
 
 def _key(key: str) -> str:
@@ -172,15 +172,15 @@ def _plain(value: Any) -> Any:
 
 
 def convert(hint: Any, value: Any, path: str) -> Any:
-    """Turn a TOML value into the type of its field.
+    """Convert a TOML value to the type of its field.
 
     Args:
-        hint: the type: float, str, bool, dict, a tuple, a mapping, a parameter class, or one of these or None.
-        value: as read.
-        path: of the parameter, shown in messages.
+        hint: float, str, bool, dict, a tuple, a mapping, a parameter class, or a union of one of these and None.
+        value: value in the file.
+        path: path of the parameter, shown in messages.
 
     Raises:
-        ConfigurationError: it is of another type.
+        ConfigurationError: the value has another type.
     """
     if hint is float:
         return _number(value, path)
@@ -189,40 +189,40 @@ def convert(hint: Any, value: Any, path: str) -> Any:
         inner = [option for option in typing.get_args(hint) if option is not type(None)]
         return convert(inner[0], value, path)
     if hint is dict and not isinstance(value, Mapping):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a table")
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, needed is a table of parameters")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a table of parameters")
         return build(typing.cast(type[Any], hint), value, path)
     if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
         if not isinstance(value, Mapping):
-            raise ConfigurationError(f"{path}: found {value!r}, needed is a table")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a table")
         inner_hint = typing.get_args(hint)[1]
         return types.MappingProxyType(
             {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
         )
     if origin is tuple:
         if not isinstance(value, list | tuple):
-            raise ConfigurationError(f"{path}: found {value!r}, needed is a list")
+            raise ConfigurationError(f"{path}: found {value!r}, must be a list")
         return tuple(convert(typing.get_args(hint)[0], item, path) for item in value)
     if hint is str and not isinstance(value, str):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a text in quotes")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a text in quotes")
     if hint is bool and not isinstance(value, bool):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is true or false")
+        raise ConfigurationError(f"{path}: found {value!r}, must be true or false")
     return value
 
 
 def _number(value: Any, path: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ConfigurationError(f"{path}: found {value!r}, needed is a number")
+        raise ConfigurationError(f"{path}: found {value!r}, must be a number")
     try:
         return float(value)
     except OverflowError:
-        raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, needed is a finite number") from None
+        raise ConfigurationError(f"{path}: found a whole number beyond 1.8e308, must be a finite number") from None
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The known name that is spelt most like another one; of none, "nothing"."""
+    """Return the known name with the most similar spelling; "nothing" if no name is known."""
     return next(iter(difflib.get_close_matches(name, list(known), n=1, cutoff=0.0)), "nothing")
 
 
@@ -239,6 +239,6 @@ def _join(path: str, name: str) -> str:
 
 
 @functools.cache
-def type_hints(kind: type[Any]) -> dict[str, Any]:
-    """Types of the fields of a dataclass; a sweep asks for them thousands of times."""
-    return typing.get_type_hints(kind)
+def type_hints(parameters: type[Any]) -> dict[str, Any]:
+    """Return the types of the fields of a dataclass; cached, because a sweep needs them thousands of times."""
+    return typing.get_type_hints(parameters)

@@ -1,4 +1,4 @@
-"""The complete parameter set of a car on its rig: a file with numbers, composed from templates."""
+"""Complete parameters of a car on its rig: a vehicle file and the composition of its templates."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vehicle.model.parameters.compose import compose
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.driving import Driving, driving_of, require_rolling
-from vehicle.model.parameters.elements import Damper
+from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.plausible import require_plausible
@@ -26,7 +26,7 @@ from vehicle.model.parameters.whole_body import varied_table
 from vehicle.names import AXES, CORNERS, SIDE_SIGN, acceleration_channels, wheel_channels, wheel_words
 
 FIRST_STEP = 1e-3
-"""Step that is tried first where none is given [s]: it does for steel and rubber of a car up to 100 Hz."""
+"""Default time step [s] before it is checked; small enough for steel and rubber of a car up to 100 Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -35,7 +35,7 @@ class Solver:
 
     record_rate: float = quantity("Hz", "sampling rate of the recorded channels", at_least=125.0, at_most=1e5)
     timestep: float | None = quantity(
-        "s", "step of the integration; the largest that answers the car by default", at_least=1e-6, at_most=0.005,
+        "s", "time step; by default the largest one that is small enough", at_least=1e-6, at_most=0.005,
         default=None,
     )  # fmt: skip
 
@@ -44,27 +44,25 @@ class Solver:
 
     @property
     def step(self) -> float:
-        """The step [s]; where none is given, the one that is tried first."""
+        """Time step [s]; `FIRST_STEP` if the file has none."""
         return FIRST_STEP if self.timestep is None else self.timestep
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Head:
-    """What a vehicle file says of the car as a whole."""
+    """Parameters of a vehicle file outside all tables."""
 
     name: str = quantity("-", "name of the car")
-    gravity: float = quantity(
-        "m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 leaves the weight out"
-    )
+    gravity: float = quantity("m/s2", "gravity", at_least=0.0, at_most=30.0, why="9.81 on Earth; 0 for no weight")
     shaker_wheel: str = quantity(
         "-",
-        "wheel whose plate a column of displacements without a wheel in its name drives",
+        "wheel whose plate follows a column of displacements without a wheel in its name",
         choices=tuple(CORNERS.values()),
         default="fr",
     )
     shaker_wheel_in_source: str = quantity(
         "-",
-        "side on which the source of the car says that wheel is",
+        "side of that wheel in the words of the source of the car",
         choices=("right", "left", "unsaid"),
         default="unsaid",
     )
@@ -74,22 +72,23 @@ class Head:
 
 
 HEAD = tuple(Head.__dataclass_fields__)
-"""Keys of a vehicle file that stand above all tables."""
+"""Keys of a vehicle file outside all tables."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Vehicle:
-    """Everything that defines a car on its rig; SI units, frame of the hardpoints.
+    """Parameters of a car on its rig, in SI units and in the frame of the hardpoints.
 
     Attributes:
-        table: the vehicle file as used, nested tables; two cars with the same one are equal.
-        name, gravity: as there; [m/s2].
-        shaker_wheel: wheel that a shaker drives where nothing else is said, as "fr".
-        shaker_wheel_in_source: its side in the words of the source: "right", "left" or "unsaid".
+        table: vehicle file with overrides, nested tables; cars with equal tables are equal.
+        name: name of the car.
+        gravity: gravity [m/s2].
+        shaker_wheel: wheel that a shaker drives by default, as "fr".
+        shaker_wheel_in_source: side of that wheel in the words of the source: "right", "left" or "unsaid".
         body: trimmed body.
         solver: numerics.
-        driving: whether its wheels roll.
-        composition: everything else, placed and named.
+        driving: speed and hold of the course.
+        composition: all other elements, placed and named.
     """
 
     table: Mapping[str, Any]
@@ -109,7 +108,7 @@ class Vehicle:
 
     @property
     def wheels(self) -> tuple[str, ...]:
-        """Names of the wheels that stand on plates, as "fr"."""
+        """Names of the wheels with a plate, as "fr"."""
         return tuple(wheel.name for wheel in self.composition.wheels)
 
     @property
@@ -124,78 +123,80 @@ class Vehicle:
         return (*self.acceleration_channels, *wheel_channels(self.wheels, dampers))
 
     def wheel_text(self, wheel: str, *, source: bool = True) -> str:
-        """A wheel for captions, by side and by channel, as "driver's left front wheel (fl)".
+        """Return a wheel for captions, by side and by channel, as "driver's left front wheel (fl)".
 
         Args:
-            wheel: its name.
-            source: whether to add what the source calls it.
+            wheel: name of the wheel.
+            source: True to add the name in the source.
         """
-        words = wheel_words(wheel, self.wheels)
-        said = self.shaker_wheel_in_source if source and wheel == self.shaker_wheel else "unsaid"
-        note = "" if said == "unsaid" else f"'{said} wheel' in the words of the source"
-        side = "driver's " if words.split()[0] in SIDE_SIGN else ""
-        return f"{side}{words} ({'; '.join(filter(None, (wheel, note)))})"
+        position = wheel_words(wheel, self.wheels)
+        side_in_source = self.shaker_wheel_in_source if source and wheel == self.shaker_wheel else "unsaid"
+        note = "" if side_in_source == "unsaid" else f"'{side_in_source} wheel' in the words of the source"
+        side = "driver's " if position.split()[0] in SIDE_SIGN else ""
+        return f"{side}{position} ({'; '.join(filter(None, (wheel, note)))})"
 
     def require_wheels(self, wheels: Iterable[str]) -> None:
-        """Refuse wheels that the car does not have.
+        """Check that the car has some wheels.
 
         Args:
-            wheels: their names.
+            wheels: names of the wheels.
 
         Raises:
-            ConfigurationError: naming the first of them.
+            ConfigurationError: the first wheel that does not exist.
         """
         for wheel in wheels:
             if wheel not in self.wheels:
-                words = {name: f"{name} ({corner})" for corner, name in CORNERS.items()}
-                has = ", ".join(words.get(name, name) for name in self.wheels)
-                raise ConfigurationError(f"wheel {words.get(wheel, wheel)}: {self.name} does not have it; it has {has}")
+                names = {name: f"{name} ({corner})" for corner, name in CORNERS.items()}
+                has = ", ".join(names.get(name, name) for name in self.wheels)
+                raise ConfigurationError(f"wheel {names.get(wheel, wheel)}: {self.name} does not have it; it has {has}")
 
-    def require_channels(self, channels: Iterable[str], known: Sequence[str]) -> None:
-        """Refuse channels that are none of the car.
+    def require_channels(self, channels: Iterable[str], existing: Sequence[str]) -> None:
+        """Check that channels exist.
 
         Args:
-            channels: their names.
-            known: those of the car that are asked for.
+            channels: names to check.
+            existing: names of the existing channels.
 
         Raises:
-            ConfigurationError: naming the first of them.
+            ConfigurationError: the first channel that does not exist.
         """
         for name in channels:
-            if name not in known:
-                what = "channel" if len(known) >= len(self.channels) else "acceleration channel"
-                raise ConfigurationError(f"no {what} {name!r}; there are {', '.join(known)}")
+            if name not in existing:
+                channel_type = "channel" if len(existing) >= len(self.channels) else "acceleration channel"
+                raise ConfigurationError(f"no {channel_type} {name!r}; there are {', '.join(existing)}")
 
     @property
     def seated(self) -> bool:
-        """Whether the place `seat` is a cushion: on a part of its own, not a point of the body."""
+        """True if the output `seat` is on a cushion, not on the body."""
         return any(output.name == "seat" and output.on != "body" for output in self.composition.outputs)
 
     @property
     def load_channels(self) -> tuple[str, ...]:
-        """Names of the channels that are recorded on request, in the order of the files.
+        """Names of the forces and travels that are recorded on request, in the order of the files.
 
         Forces `<connection>_force_<axis>` [N] on the moving part, in the axes of the carrier; `<spring>_force` [N] of
         the main springs, compression positive; `<joint>_torque` [N m] or `<joint>_spring_force` [N] of springs in
-        joints, on the part behind the joint; `suspension_travel_<wheel>` [m] of the wheel centre against the body,
+        joints, on the child of the joint; `suspension_travel_<wheel>` [m] of the wheel centre against the body,
         upwards from the design position.
         """
-        own, kinds = (
+        car, kinds = (
             self.composition,
             {joint.name: joint.kind for part in self.composition.parts for joint in part.joints},
         )
         ends = {"slide": "spring_force"}
-        found = [f"{one.name}_force_{axis}" for one in own.connections for axis in AXES]
-        found += [f"{spring.name}_force" for spring in own.springs]
-        found += [f"{spring.joint}_{ends.get(kinds[spring.joint], 'torque')}" for spring in own.joint_springs]
-        found += [f"suspension_travel_{wheel}" for wheel in self.wheels]
+        channels = [f"{link.name}_force_{axis}" for link in car.connections for axis in AXES]
+        channels += [f"{spring.name}_force" for spring in car.springs]
+        channels += [f"{spring.joint}_{ends.get(kinds[spring.joint], 'torque')}" for spring in car.joint_springs]
+        channels += [f"suspension_travel_{wheel}" for wheel in self.wheels]
         recorded = set(self.channels)
-        return tuple(name for name in found if name not in recorded)
+        return tuple(name for name in channels if name not in recorded)
 
     @property
     def setting_channels(self) -> tuple[str, ...]:
         """Coefficients `<damper>_coefficient` [N s/m] of the controlled dampers, recorded on request."""
-        return tuple(f"{one.name}_coefficient" for one in self.composition.dampers if one.law.controlled is not None)
+        return tuple(
+            f"{damper.name}_coefficient" for damper in self.composition.dampers if damper.law.controlled is not None
+        )
 
     @property
     def requested_channels(self) -> tuple[str, ...]:
@@ -204,33 +205,35 @@ class Vehicle:
 
     @property
     def damper(self) -> Damper:
-        """Numbers of the first damper, which are those of all where the file gives one table.
+        """Parameters of the first damper; of all dampers if the file has one table for them.
 
         Raises:
-            ConfigurationError: the car has none.
+            ConfigurationError: the car has no damper.
         """
         if not self.composition.dampers:
             raise ConfigurationError(f"{self.name}: has no damper")
         return self.composition.dampers[0].law
 
     def quantity_of(self, path: str) -> Mapping[str, Any]:
-        """What is declared of a parameter, as of `quantity`: unit, meaning, range; nothing of a name.
+        """Return the declaration of a parameter, see `quantity`: unit, meaning, range; empty for a name.
 
         Args:
-            path: whole path, of a value or of a component.
+            path: whole path of a value or of a component.
         """
         kinds: dict[str, type] = {"body": TrimmedBody, "solver": Solver, "driving": Driving, **self.composition.kinds}
         keys = path.removesuffix(".").split(".")
-        # A component of a vector is one key behind its table, a number of a mode of the body two.
-        for place, inner in (
+        # The table ends one, two (component of a vector) or three (mode of the body) keys before the end.
+        for path_of_table, inner in (
             (".".join(keys[:at]), ".".join(keys[at:])) for at in range(len(keys) - 1, len(keys) - 4, -1)
         ):
-            sideless = ".".join(word for word in place.split(".") if word not in ("right", "left"))
+            sideless = ".".join(word for word in path_of_table.split(".") if word not in ("right", "left"))
             if sideless in kinds:
                 return field_quantity(kinds[sideless], inner)
-        words = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
-        if "hardpoints" in words[-2:-1] or (words[0] in ("outputs", "connection", "load") and words[-1] == "at"):
-            meaning = self.composition.meanings.get(".".join(words), "point of the car")
+        keys_of_point = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
+        if "hardpoints" in keys_of_point[-2:-1] or (
+            keys_of_point[0] in ("outputs", "connection", "load") and keys_of_point[-1] == "at"
+        ):
+            meaning = self.composition.meanings.get(".".join(keys_of_point), "point of the car")
             return {"unit": "m", "meaning": meaning, "length": len(AXES)}
         return field_quantity(Head, path)
 
@@ -239,14 +242,11 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
     """Compose and validate a car.
 
     Args:
-        table: vehicle file, as of `read_table`.
-        folder: where it lies; its own templates are there, or in `templates` there.
-
-    Returns:
-        The car.
+        table: vehicle file, see `read_table`.
+        folder: folder of the file; user templates are there, or in its folder `templates`.
 
     Raises:
-        ConfigurationError: a name or a value is wrong; the message names it.
+        ConfigurationError: a name or a value is wrong.
     """
     for key in ("name", "gravity", "body", "solver"):
         if key not in table:
@@ -276,7 +276,7 @@ def vehicle_of(table: Mapping[str, Any], folder: Path | None = None) -> Vehicle:
 
 
 def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
-    """A vehicle file with other values in their places, and optional ones where it has none.
+    """Read a vehicle file and replace or add values.
 
     Args:
         file: TOML file.
@@ -288,26 +288,26 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
     table = vehicle_table(file)
     if "/" in (name := _body_file(table)):
         raise ConfigurationError(
-            f"body.superelement: found {name!r}, allowed are names of letters, digits, '_', '.', '-'; a file elsewhere "
-            f"is given with --set body.superelement={name}"
+            f"body.superelement: found {name!r}, must be a name of letters, digits, '_', '.', '-'; set a file in "
+            f"another folder with --set body.superelement={name}"
         )
     texts = list(overrides)
-    found = varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
-    if "/" in (name := _body_file(found)):
-        place = Path(name).expanduser()
-        if not place.is_absolute():  # workers of a sweep may run elsewhere
+    merged = varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
+    if "/" in (name := _body_file(merged)):
+        model_file = Path(name).expanduser()
+        if not model_file.is_absolute():  # workers of a sweep may run elsewhere
             raise ConfigurationError(
-                f"--set body.superelement={name}: allowed are names of letters, digits, '_', '.', '-', of a file "
-                f"beside the vehicle file or of the package, or a whole path: {place.resolve()}"
+                f"--set body.superelement={name}: must be a name of letters, digits, '_', '.', '-', of a "
+                f"file in the folder of the vehicle file or of the package, or an absolute path: {model_file.resolve()}"
             )
-        if not place.is_file():
+        if not model_file.is_file():
             raise ConfigurationError(f"--set body.superelement={name}: no such file, or not a file")
-        found["body"]["superelement"] = str(place)
-    return found
+        merged["body"]["superelement"] = str(model_file)
+    return merged
 
 
 def _body_file(table: Mapping[str, Any]) -> str:
-    """The file of the body in a table that is not checked yet."""
+    """Return the file name of the body model in a table that is not checked yet."""
     body = table.get("body")
     name = body.get("superelement") if isinstance(body, Mapping) else None
     return name if isinstance(name, str) else ""
@@ -320,11 +320,8 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
         path: TOML file, or the name of a shipped car; the Ford-Focus-like car of Bommer 2006 by default.
         overrides: texts "path.to.parameter=value".
 
-    Returns:
-        The parameter set.
-
     Raises:
-        ConfigurationError: the file, a name or a value is wrong; the message names it.
+        ConfigurationError: the file, a name or a value is wrong.
     """
     file = FOCUS_FILE if path is None else vehicle_file(path)
     try:

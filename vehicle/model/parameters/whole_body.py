@@ -1,10 +1,10 @@
-"""What follows where the mass or the centre of gravity of the trimmed body is varied alone.
+"""Changes of the body that follow from a variation of its mass or of its centre of gravity.
 
     body.mass = f m:     I = f I about any point (CoG and radii of gyration stay); masses of the elastic model times f
     body.cog = c':       I about the CoG stays; about the origin I' = I + m (|c'|^2 1 - c' c''^T) - m (|c|^2 1 - c c^T)
 
-A number that is given in the same variation is what is given; the others follow. The elastic model keeps the mass that
-it was made for as `body.model_mass`, which `vehicle.toml` of a run repeats (`TrimmedBody.model_factor`).
+Values that the same variation sets are kept; the others follow. `body.model_mass` stores the mass to which the elastic
+model belongs, also in `vehicle.toml` of a run (`TrimmedBody.model_factor`).
 """
 
 from __future__ import annotations
@@ -28,33 +28,30 @@ _PRODUCTS = {"ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
 def varied_table(
     table: Mapping[str, Any], overrides: Sequence[str], optional: Optional = list, before: Iterable[str] = ()
 ) -> dict[str, Any]:
-    """Return a vehicle file with other values in their places, and what follows of the body's mass and CoG.
+    """Return a vehicle file with other values, and with the changes that follow from mass and CoG of the body.
 
     Args:
-        table: as of `read_table`; not changed.
+        table: vehicle file, see `read_table`; not changed.
         overrides: texts "path=value".
         optional: see `meant`.
-        before: overrides that the table has already; what they give does not follow either.
-
-    Returns:
-        A new table.
+        before: overrides that the table already contains; values that they set do not follow either.
 
     Raises:
         ConfigurationError: see `override`.
     """
-    found = override(table, overrides, optional)
-    if body_moves(table, found):
+    varied = override(table, overrides, optional)
+    if body_moves(table, varied):
         texts = (text.partition("=")[0].strip() for text in (*before, *overrides))
-        given = {place for text in dict.fromkeys(texts) for place in meant(found, text, optional)}
-        put(found, followers(table["body"], found["body"], given))
-    return found
+        set_paths = {path for text in dict.fromkeys(texts) for path in meant(varied, text, optional)}
+        put(varied, followers(table["body"], varied["body"], set_paths))
+    return varied
 
 
 def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
-    """Put numbers into a vehicle file.
+    """Set numbers in a vehicle file.
 
     Args:
-        table: the file; its tables on the way to a value are replaced by copies.
+        table: the file, changed in place; inner tables on the path of a value are replaced by copies.
         values: whole path to value.
     """
     for path, value in values.items():
@@ -68,105 +65,107 @@ def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
 
 def body_moves(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
     """Return True if the mass or the CoG of the body of two vehicle files differs."""
-    own, other = (one["body"] if isinstance(one.get("body"), Mapping) else {} for one in (before, after))
-    return any(own.get(key) != other.get(key) for key in ("mass", "cog"))
+    first, second = (table["body"] if isinstance(table.get("body"), Mapping) else {} for table in (before, after))
+    return any(first.get(key) != second.get(key) for key in ("mass", "cog"))
 
 
 def followers(before: Mapping[str, Any], after: Mapping[str, Any], given: Collection[str]) -> dict[str, float]:
-    """Return what follows a change of mass or CoG: whole paths and values.
+    """Return the values that follow from a change of mass or CoG, by their whole paths.
 
     Args:
         before: table [body] of a vehicle file.
         after: the table with other values of mass or CoG.
-        given: whole paths of what is given beside; that does not follow.
+        given: whole paths of values that are set and do not follow.
     """
-    own, other = _numbers(before), _numbers(after)
-    if own is None or other is None:
-        return {}  # what is wrong with them is said where the table is read
-    (mass, cog, moments, about), (new_mass, new_cog, _, _) = own, other
+    numbers, new_numbers = _numbers(before), _numbers(after)
+    if numbers is None or new_numbers is None:
+        return {}  # reading the table raises the error
+    (mass, cog, moments, reference), (new_mass, new_cog, _, _) = numbers, new_numbers
     factor = new_mass / mass
-    found = {f"body.inertia.{name}": factor * value for name, value in moments.items()}
-    if about == "origin" and cog != new_cog:
+    values = {f"body.inertia.{name}": factor * value for name, value in moments.items()}
+    if reference == "origin" and cog != new_cog:
         for name, more in _of_point(new_mass, new_cog).items():
             path = f"body.inertia.{name}"
-            found[path] = found.get(path, 0.0) + more - _of_point(new_mass, cog)[name]
+            values[path] = values.get(path, 0.0) + more - _of_point(new_mass, cog)[name]
     elif factor == 1.0:
-        found = {}
+        values = {}
     if factor != 1.0 and "superelement" in after and "body.superelement" not in given:
-        found["body.model_mass"] = float(before.get("model_mass", mass))
-    return {path: value for path, value in found.items() if path not in given}
+        values["body.model_mass"] = float(before.get("model_mass", mass))
+    return {path: value for path, value in values.items() if path not in given}
 
 
 def _numbers(body: Mapping[str, Any]) -> tuple[float, list[float], dict[str, float], str] | None:
-    """Mass, CoG, given moments and their point of reference; None where they are no numbers of a body."""
+    """Return mass, CoG, moments and their point of reference; None if a value has the wrong type."""
     mass, cog, inertia = (body.get(key) for key in ("mass", "cog", "inertia"))
     if not isinstance(cog, list | tuple) or len(cog) != len(AXES) or not isinstance(inertia, Mapping):
         return None
     moments = {name: inertia[name] for name in MOMENTS if name in inertia}
     every = [mass, *cog, *moments.values(), body.get("model_mass", mass)]
-    if any(isinstance(one, bool) or not isinstance(one, int | float) for one in every):
+    if any(isinstance(value, bool) or not isinstance(value, int | float) for value in every):
         return None
     try:
-        mass, *others = (float(one) for one in every)
+        mass, *others = (float(value) for value in every)
     except OverflowError:
         return None
     if not (mass > 0.0 and all(map(math.isfinite, (mass, *others)))):
         return None
     return (
         mass,
-        [float(one) for one in cog],
-        {name: float(one) for name, one in moments.items()},
+        [float(value) for value in cog],
+        {name: float(value) for name, value in moments.items()},
         str(inertia.get("about", "cog")),
     )
 
 
 def _of_point(mass: float, at: Sequence[float]) -> dict[str, float]:
-    """Moments and products about the origin of a point mass [kg] at coordinates [m]."""
+    """Return moments and products about the origin of a point mass [kg] at coordinates [m]."""
     squares = [value * value for value in at]
     moments = {name: mass * (sum(squares) - squares[axis]) for axis, name in enumerate(MOMENTS[:3])}
     return moments | {name: mass * at[i] * at[j] for name, (i, j) in _PRODUCTS.items()}
 
 
 def body_notices(vehicle: Vehicle, overrides: Iterable[str]) -> list[str]:
-    """Return a sentence for each override of the mass or CoG of the body: what followed.
+    """Return a notice for each override of mass or CoG of the body: the changes that followed.
 
     Args:
         vehicle: the car.
-        overrides: texts "path=value" that it was made with.
+        overrides: texts "path=value" of the car.
     """
     body, texts = vehicle.body, {text.partition("=")[0].strip(): text.strip() for text in overrides}
-    said = _said(vehicle, texts)
+    notices = _notices(vehicle, texts)
     moments = ", ".join(f"{name} {getattr(body.inertia, name):.6g}" for name in MOMENTS[:3])
     now = f"{moments} kg m2 about the {'CoG' if body.inertia.about == 'cog' else 'origin'}"
     if body.flexible and body.model_mass is not None:
         root = body.model_factor**-0.5
         now += f"; masses of the body model times {body.model_factor:.6g}, its frequencies times {root:.6g}"
-    return [f"{text}; {now}" for text in said]
+    return [f"{text}; {now}" for text in notices]
 
 
 def body_rules(vehicle: Vehicle, paths: Iterable[str]) -> list[str]:
-    """Return a sentence for the mass and the CoG of the body where many cars vary them: what follows.
+    """Return a notice for mass and CoG of the body if a study varies them: the changes that follow.
 
     Args:
         vehicle: the car.
-        paths: what is varied.
+        paths: varied parameters.
     """
-    return _said(vehicle, {path: path for path in paths})
+    return _notices(vehicle, {path: path for path in paths})
 
 
-def _said(vehicle: Vehicle, texts: Mapping[str, str]) -> list[str]:
-    """What follows, by what stands for each path."""
-    places: dict[str, str] = {}
+def _notices(vehicle: Vehicle, texts: Mapping[str, str]) -> list[str]:
+    """Return the notices for mass and CoG; `texts`: text that names each path."""
+    text_of_path: dict[str, str] = {}
     for path, text in texts.items():
-        # An optional one may have its default again.
+        # An optional parameter may have its default again.
         with contextlib.suppress(ConfigurationError):
-            places |= dict.fromkeys(meant(vehicle.table, path), text)
-    given = any(path.startswith("body.inertia.") for path in places)
-    apart = ", but for what is given of body.inertia" if given else ""
-    moved = dict.fromkeys(text for path, text in places.items() if path == "body.cog" or path.startswith("body.cog."))
-    found = (
-        [f"{places['body.mass']}: the whole body is scaled, radii of gyration stay{apart}"]
-        if ("body.mass" in places)
+            text_of_path |= dict.fromkeys(meant(vehicle.table, path), text)
+    inertia_set = any(path.startswith("body.inertia.") for path in text_of_path)
+    exception = ", but for what is given of body.inertia" if inertia_set else ""
+    moved = dict.fromkeys(
+        text for path, text in text_of_path.items() if path == "body.cog" or path.startswith("body.cog.")
+    )
+    notices = (
+        [f"{text_of_path['body.mass']}: the whole body is scaled, radii of gyration stay{exception}"]
+        if ("body.mass" in text_of_path)
         else []
     )
-    return found + ([f"{', '.join(moved)}: the inertia about the CoG stays{apart}"] if moved else [])
+    return notices + ([f"{', '.join(moved)}: the inertia about the CoG stays{exception}"] if moved else [])

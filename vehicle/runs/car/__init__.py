@@ -1,4 +1,4 @@
-"""The car in Python: load it, run it on a signal, ask the run for what a test bench would give.
+"""The car in Python: load a car, simulate a run on a signal, and read its results.
 
 car = Car.load()
 run = car.run("low.csv")              # or Road("C", speed=80), or a Signal

@@ -6,23 +6,23 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.notebook.cards import car_card
+from vehicle.engines.linear.car_matrices import CarMatrices, car_matrices
+from vehicle.engines.linear.car_modes import Mode, car_modes, require_stable
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.load_rows import LoadRows, load_rows
-from vehicle.engines.linear.matrices import CarMatrices, car_matrices
-from vehicle.engines.linear.modes import Mode, car_modes, require_stable
 from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
-from vehicle.engines.linear.varied import Terms, VariedCar
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.pole_stepping import has_compiler
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.static_trim import StaticTrim
@@ -33,8 +33,8 @@ from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import vehicle_file
-from vehicle.model.parameters.varied import Family
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
+from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import varied_table
 from vehicle.names import ENGINES
 from vehicle.runs.car.road import Road
@@ -45,7 +45,14 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 
 Overrides = Iterable[str] | Mapping[str, Any]
-"""Other values of parameters: path to value, or texts "path=value"."""
+"""Changes of parameters: path to value, or texts "path=value"."""
+
+
+class Origin(TypedDict):
+    """Vehicle file of a car (None for the default car) and its changed parameters as "path=value"."""
+
+    file: str | None
+    overrides: list[str]
 
 
 class Car:
@@ -53,18 +60,18 @@ class Car:
 
     Args:
         vehicle: parameters; those of the Ford-Focus-like car of Bommer 2006 by default.
-        folder: where the vehicle file lies, searched first for its superelement.
+        folder: folder of the vehicle file, searched first for its superelement.
     """
 
     def __init__(self, vehicle: Vehicle | None = None, *, folder: Path | None = None) -> None:
         self.vehicle = load_vehicle() if vehicle is None else vehicle
         self.folder = folder
-        self.origin: dict[str, object] = {"file": None, "overrides": []}
+        self.origin: Origin = {"file": None, "overrides": []}
         self.overrides: tuple[str, ...] = ()
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._base: Car | None = None
-        self._family = Family(self.vehicle, folder or Path(), self._anew)
+        self._variants = VehicleVariants(self.vehicle, folder or Path(), self._anew)
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
@@ -85,34 +92,36 @@ class Car:
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._family = Family(car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more]))
+        car._variants = VehicleVariants(
+            car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more])
+        )
         return car
 
     def varied(self, overrides: Overrides) -> Car:
-        """This car with other values in their places, for many cars of one kind.
+        """Return a variant of this car with changed parameters; fast for many variants.
 
-        Where the values move numbers of laws and masses alone, its matrices and static loads come from terms of this
-        car, which are read once (`vehicle.engines.linear.varied`), and its MuJoCo model is built only where it is asked
-        for. Every other car is built, as by `load`.
+        If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
+        terms of this car, computed once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built at
+        its first use. Every other variant is built like a loaded car.
 
         Args:
-            overrides: as of `load`, after those of this car.
+            overrides: changes in the form of `load`, in addition to those of this car.
 
         Raises:
             ConfigurationError: a name or a value is wrong.
         """
         more = assignments(overrides)
-        car = Car(self._family.vehicle_of(more, self.overrides), folder=self.folder)
+        car = Car(self._variants.variant(more, self.overrides), folder=self.folder)
         car.overrides = (*self.overrides, *more)
-        car.origin = {**self.origin, "overrides": list(car.overrides)}
+        car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
         car._base = self
         return car
 
     def _anew(self, overrides: Iterable[str]) -> Vehicle:
-        """This car with other values, composed anew from its table."""
-        own, folder = self.vehicle.table, self.folder
-        optional = partial(optional_paths, own, folder or Path())
-        return vehicle_of(varied_table(own, list(overrides), optional, self.overrides), folder)
+        """Return the parameters of this car with other values, composed again from the vehicle table."""
+        table, folder = self.vehicle.table, self.folder
+        optional = partial(optional_paths, table, folder or Path())
+        return vehicle_of(varied_table(table, list(overrides), optional, self.overrides), folder)
 
     def __repr__(self) -> str:
         """One line."""
@@ -124,29 +133,29 @@ class Car:
 
     @cached_property
     def trimmed_body(self) -> Superelement:
-        """The superelement of the free trimmed body: of its file, or computed from a design on these hardpoints."""
+        """Superelement of the free trimmed body: from its file, or computed from a design on these hardpoints."""
         return body_model(self.vehicle, self.folder)
 
     @cached_property
     def model(self) -> CarModel:
-        """The assembled, compiled and trimmed MuJoCo model."""
+        """Assembled, compiled and trimmed MuJoCo model."""
         return build_model(self.vehicle, self.trimmed_body)
 
     @cached_property
-    def _terms(self) -> Terms:
-        return Terms(self.model, self.matrices, self.trimmed_body)
+    def _terms(self) -> VariantTerms:
+        return VariantTerms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
-    def _from_terms(self) -> VariedCar | None:
-        """What the terms of another car make of this one; None where it has to be built."""
-        return None if self._base is None else self._base._terms.car_of(self.vehicle)
+    def _from_terms(self) -> CarVariant | None:
+        """Matrices from the terms of the base car; None if this car must be built."""
+        return None if self._base is None else self._base._terms.variant(self.vehicle)
 
     @cached_property
     def matrices(self) -> CarMatrices:
         """Mass, damping and stiffness matrices of the same model in its design position."""
         if self._from_terms:
             return self._from_terms.matrices
-        # By what the car is, not by what this process has compiled: the same car has the same matrices to the bit.
+        # Chosen by the car, not by the functions compiled so far: equal cars have bitwise identical matrices.
         return car_matrices(self.model.model, self.model.static, compiled=self._base is not None)
 
     @property
@@ -156,22 +165,22 @@ class Car:
 
     @cached_property
     def poles(self) -> PoleModel:
-        """The same matrices as scalar equations of the poles: what the reduced engine marches."""
+        """Modal form of the same matrices, one scalar equation per pole, for the reduced engine."""
         return pole_model(self.matrices)
 
     @cached_property
     def load_rows(self) -> LoadRows:
-        """Forces of all elements and the suspension travel as rows over the same matrices."""
+        """Output rows for the forces of all elements and the suspension travel, in the coordinates of the matrices."""
         return load_rows(self.model, self.matrices)
 
     def check(self, engine: str = "mujoco") -> None:
-        """Refuse a car that cannot be run, before anything is: for each engine once.
+        """Check the car before a run, once for each engine.
 
         Args:
-            engine: as of `run`; the time step is asked of "mujoco" alone.
+            engine: engine of the run, see `run`; the time step is checked for "mujoco" only.
 
         Raises:
-            ConfigurationError: no such car can be, a motion of it grows by itself, or the step does not answer it.
+            ConfigurationError: the car cannot be built, is unstable, or its time step is too large.
         """
         if engine in self._checked:
             return
@@ -182,10 +191,10 @@ class Car:
         self._checked.add(engine)
 
     def stepped(self) -> Car:
-        """This car with a step that answers it: its own, or where none is given the largest that does.
+        """Return this car with a sufficiently small time step: the given step, else the largest that passes all checks.
 
         Raises:
-            ConfigurationError: the given step does not, or none.
+            ConfigurationError: the given step is too large, or no step is small enough.
         """
         if self.vehicle.solver.timestep is not None:
             if "mujoco" not in self._checked:
@@ -202,7 +211,7 @@ class Car:
         return self._stepped
 
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
-        """Modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
+        """Return the modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
         model = self._base.model if self._base and self._from_terms else self.model
         names = model.superelement.mode_names
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
@@ -210,13 +219,13 @@ class Car:
     def matrix_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str | None = None
     ) -> npt.NDArray[np.complex128]:
-        """Linear FRFs [m/s2 per m] at given frequencies [Hz], shape (channels, frequencies).
+        """Return linear FRFs [m/s2 per m] at given frequencies, shape (channels, frequencies).
 
         Args:
-            channels: accelerations.
-            frequency: lines [Hz].
-            damper: "stuck" or "sliding", all of them.
-            wheel: whose plate moves; that of the shaker by default.
+            channels: names of acceleration channels.
+            frequency: frequencies [Hz].
+            damper: state of all dampers, "stuck" or "sliding".
+            wheel: wheel whose plate moves; the shaker wheel by default.
         """
         wheel = wheel or self.vehicle.shaker_wheel
         self.vehicle.require_wheels((wheel,))
@@ -240,19 +249,19 @@ class Car:
             source: displacement of the plates; a file of it or the name of a shipped one, as "low.csv"; or a road, as
                 Road("C", speed=80), on which the tyres roll.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
-            engine: "mujoco"; "reduced", hundreds of times faster, linear but for the dampers; "auto", which takes the
-                reduced one and falls back to MuJoCo where the motion leaves its validity or numba is missing.
+            engine: "mujoco"; "reduced", hundreds of times faster, linear except for the dampers; "auto": "reduced",
+                and "mujoco" if the motion leaves the valid range or numba is missing.
             channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
                 them; by default all but those.
             skip: time at the beginning that comfort and slip shares leave out [s]; by default 0, on a road until the
                 last wheel has risen with it, at least 2.
 
         Returns:
-            The run; `run.recording.statistics.engine` says which engine made it, `run.engine_reason` why.
+            The run; `run.recording.statistics.engine` is the engine, `run.engine_reason` the reason for its choice.
 
         Raises:
             ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range, a
-                motion of the car grows by itself, or the time step of MuJoCo does not answer it.
+                the car is unstable, or the time step of MuJoCo is too large.
             DataError: a file cannot be read or holds bad data.
             MissingPartError: the reduced engine was asked for and numba is not installed.
             SimulationError: the run could not be carried through.
@@ -272,14 +281,14 @@ class Car:
         return replace(run, skip=start) if start else run
 
     def _simulated(self, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None) -> Run:
-        """Return the run on a signal; arguments and errors as of `run`."""
+        """Return the run on a signal; arguments and errors like `run`."""
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        known = self.vehicle.channels
-        self.vehicle.require_channels(channels or (), (*known, *self.vehicle.requested_channels))
+        defaults = self.vehicle.channels
+        self.vehicle.require_channels(channels or (), (*defaults, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)
-        names = known if channels is None else channels
-        more = [name for name in names if name not in known]
+        names = defaults if channels is None else channels
+        more = [name for name in names if name not in defaults]
         loads = [name for name in more if name in self.vehicle.load_channels]
         require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.elements import Tyre
+from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
@@ -30,10 +30,10 @@ class Road:
         speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
         duration: length [s]; by default 60 s on a class, the whole profile otherwise.
         rate: samples per second [Hz]; 1000 by default.
-        seed: of a class: one seed is one road; 1 by default.
+        seed: seed of a road of a class; 1 by default.
         coherence: of the two tracks of a class: 1 equal, 0 unrelated; isotropic plane by default.
         patch: length of the contact patch that averages the road [m]; 0.1 by default.
-        tyre: "rolling" or "standing"; by default tyres roll, except on a car that stands on blocks too.
+        tyre: "rolling" or "standing"; rolling by default, except for a car that is on blocks too.
         choice: channels of heights over time, their units and excerpt.
     """
 
@@ -64,7 +64,7 @@ class Road:
         Raises:
             ConfigurationError: a value out of range or of another type of road, or a car that cannot roll.
         """
-        # A single letter is a class, whatever files there are.
+        # A single letter is a class, even if a file of this name exists.
         road = self.file or (str(self.road).upper() if len(str(self.road)) == 1 else str(self.road))
         driving = self._driving(vehicle, overrides)
         if isinstance(self.speed, str):
@@ -86,7 +86,7 @@ class Road:
                 f"--speed {self.speed}: belongs to a recorded road, --road FILE; {road} is a class"
             )
         for name in self._given("seed", "coherence", "patch"):
-            raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is taken as it is")
+            raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is used unchanged")
         return RecordedDrive(
             road=road,
             channel=str(self.speed).removeprefix(PREFIX),
@@ -97,29 +97,30 @@ class Road:
         )
 
     def _given(self, *names: str) -> dict[str, Any]:
-        """Return the attributes of these names that are not None."""
+        """Return the attributes that are set, by name."""
         return {name: value for name in names if (value := getattr(self, name)) is not None}
 
     def _driving(self, vehicle: Vehicle, overrides: Iterable[str]) -> float | None:
         """Return the speed at which the tyres roll [m/s], 0 for standing tyres; None if the car itself specifies it.
 
-        A car that stands on blocks too is on a rig, and its tyres stand by default. NaN stands for the mean speed of a
-        recorded drive.
+        For a car that is on blocks too, standing tyres are the default. NaN means the mean speed of a recorded drive.
         """
         if any(text.partition("=")[0].strip() in ("driving.speed", "speed") for text in overrides):
             if self.tyre is not None:
-                raise ConfigurationError(f"--tyre {self.tyre} beside --set driving.speed: give one of them")
+                raise ConfigurationError(f"--tyre {self.tyre} and --set driving.speed: set only one of them")
             return None
         if self.tyre not in (None, "rolling", "standing"):
             raise ConfigurationError(f"tyre: found {self.tyre!r}, must be rolling or standing")
-        on_blocks = any(one.ground for one in vehicle.composition.connections if not isinstance(one.law, Tyre))
+        on_blocks = any(
+            connection.ground for connection in vehicle.composition.connections if not isinstance(connection.law, Tyre)
+        )
         if self.tyre == "standing" or (self.tyre is None and on_blocks):
             return 0.0 if vehicle.driving.rolling else None
         return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
 
 
 def _places(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:
-    """Return name, distance behind the foremost wheel [m] and track of each wheel."""
+    """Return name, distance behind the foremost wheel [m] and side of each wheel."""
     wheels = vehicle.composition.wheels
     foremost = min(wheel.center[0] for wheel in wheels)
     side: dict[bool, Side] = {True: "right", False: "left"}

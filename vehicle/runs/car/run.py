@@ -1,4 +1,4 @@
-"""A finished simulation of the car, and what can be asked of it."""
+"""Finished simulation of a car with its results."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ FRF_BAND = (1.0, 50.0)
 """Frequencies of an FRF [Hz]."""
 
 SATURATED_VELOCITY = 1e-3
-"""Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit: stick has ended. No slip yet:
-that is `damper.slip_velocity`."""
+"""Damper velocity [m/s] above which the smooth friction law is within 0.6 % of its limit: stick has ended. Slip begins
+at the higher `damper.slip_velocity`."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,10 +38,10 @@ class Run:
     """Finished simulation: time histories, FRFs, comfort, slip, pictures.
 
     Attributes:
-        car: what was simulated; with the step that answers it, where its file gives none.
+        car: simulated car; if its file sets no time step, with the step of `Car.stepped`.
         signal: displacement of the plates.
-        recording: channels over time, and how the engine fared.
-        engine_reason: why that engine.
+        recording: channels over time, and statistics of the engine.
+        engine_reason: reason for the choice of the engine.
         skip: time [s] at the beginning that `comfort` and `slip_share` leave out.
         road: class or profile, speed and seed of the road, as in `summary.json`; None for plate signals.
     """
@@ -64,21 +64,21 @@ class Run:
         return run_card(self)
 
     def plot(self) -> Picture:
-        """The main time histories as a figure that a notebook shows."""
+        """Return the plot of the main time histories for a notebook."""
         from vehicle.drawing.rendering.plots import plot_time
 
         return picture(lambda path: plot_time(path, self))
 
     def to_dataframe(self) -> Any:
-        """All channels as a pandas table over the time [s]; `attrs["units"]` has their units."""
+        """Return all channels as a pandas table over the time [s]; `attrs["units"]` contains the units."""
         return recording_frame(self.recording)
 
     def to_xarray(self) -> Any:
-        """All channels as an xarray dataset over the time, each with its unit."""
+        """Return all channels as an xarray dataset over the time, with units."""
         return recording_dataset(self.recording)
 
     def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
-        """Time history of a channel; names are those of `car.vehicle.channels`, units in `recording.units`."""
+        """Return the time history of a channel of `car.vehicle.channels`; its unit is in `recording.units`."""
         return self.recording[channel]
 
     @property
@@ -93,7 +93,7 @@ class Run:
 
     @property
     def wheel(self) -> str:
-        """The excited wheel; the right one where both are, the first of the signal where its plates stand still."""
+        """Excited wheel: the first of several; the first of the signal if no plate moves."""
         return (*self.recording.excited, *self.signal.wheels)[0]
 
     def frf(
@@ -101,36 +101,36 @@ class Run:
     ) -> RunResponse:
         """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
 
-        They end where the band of the signal ends.
+        The FRFs end at the end of the band of the signal.
 
-        Where several plates move independently, the FRF is that to the plate of one wheel alone, the coherence that
-        with all; plates that are copies without a delay count as one, and the FRF is that to their common motion.
+        If several plates move independently, the FRF refers to the plate of one wheel, and the coherence is the
+        multiple coherence with all plates. Plates with equal motion count as one, with the FRF to this motion.
 
         Args:
             channels: names; all acceleration channels by default.
-            window: None for the estimate without leakage from the whole record; a length [s] for the H1 estimate
-                of averaged Hann windows.
-            wheel: whose plate; `self.wheel` by default.
+            window: length of averaged Hann windows [s] for the H1 estimate; by default the local rational model of
+                the whole record, without leakage.
+            wheel: wheel of the plate; `self.wheel` by default.
 
         Returns:
-            The estimate; rows in the order of `channels`; NaN where the plate drives nothing.
+            The estimate; rows in the order of `channels`; NaN at lines without excitation.
 
         Raises:
             DataError: the record is too short, or no plate moves.
-            DependentInputsError: one plate moves as the other some time before.
+            DependentInputsError: a plate repeats the motion of another with a delay.
         """
         require_moving(self.recording, wheel)
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
         return of_wheel(self.frfs(channels, window=window), wheel, names)
 
     def frfs(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> tuple[MotionResponse, ...]:
-        """FRFs of acceleration channels to each plate that moves by itself, separated; arguments as of `frf`.
+        """Return the FRFs of acceleration channels to each independent plate motion; arguments like `frf`.
 
         Returns:
-            One for each independent motion; plates that move together without a delay are one.
+            FRFs for each independent motion; plates with equal motion count as one.
 
         Raises:
-            DataError, DependentInputsError: as of `frf`.
+            DataError, DependentInputsError: see `frf`.
         """
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
         return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
@@ -138,17 +138,17 @@ class Run:
     def comfort(self, place: str = "seat_rail") -> ComfortValue:
         """Return the unweighted RMS acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2].
 
-        The evaluated span counts. The band ends where that of the signal ends; see `ComfortValue.band`. For weighted
-        values see `weighted_comfort`.
+        Only the evaluated span is used. The band ends at the end of the band of the signal; see `ComfortValue.band`.
+        For weighted values see `weighted_comfort`.
         """
         return comfort_value(self.recording.timestep, self.at(place), self.signal.band(COMFORT_BAND))
 
     def at(self, place: str) -> list[npt.NDArray[np.float64]]:
-        """Accelerations of a place in x, y, z [m/s2] over the evaluated span."""
+        """Return the accelerations of an output point in x, y, z [m/s2] over the evaluated span."""
         return [self.recording[f"{place}_acc_{axis}"][self.evaluated] for axis in AXES]
 
     def weighted_comfort(self, place: str = "seat_rail") -> dict[str, float]:
-        """Weighted RMS acceleration (ISO 2631-1, as on a seat: z by Wk, x and y by Wd) of a place [m/s2].
+        """Return the weighted RMS acceleration [m/s2] of an output point, as on a seat (ISO 2631-1: Wk, Wd).
 
         Returns:
             By axis, and "overall", their vector sum: the value of the report and of `summary.json`.
@@ -158,16 +158,16 @@ class Run:
         return dict(zip((*AXES, "overall"), weighted, strict=True))
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
-        """Share of the evaluated span with |damper velocity| above one [m/s]; that of the parameters by default."""
+        """Return the share of the evaluated span with |damper velocity| above a limit [m/s]; default: slip velocity."""
         history, limit = self._damper(wheel, velocity)
         return slip_share(history[self.evaluated], limit)
 
     def first_slip(self, wheel: str, velocity: float | None = None) -> float | None:
-        """First time [s] with |damper velocity| above a velocity [m/s], by default as `slip_share`; None for never."""
+        """Return the first time [s] with |damper velocity| above a limit [m/s] (default: slip velocity), or None."""
         return first_slip(self.time, *self._damper(wheel, velocity))
 
     def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
-        """Velocity of a damper, and the one that counts as slip [m/s]."""
+        """Return the velocity of a damper, and the limit of slip [m/s]."""
         self.car.vehicle.require_wheels((wheel,))
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return self.recording[f"damper_{wheel}_velocity"], limit

@@ -1,1 +1,1 @@
-"""Measured beside simulated: frequency responses, time histories, mode shapes."""
+"""Comparison of a measurement with a simulation: frequency responses, time histories, mode shapes."""

@@ -7,18 +7,20 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from vehicle.errors import ConfigurationError
+import numpy as np
+
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Run
-from vehicle.runs.comparison.comparison import comparison_of
-from vehicle.runs.comparison.frf_comparison import checked_edges
+from vehicle.runs.comparison.comparison import Comparison
+from vehicle.runs.comparison.frf_comparison import BANDS, FrfComparison, checked_edges, compare_responses
+from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
-from vehicle.runs.comparison.tables import Comparison
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.counterpart import PARTS
+from vehicle.signals.records.counterpart import PARTS, clock_advice, response_faults, run_times, sign_and_unit
 from vehicle.signals.records.measured import Measured, read_measured
 
 LARGEST_DRIFT = 0.1
-"""Maximum drift of a clock [-]; more is another sampling rate."""
+"""Maximum drift of a clock [-]; a larger value means a wrong sampling rate."""
 
 
 def compare_run(
@@ -36,12 +38,12 @@ def compare_run(
     """Compare measured responses and time histories with those of a run.
 
     Args:
-        run: a run, or the folder of a run, or what `of_folder` read of it.
-        measured: measurement file of any format, or what `read_measured` read of it.
+        run: a run, the folder of a run, or the result of `of_folder`.
+        measured: measurement file of any format, or the result of `read_measured`.
         channels: channel of the model to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}: number, exact name,
             pattern with *, or place and direction; by default equal names.
         choice: units, rate and excerpt of the file.
-        turned: channels that were measured in the other direction.
+        turned: channels that were measured in the opposite direction.
         delay: the measurement began this long after the run [s].
         drift: the clock of the measurement is slow by this share [-].
         window: length of the Hann windows that the measured responses were averaged over [s]; by default the local
@@ -52,8 +54,8 @@ def compare_run(
         FRAC, errors per band, RMS ratio, correlation, time shift and ISO 18571 rating, worst first; `print` shows them.
 
     Raises:
-        ConfigurationError: no such file or channel of the model, or a delay, drift or band out of range.
-        DataError: bad data, or nothing in common.
+        ConfigurationError: the file or channel does not exist, or a delay, drift or band is out of range.
+        DataError: bad data, or no common channel.
     """
     require_clock(delay, drift)
     edges = None if bands is None else checked_edges(bands, f"bands {bands}")
@@ -64,9 +66,70 @@ def compare_run(
     if not isinstance(measured, Measured):
         asked = choice or Choice()
         asked = replace(asked, channels={**asked.channels, **(channels or {})})
-        known = tuple(simulated.record.channels)
-        measured = read_measured(Path(measured), known, asked, turned=turned, window=window)
+        names = tuple(simulated.record.channels)
+        measured = read_measured(Path(measured), names, asked, inverted=turned, window=window)
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
+
+
+def comparison_of(
+    measured: Measured,
+    simulated: Simulated,
+    *,
+    edges: tuple[float, ...] | None = None,
+    delay: float = 0.0,
+    drift: float = 0.0,
+    window: float | None = None,
+    command: str = "",
+) -> Comparison:
+    """Compare a measurement with a run.
+
+    Args:
+        measured: measurement with the channel names of the run.
+        simulated: the run.
+        edges: edges of the bands [Hz]; octaves by default.
+        delay: the measurement began this long after the run [s].
+        drift: the clock of the measurement is slow by this share [-].
+        window: length of the Hann windows [s] for both, see `read_measured`.
+        command: command with the options --delay and --drift for the advice, if the current one lacks them.
+
+    Raises:
+        DataError: no common channel.
+    """
+    responses: tuple[FrfComparison, ...] = ()
+    signatures, notices = None, list(measured.notices)
+    if measured.frf is not None:
+        names = [name for name in measured.frf.channels if name in simulated.record.channels]
+        other = simulated.responses(names, window) if names else None
+        if other is None:
+            notices.append("the run has no responses to compare with")
+        else:
+            responses, signatures = compare_responses(measured.frf, other, edges or BANDS)
+    records: tuple[RecordComparison, ...] = ()
+    judged: set[str] = set()
+    if measured.record is not None:
+        times = run_times(measured.record, delay, drift, measured.start)
+        records, parts = compare_records(measured.record, simulated.record, times)
+        step = records[0].time[1] - records[0].time[0] if records else 0.0
+        notices += clock_advice(parts, float(step), delay, drift, command)
+        notices += [*sign_and_unit(parts), *unlike_copies(records)]
+        judged = {part.channel for part in parts if part.reliable_shift}
+    for response in responses:
+        if response.channel not in judged:
+            weight = np.nan_to_num(response.measured_coherence, nan=1.0) * np.nan_to_num(
+                response.simulated_coherence, nan=1.0
+            )
+            notices += response_faults(response.channel, response.measured, response.simulated, weight)
+    if not responses and not records:
+        raise DataError(f"{measured.file.path}: no channel is also in the run {simulated.name}")
+    return Comparison(
+        measured=measured.file.path.name,
+        simulated=simulated.name,
+        responses=responses,
+        signatures=signatures,
+        records=records,
+        notices=tuple(notices),
+        tyres=simulated.tyres,
+    )
 
 
 def require_clock(delay: float, drift: float) -> None:

@@ -1,4 +1,4 @@
-"""Measured and simulated frequency responses on the lines of the measurement, and how they agree."""
+"""Agreement of measured and simulated frequency responses on the lines of the measurement."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf_agreement import BandError, band_errors, csac, csf, frac, scaled_frac
-from vehicle.signals.records.frf import FrfData
+from vehicle.signals.records.frf_file import FrfData
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -22,16 +22,16 @@ BANDS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 50.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrfComparison:
-    """One response.
+    """Comparison of one response.
 
     Attributes:
         channel: name in the model.
         frequency: lines of the measurement [Hz], (m,).
         measured, simulated: [m/s2 per m], (m,); NaN where undefined.
-        measured_coherence, simulated_coherence: [-], (m,); NaN where not told.
-        frac: over all lines [-].
-        scaled_frac: at the best stretch of the simulated frequencies [-].
-        scale: that stretch [-].
+        measured_coherence, simulated_coherence: [-], (m,); NaN if unknown.
+        frac: FRAC over all lines [-].
+        scaled_frac: FRAC with the best scale of the simulated frequencies [-].
+        scale: this scale [-].
         bands: errors of the bands.
     """
 
@@ -53,9 +53,9 @@ class Signatures:
 
     Attributes:
         frequency: [Hz], (m,).
-        csac: of their shape [-], (m,).
-        csf: of shape and amplitude [-], (m,).
-        channels: how many responses.
+        csac: CSAC, agreement of the shape [-], (m,).
+        csf: CSF, agreement of shape and amplitude [-], (m,).
+        channels: number of responses.
     """
 
     frequency: Vector
@@ -65,20 +65,20 @@ class Signatures:
 
 
 def edges_of(text: str) -> tuple[float, ...]:
-    """Edges of bands of an option, as 3,8,15,30.
+    """Return the edges of bands [Hz] of the text of an option, as 3,8,15,30.
 
     Raises:
-        ConfigurationError: fewer than two numbers, or they do not rise.
+        ConfigurationError: fewer than two numbers, or they do not increase.
     """
     try:
-        found = tuple(float(part) for part in text.split(","))
+        edges = tuple(float(part) for part in text.split(","))
     except ValueError:
-        found = ()
-    return checked_edges(found, f"--bands {text}")
+        edges = ()
+    return checked_edges(edges, f"--bands {text}")
 
 
 def checked_edges(edges: Sequence[float], where: str) -> tuple[float, ...]:
-    """Return edges of bands [Hz].
+    """Check and return edges of bands [Hz].
 
     Args:
         edges: frequencies [Hz].
@@ -88,37 +88,37 @@ def checked_edges(edges: Sequence[float], where: str) -> tuple[float, ...]:
         ConfigurationError: fewer than two numbers, or they do not rise.
     """
     if len(edges) < 2 or not edges[0] >= 0.0 or not all(low < high for low, high in pairwise(edges)):
-        raise ConfigurationError(f"{where}: needed are rising edges in Hz, as 3,8,15,30")
+        raise ConfigurationError(f"{where}: must be increasing edges in Hz, as 3,8,15,30")
     return tuple(edges)
 
 
 def compare_responses(
     measured: FrfData, simulated: FrfData, edges: Sequence[float] = BANDS
 ) -> tuple[tuple[FrfComparison, ...], Signatures | None]:
-    """Compare all responses that both have.
+    """Compare all common responses.
 
-    The simulated ones are interpolated to the measured lines, real and imaginary part apart. A line counts by the
-    product of both coherences; where one is not told, by the other.
+    Real and imaginary parts of the simulated responses are interpolated to the measured lines. The weight of a line is
+    the product of both coherences; an unknown coherence counts as 1.
 
     Args:
         measured, simulated: [m/s2 per m].
-        edges: of the bands [Hz].
+        edges: edges of the bands [Hz].
 
     Returns:
-        A comparison for each response, and their agreement together, where they are two or more.
+        A comparison for each response, and the agreement of all together, None for a single response.
 
     Raises:
-        DataError: no line in common.
+        DataError: no common line.
     """
     inside = (measured.frequency >= simulated.frequency[0]) & (measured.frequency <= simulated.frequency[-1])
     frequency = measured.frequency[inside]
     if not frequency.size:
         raise DataError(
             f"measured from {measured.frequency[0]:g} to {measured.frequency[-1]:g} Hz, simulated from "
-            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no line in common"
+            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no common line"
         )
     bands = list(pairwise(edges))
-    found = []
+    comparisons = []
     for row, name in enumerate(measured.channels):
         if name not in simulated.channels:
             continue
@@ -131,7 +131,7 @@ def compare_responses(
         )
         weight = np.nan_to_num(coherences[0], nan=1.0) * np.nan_to_num(coherences[1], nan=1.0)
         stretched, scale = scaled_frac(frequency, top, bottom)
-        found.append(
+        comparisons.append(
             FrfComparison(
                 channel=name,
                 frequency=frequency,
@@ -145,9 +145,12 @@ def compare_responses(
                 bands=band_errors(frequency, top, bottom, weight, bands),
             )
         )
-    if len(found) < 2:
-        return tuple(found), None
-    tops, bottoms = np.array([one.measured for one in found]), np.array([one.simulated for one in found])
-    return tuple(found), Signatures(
-        frequency=frequency, csac=csac(tops, bottoms), csf=csf(tops, bottoms), channels=len(found)
+    if len(comparisons) < 2:
+        return tuple(comparisons), None
+    tops, bottoms = (
+        np.array([comparison.measured for comparison in comparisons]),
+        np.array([comparison.simulated for comparison in comparisons]),
+    )
+    return tuple(comparisons), Signatures(
+        frequency=frequency, csac=csac(tops, bottoms), csf=csf(tops, bottoms), channels=len(comparisons)
     )

@@ -1,4 +1,4 @@
-"""Measured mode shapes beside those of the car: MAC, AutoMAC, pairs."""
+"""Comparison of measured mode shapes with those of the car: MAC, AutoMAC, pairs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.runs.car import Car
@@ -24,15 +24,15 @@ Complex = npt.NDArray[np.complex128]
 Matrix = npt.NDArray[np.float64]
 
 NEAR = 0.01
-"""Distance within which a node of the file is taken for a place of the car [m]."""
+"""Maximum distance of a node of the file from its output point of the car [m]."""
 
 LEAST_MAC = 0.5
-"""MAC from which on two modes are a pair; from 0.9 on they are usually taken for the same."""
+"""Minimum MAC of a pair of modes; from 0.9 two modes usually count as equal."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pair:
-    """A measured mode and the simulated one that is most like it.
+    """Measured mode and the simulated mode with the highest MAC.
 
     Attributes:
         measured, simulated: numbers of the modes, from 1.
@@ -63,7 +63,7 @@ class ModeComparison:
         points: place of the car to node of the file.
         measured, simulated: the modes.
         mac: (measured, simulated).
-        measured_auto, simulated_auto: AutoMAC: off its diagonal it tells which modes these points cannot tell apart.
+        measured_auto, simulated_auto: AutoMAC; values near 1 off the diagonal: indistinguishable modes.
         pairs: by measured frequency.
     """
 
@@ -76,33 +76,33 @@ class ModeComparison:
     pairs: tuple[Pair, ...]
 
     def summary(self, file: str) -> dict[str, Any]:
-        """Plain numbers, for JSON."""
+        """Return plain numbers for JSON."""
         return {
             "measured": file,
             "points": dict(self.points),
             "pairs": [
                 {
-                    "measured": one.measured,
-                    "simulated": one.simulated,
-                    "description": self.simulated[one.simulated - 1].description,
-                    "mac": one.mac,
-                    "measured_hz": one.measured_hz,
-                    "simulated_hz": one.simulated_hz,
-                    "deviation": one.deviation if np.isfinite(one.deviation) else None,
-                    "measured_damping": one.measured_damping,
-                    "simulated_damping": one.simulated_damping,
+                    "measured": pair.measured,
+                    "simulated": pair.simulated,
+                    "description": self.simulated[pair.simulated - 1].description,
+                    "mac": pair.mac,
+                    "measured_hz": pair.measured_hz,
+                    "simulated_hz": pair.simulated_hz,
+                    "deviation": pair.deviation if np.isfinite(pair.deviation) else None,
+                    "measured_damping": pair.measured_damping,
+                    "simulated_damping": pair.simulated_damping,
                 }
-                for one in self.pairs
+                for pair in self.pairs
             ],
             "mac": self.mac.tolist(),
             "measured_auto_mac": self.measured_auto.tolist(),
             "simulated_auto_mac": self.simulated_auto.tolist(),
-            "measured_hz": [one.frequency for one in self.measured],
-            "simulated_hz": [one.frequency for one in self.simulated],
+            "measured_hz": [mode.frequency for mode in self.measured],
+            "simulated_hz": [mode.frequency for mode in self.simulated],
         }
 
     def text(self, file: str) -> str:
-        """The table for the console, worst first."""
+        """Return the table for the console, lowest MAC first."""
         lines = [
             f"modes of {file} at {len(self.points)} points: {', '.join(self.points)}",
             f"{'measured':>10}{'[Hz]':>9}{'simulated':>11}{'[Hz]':>9}{'deviation':>11}{'MAC':>7}{'damping':>9}{'':>9}",
@@ -113,42 +113,42 @@ class ModeComparison:
                 f"{100 * one.deviation:>+9.2f} %{one.mac:>7.3f}{100 * one.measured_damping:>7.2f} %"
                 f"{100 * one.simulated_damping:>7.2f} %  {self.simulated[one.simulated - 1].description}"
             )
-        alone = sorted(set(range(1, len(self.measured) + 1)) - {one.measured for one in self.pairs})
-        if alone:
-            shown = ", ".join(f"{self.measured[number - 1].frequency:.4g} Hz" for number in alone[:10])
+        unpaired = sorted(set(range(1, len(self.measured) + 1)) - {pair.measured for pair in self.pairs})
+        if unpaired:
+            shown = ", ".join(f"{self.measured[number - 1].frequency:.4g} Hz" for number in unpaired[:10])
             lines.append(f"no simulated mode with a MAC of {LEAST_MAC:g} or more: {shown}")
         alike = np.argwhere(np.triu(self.measured_auto, 1) > 0.9)
         if alike.size:
             shown = ", ".join(f"{one + 1} and {other + 1}" for one, other in alike[:6])
-            lines.append(f"these points cannot tell measured modes apart (AutoMAC above 0.9): {shown}")
+            lines.append(f"measured modes that are alike at these points (AutoMAC above 0.9): {shown}")
         return "\n".join(lines)
 
 
 def _near(car: Geometry, nodes: Mapping[str, Sequence[float]]) -> dict[str, str]:
-    """Places to the nodes that lie there; places that share a point only where as many nodes do, in order."""
+    """Return the node at each output point; output points at one position need as many nodes there, in order."""
     at, labels = np.array(list(nodes.values())).reshape(-1, 3), list(nodes)
     points = np.array(list(car.points.values())).reshape(-1, 3)
-    found = {}
-    for place, point in car.points.items():
-        here = [labels[n] for n in np.flatnonzero(np.linalg.norm(at - np.array(point), axis=1) <= NEAR)]
+    matches = {}
+    for name, point in car.points.items():
+        near_labels = [labels[n] for n in np.flatnonzero(np.linalg.norm(at - np.array(point), axis=1) <= NEAR)]
         sharing = [
             name for name, other in zip(car.points, points, strict=True) if np.linalg.norm(other - point) <= NEAR
         ]
-        if here and len(here) == len(sharing):
-            found[place] = here[sharing.index(place)]
-    return found
+        if near_labels and len(near_labels) == len(sharing):
+            matches[name] = near_labels[sharing.index(name)]
+    return matches
 
 
 def points_of(car: Car) -> Geometry:
-    """Places of a car in its design position."""
-    return Geometry(points={one.name: tuple(one.at) for one in car.vehicle.composition.outputs})
+    """Return the output points of a car in the design position."""
+    return Geometry(points={output.name: tuple(output.at) for output in car.vehicle.composition.outputs})
 
 
-def shapes_at(car: Car, modes: Sequence[Mode], places: Sequence[str]) -> Complex:
-    """Complex translations of places in modes, (modes, places, 3)."""
+def shapes_at(car: Car, modes: Sequence[Mode], points: Sequence[str]) -> Complex:
+    """Return complex translations of output points in modes, (modes, points, 3)."""
     system = car.matrices.system
-    rows = np.array([[system.output(f"{place}_acc_{axis}")[0] for axis in AXES] for place in places])
-    return np.asarray(np.einsum("pan,mn->mpa", rows, np.array([one.shape for one in modes])), dtype=np.complex128)
+    rows = np.array([[system.output(f"{point}_acc_{axis}")[0] for axis in AXES] for point in points])
+    return np.asarray(np.einsum("pan,mn->mpa", rows, np.array([mode.shape for mode in modes])), dtype=np.complex128)
 
 
 def compare_modes(
@@ -157,7 +157,7 @@ def compare_modes(
     mapping: Mapping[str, str] | None = None,
     damper: str = "stuck",
 ) -> ModeComparison:
-    """Compare the mode shapes of a file with those of a car at the points that both have.
+    """Compare the mode shapes of a file with those of a car at common points.
 
     Args:
         car: the car.
@@ -170,39 +170,41 @@ def compare_modes(
         MAC and AutoMAC, and pairs of measured and simulated modes with both frequencies and damping ratios.
 
     Raises:
-        ConfigurationError: a place that the car does not have.
-        DataError: a node that the file does not have, or less than three points.
+        ConfigurationError: the car lacks an output point.
+        DataError: the file lacks a node, or there are fewer than three points.
     """
     if not isinstance(measurement, Measurement):
         measurement = read_record(Path(measurement))
     mapping = mapping or {}
-    geometry, known = points_of(car), measurement.geometry.points
-    unknown = next((place for place in mapping if place not in geometry.points), None)
+    geometry, labels = points_of(car), measurement.geometry.points
+    unknown = next((name for name in mapping if name not in geometry.points), None)
     if unknown is not None:
-        raise ConfigurationError(f"--map {unknown}=...: the car has no such place; it has {', '.join(geometry.points)}")
-    moved = {point for one in measurement.shapes for point in one.points}
-    found = {place: wanted.lower().removeprefix("dof").strip() for place, wanted in mapping.items()}
-    if not found:
-        found = _near(geometry, {label: at for label, at in known.items() if label in moved})
-    missing = next((node for node in found.values() if node not in moved), None)
+        raise ConfigurationError(
+            f"--map {unknown}=...: the car has no output point of this name; it has {', '.join(geometry.points)}"
+        )
+    moved = {point for shape in measurement.shapes for point in shape.points}
+    nodes = {name: wanted.lower().removeprefix("dof").strip() for name, wanted in mapping.items()}
+    if not nodes:
+        nodes = _near(geometry, {label: at for label, at in labels.items() if label in moved})
+    missing = next((node for node in nodes.values() if node not in moved), None)
     if missing is not None:
         raise DataError(
             f"{measurement.path}: no mode moves a node {missing!r}; there are {', '.join(sorted(moved)[:20])}"
         )
-    if len(found) < 3:
+    if len(nodes) < 3:
         raise DataError(
-            f"{measurement.path}: {len(found)} of its nodes lie at places of the car; needed are three or more: give "
-            "--map PLACE=NODE for each, with the places "
+            f"{measurement.path}: {len(nodes)} of its nodes are at output points of the car, at least three needed; "
+            "set --map PLACE=NODE for each, with the output points "
             f"{', '.join(geometry.points)}"
         )
-    measured = [one for one in measurement.shapes if set(found.values()) <= set(one.points)]
+    measured = [shape for shape in measurement.shapes if set(nodes.values()) <= set(shape.points)]
     if not measured:
-        raise DataError(f"{measurement.path}: no mode holds all of the nodes {', '.join(found.values())}")
+        raise DataError(f"{measurement.path}: no mode holds all of the nodes {', '.join(nodes.values())}")
     simulated = car.modes(damper)
-    truth = np.array([[one.shape[one.points.index(node), :3] for node in found.values()] for one in measured]).reshape(
-        len(measured), -1
-    )
-    curve = shapes_at(car, simulated, list(found)).reshape(len(simulated), -1)
+    truth = np.array(
+        [[shape.shape[shape.points.index(node), :3] for node in nodes.values()] for shape in measured]
+    ).reshape(len(measured), -1)
+    curve = shapes_at(car, simulated, list(nodes)).reshape(len(simulated), -1)
     table = mac(truth, curve)
     rows, columns = scipy.optimize.linear_sum_assignment(table, maximize=True)
     pairs = [
@@ -219,11 +221,11 @@ def compare_modes(
         if table[row, column] >= LEAST_MAC
     ]
     return ModeComparison(
-        points=found,
+        points=nodes,
         measured=measured,
         simulated=simulated,
         mac=table,
         measured_auto=mac(truth, truth),
         simulated_auto=mac(curve, curve),
-        pairs=tuple(sorted(pairs, key=lambda one: one.measured_hz)),
+        pairs=tuple(sorted(pairs, key=lambda pair: pair.measured_hz)),
     )

@@ -1,4 +1,4 @@
-"""Pictures of measured beside simulated: responses and time histories of a place, signatures, MAC."""
+"""Pictures of a comparison: responses and time histories of an output point, signatures, MAC."""
 
 from __future__ import annotations
 
@@ -22,84 +22,87 @@ from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
 
 MEASURED, SIMULATED = "#222222", COLOURS[1]
-"""Black and full, red and dashed: told apart without colours."""
+"""Black and full, red and dashed: distinguishable without colours."""
 LOOKS = {
     "measured": {"color": MEASURED, "linewidth": 1.3},
     "simulated": {"color": SIMULATED, "linestyle": "--", "linewidth": 1.3},
 }
 DETAIL = 1.0
-"""Length of the magnified stretch [s]."""
+"""Length of the magnified excerpt [s]."""
 
 
-def plot_responses(path: Path, place: str, responses: Sequence[FrfComparison], caption: str) -> None:
-    """Write magnitude, phase and both coherences of the responses of one place, a column for each.
+def plot_responses(path: Path, point: str, responses: Sequence[FrfComparison], caption: str) -> None:
+    """Write magnitude, phase and both coherences of the responses of one output point, a column for each.
 
     Args:
         path: PNG file.
-        place: for the title.
-        responses: of the place.
+        point: output point, for the title.
+        responses: responses of the output point.
         caption: what was measured and what was simulated.
     """
     size = (max(7.6, 5.2 * len(responses) + 1.0), 8.2)
-    told = [values for one in responses for values in (one.measured_coherence, one.simulated_coherence)]
-    caption += f"; {FADED}" if any(np.isfinite(values).any() for values in told) else ""
-    with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
+    coherences = [
+        values for response in responses for values in (response.measured_coherence, response.simulated_coherence)
+    ]
+    caption += f"; {FADED}" if any(np.isfinite(values).any() for values in coherences) else ""
+    with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
         axes = figure.subplots(
             3, len(responses), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False
         )
-        for one, (magnitude, phase, coherence) in zip(responses, axes.T, strict=True):
+        for response, (magnitude, phase, coherence) in zip(responses, axes.T, strict=True):
             pairs = {
-                "measured": (one.measured, one.measured_coherence),
-                "simulated": (one.simulated, one.simulated_coherence),
+                "measured": (response.measured, response.measured_coherence),
+                "simulated": (response.simulated, response.simulated_coherence),
             }
             for label, (values, beside) in pairs.items():
-                fading(magnitude, one.frequency, np.abs(values), beside, label, **LOOKS[label])
-                phase.plot(one.frequency, wrapped_phase(values.copy()), **LOOKS[label])
+                fading(magnitude, response.frequency, np.abs(values), beside, label, **LOOKS[label])
+                phase.plot(response.frequency, wrapped_phase(values.copy()), **LOOKS[label])
                 if np.isfinite(beside).any():
-                    coherence.plot(one.frequency, beside, label=label, **LOOKS[label])
+                    coherence.plot(response.frequency, beside, label=label, **LOOKS[label])
             magnitude.set_title(
-                f"{one.channel}\nFRAC {one.frac:.3f}; {one.scaled_frac:.3f} with frequencies times {one.scale:.3f}"
+                f"{response.channel}\nFRAC {response.frac:.3f}; {response.scaled_frac:.3f} with frequencies times "
+                f"{response.scale:.3f}"
             )
             magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
-        lines = np.concatenate([one.frequency for one in responses])
+        lines = np.concatenate([response.frequency for response in responses])
         low, high = max(float(lines.min()), 0.9 * FRF_BAND[0]), float(lines.max())
         if low > 2.0 * FRF_BAND[0] or high < 0.5 * FRF_BAND[1]:
             axes[0, 0].set_xlim(low, high)
 
 
-def plot_histories(path: Path, place: str, histories: Sequence[RecordComparison], caption: str) -> None:
-    """Write the time histories of one place, a row for each: the whole record and its liveliest moment.
+def plot_histories(path: Path, point: str, histories: Sequence[RecordComparison], caption: str) -> None:
+    """Write the time histories of one output point, a row for each: whole record, and excerpt with the highest level.
 
     Args:
         path: PNG file.
-        place: for the title.
-        histories: of the place.
+        point: output point, for the title.
+        histories: time histories of the output point.
         caption: what was measured and what was simulated.
     """
     size = (13.0, 2.6 * len(histories) + 1.4)
-    with saved_figure(path, size, f"{place}: measured beside simulated", caption) as figure:
+    with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
         axes = figure.subplots(len(histories), 2, sharey="row", width_ratios=(1.6, 1.4), squeeze=False)
-        for one, (whole, detail) in zip(histories, axes, strict=True):
-            inside = _liveliest(one)
+        for history, (whole, detail) in zip(histories, axes, strict=True):
+            inside = _highest_level(history)
             for label in LOOKS:
-                values = getattr(one, label)
-                whole.plot(one.time, values, **(LOOKS[label] | {"linewidth": 0.6}), label=label)
-                detail.plot(one.time[inside], values[inside], **LOOKS[label], label=label)
-            whole.set_ylabel(f"{one.channel}\n[{one.unit.replace('2', '²')}]")
-            whole.set_xlim(one.time[0], one.time[-1])
-            detail.set_xlim(one.time[inside][0], one.time[inside][-1])
+                values = getattr(history, label)
+                whole.plot(history.time, values, **(LOOKS[label] | {"linewidth": 0.6}), label=label)
+                detail.plot(history.time[inside], values[inside], **LOOKS[label], label=label)
+            whole.set_ylabel(f"{history.channel}\n[{history.unit.replace('2', '²')}]")
+            whole.set_xlim(history.time[0], history.time[-1])
+            detail.set_xlim(history.time[inside][0], history.time[inside][-1])
         axes[0, 0].set_title("whole record")
-        axes[0, 1].set_title("liveliest stretch of the measurement")
+        axes[0, 1].set_title("excerpt with the highest measured level")
         axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes[-1]:
             axis.set_xlabel("time of the run [s]")
 
 
-def _liveliest(one: RecordComparison) -> slice:
-    """The stretch of `DETAIL` in which the measured record holds most."""
-    count = min(max(int(DETAIL / (one.time[1] - one.time[0])), 2), one.time.size)
-    total = np.concatenate([[0.0], np.cumsum(one.measured**2)])
+def _highest_level(record: RecordComparison) -> slice:
+    """Return the excerpt of length `DETAIL` with the highest measured level."""
+    count = min(max(int(DETAIL / (record.time[1] - record.time[0])), 2), record.time.size)
+    total = np.concatenate([[0.0], np.cumsum(record.measured**2)])
     first = int(np.argmax(total[count:] - total[:-count]))
     return slice(first, first + count)
 
@@ -130,7 +133,7 @@ def plot_mac(
     tables: Sequence[tuple[str, npt.NDArray[np.float64], Sequence[float], Sequence[float]]],
     caption: str,
 ) -> None:
-    """Write matrices of MAC beside each other.
+    """Write a picture of several MAC matrices.
 
     Args:
         path: PNG file.

@@ -35,7 +35,7 @@ class RecordComparison:
         rms_ratio: simulated over measured [-].
         correlation: coefficient at equal times [-].
         rating: after ISO/TS 18571, of windows at the full rate.
-        clock: time shift and drift of the simulated record; None where both do not show one motion.
+        clock: time shift and drift of the simulated record; None if the records do not correlate.
     """
 
     channel: str
@@ -56,21 +56,21 @@ class RecordComparison:
 
     @property
     def drift(self) -> float:
-        """Change of the lag per time [-]; NaN where the record does not tell it."""
-        told = self.clock is not None and math.isfinite(self.clock.drift_error)
-        return self.clock.drift if told and self.clock is not None else math.nan
+        """Change of the lag per time [-]; NaN if the record does not determine it."""
+        resolved = self.clock is not None and math.isfinite(self.clock.drift_error)
+        return self.clock.drift if resolved and self.clock is not None else math.nan
 
 
 def compare_records(
     measured: Record, simulated: Record, times: Vector | None = None
 ) -> tuple[tuple[RecordComparison, ...], list[Counterpart]]:
-    """Compare all time histories that both have, over the time that both have.
+    """Compare all common time histories over the common time.
 
-    The one of the higher rate is low-passed without phase shift and brought to the lower rate.
+    The record with the higher rate is low-passed without phase shift and resampled to the lower rate.
 
     Args:
         measured, simulated: with the same units.
-        times: of the measured samples on the clock of the run [s], (n,); their own by default.
+        times: times of the measured samples on the clock of the run [s], (n,); by default those of the record.
 
     Returns:
         The comparisons, and how each measured channel fits its counterpart when both are shifted.
@@ -89,8 +89,8 @@ def compare_records(
         )
     grid = start + step * np.arange(count)
     parts = counterparts(measured, simulated, times)
-    found = [_compared(measured, simulated, times, grid, step, part) for part in parts]
-    return tuple(found), parts
+    comparisons = [_compared(measured, simulated, times, grid, step, part) for part in parts]
+    return tuple(comparisons), parts
 
 
 def _compared(
@@ -99,7 +99,7 @@ def _compared(
     """Compare one channel at common times."""
     truth = at_times(times, measured.channels[part.channel], grid, step)
     curve = at_times(simulated.time, simulated.channels[part.channel], grid, step)
-    size, other = (float(np.sqrt(np.mean(one**2))) for one in (truth, curve))
+    size, other = (float(np.sqrt(np.mean(values**2))) for values in (truth, curve))
     spread = float(np.std(truth) * np.std(curve))
     return RecordComparison(
         channel=part.channel,
@@ -113,25 +113,25 @@ def _compared(
         if spread > 0.0
         else math.nan,
         rating=rate_record(truth, curve, step),
-        clock=part.known,
+        clock=part.reliable_shift,
     )
 
 
 def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a sentence for measured channels that are one record, while the simulated ones differ.
+    """Return a sentence for each pair of equal measured channels whose simulated channels differ.
 
     Args:
         records: see `compare_records`.
     """
     said = []
-    for number, one in enumerate(records):
+    for number, record in enumerate(records):
         for other in records[:number]:
-            if not np.ptp(one.measured) > 0.0 or one.unit != other.unit:
+            if not np.ptp(record.measured) > 0.0 or record.unit != other.unit:
                 continue
-            same = np.array_equal(one.measured, other.measured)
-            if same and not np.allclose(one.simulated, other.simulated, atol=1e-3 * float(np.std(one.simulated))):
+            same = np.array_equal(record.measured, other.measured)
+            if same and not np.allclose(record.simulated, other.simulated, atol=1e-3 * float(np.std(record.simulated))):
                 said.append(
-                    f"{other.channel} and {one.channel} were measured with the same samples, the run has different "
-                    f"ones: was a channel copied? Choose another: --map {one.channel}=NAME"
+                    f"{other.channel} and {record.channel} have equal samples in the measurement, but not in the run: "
+                    f"was a channel copied? Choose another channel: --map {record.channel}=NAME"
                 )
     return said

@@ -1,4 +1,4 @@
-"""What a run gives to be compared: its time histories and frequency responses, by itself or by its files."""
+"""Time histories and frequency responses of a run for a comparison, from a `Run` or the folder of a run."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
-from vehicle.signals.records.frf import FrfData, read_frf
+from vehicle.signals.records.frf_file import FrfData, read_frf
 from vehicle.signals.records.measured import estimated_frf
 from vehicle.signals.records.reader import read_columns
-from vehicle.signals.records.run_summary import run_summary
+from vehicle.signals.records.run_summary import available_summary
 from vehicle.signals.records.table import Record
 
 Responses = Callable[[Sequence[str], float | None], FrfData | None]
@@ -19,14 +19,14 @@ Responses = Callable[[Sequence[str], float | None], FrfData | None]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Simulated:
-    """A run.
+    """Simulated data of a comparison.
 
     Attributes:
-        name: of its input.
-        record: all its time histories; the first sample is at time 0.
-        responses: names of accelerations, and the length of Hann windows [s] or None, to the responses to the plate;
-            None where there are none.
-        tyres: what the tyres of its car do; empty where no summary says it.
+        name: name of the input.
+        record: all time histories; the first sample is at time 0.
+        responses: function of names of accelerations and of the length of Hann windows [s] or None; returns the
+            responses to the plate, or None.
+        tyres: state of the tyres, "standing" or "rolling at ..."; empty if unknown.
     """
 
     name: str
@@ -36,16 +36,16 @@ class Simulated:
 
 
 def of_run(run: Run) -> Simulated:
-    """A finished run."""
+    """Return the simulated data of a run."""
 
     def responses(names: Sequence[str], window: float | None) -> FrfData:
-        found = run.frf(names, window=window)
+        response = run.frf(names, window=window)
         return FrfData(
-            frequency=found.frequency,
+            frequency=response.frequency,
             channels=tuple(names),
-            response=found.response,
-            coherence=found.coherence,
-            random_error=found.random_error,
+            response=response.response,
+            coherence=response.coherence,
+            random_error=response.random_error,
         )
 
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
@@ -53,10 +53,10 @@ def of_run(run: Run) -> Simulated:
 
 
 def of_folder(folder: Path) -> Simulated:
-    """The files of a run.
+    """Read the simulated data of the folder of a run.
 
     Raises:
-        ConfigurationError: the folder holds no time histories.
+        ConfigurationError: the folder has no time histories.
         DataError: a file of it is damaged.
     """
     file = next((folder / name for name in ("time.npz", "time.csv") if (folder / name).is_file()), None)
@@ -66,9 +66,10 @@ def of_folder(folder: Path) -> Simulated:
 
     def responses(names: Sequence[str], window: float | None) -> FrfData | None:
         if window is not None:
-            found = estimated_frf(record, window)
-            return None if found is None else found[0]
+            estimate = estimated_frf(record, window)
+            return None if estimate is None else estimate[0]
         return read_frf(folder / "frf.csv") if (folder / "frf.csv").is_file() else None
 
-    tyres = str(run_summary(folder).get("tyre", ""))
+    summary = available_summary(folder)
+    tyres = summary.get("tyre", "") if summary else ""
     return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres)

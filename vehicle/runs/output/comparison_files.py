@@ -1,28 +1,28 @@
-"""Files of a measurement beside a run: tables, and a picture for each place."""
+"""Files of a comparison: tables, and a picture for each output point."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from vehicle.runs.car import Run
-from vehicle.runs.comparison.comparison import comparison_of
-from vehicle.runs.comparison.drawings import drawings_of
+from vehicle.runs.comparison.compared_run import comparison_of
+from vehicle.runs.comparison.comparison import Comparison
+from vehicle.runs.comparison.named_pictures import drawings_of
 from vehicle.runs.comparison.simulated import of_run
-from vehicle.runs.comparison.tables import Comparison
 from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_summary import MeasuredSummary
 
 
 def save_comparison(
     comparison: Comparison, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
 ) -> Path:
-    """Write the tables of a comparison and a picture for each output point into a folder of their own.
+    """Write the tables of a comparison and a picture for each output point into a new folder.
 
     Args:
         comparison: result of `compare_run`.
         folder: name of the folder.
-        force: replace what was written there before.
+        force: replace files of an earlier run.
         protect: input files; a folder that holds one of them is never replaced.
 
     Returns:
@@ -38,14 +38,14 @@ def save_comparison(
 
 
 def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
-    """Write the tables and a picture for each place.
+    """Write the tables and a picture for each output point.
 
     Args:
-        folder: where to.
-        comparison: what to write.
+        folder: folder of the files.
+        comparison: the comparison.
 
     Returns:
-        Kind of file to its name.
+        Name of each file by its purpose.
     """
     write_text(folder / "compare.csv", comparison.csv())
     write_json(folder / "compare.json", comparison.summary())
@@ -56,19 +56,19 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
     return files
 
 
-def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> dict[str, Any]:
-    """Put a measurement beside a run, in the folder of the run.
+def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> MeasuredSummary:
+    """Compare a measurement with a run, and write the files into the folder of the run.
 
     Args:
         folder: of the run.
         measured: the measurement.
         run: the run.
-        files: kind of file to its name; what is written is added.
+        files: name of each file by its purpose; the new files are added.
 
     Returns:
-        What the summary says of it.
+        Entry of the summary.
     """
     comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
     files |= write_comparison(folder, comparison)
-    told = comparison.summary()
-    return {"file": comparison.measured, "table": told["table"], "notices": told["notices"]}
+    content = comparison.summary()
+    return {"file": comparison.measured, "table": content["table"], "notices": content["notices"]}

@@ -1,4 +1,4 @@
-"""Folder of a run: written under a temporary name, renamed when complete, never half-finished under its own name."""
+"""Folder of a run: written under a temporary name and renamed when complete."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from vehicle.runs.output.written_files import (
 
 @contextmanager
 def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Iterator[Path]:
-    """Give a temporary folder; on success it becomes `path`, on failure it is removed.
+    """Yield a temporary folder; on success it is renamed to `path`, on failure removed.
 
     Args:
-        path: final folder; behind a link, the folder that it leads to.
-        force: replace what a run wrote there before.
-        protect: input files; a folder that holds one of them is never replaced.
+        path: final folder; a link is resolved.
+        force: replace files of an earlier run.
+        protect: input files; a folder that contains one of them is never replaced.
 
     Yields:
-        The temporary folder, beside the final one.
+        The temporary folder, in the same parent folder.
 
     Raises:
-        ConfigurationError: as of `check_output`, or another process writes there.
+        ConfigurationError: see `check_output`, or another process writes there.
         OutputError: the folder cannot be written.
     """
     path = check_output(path, force=force, protect=protect)
@@ -69,24 +69,24 @@ def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) ->
 
 
 def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str = "") -> Path:
-    """Make, or take up, a folder whose files are written one after the other: of a study, a sweep or a search.
+    """Make, or continue, the folder of a study, a sweep or a search, which write their files step by step.
 
     Args:
-        folder: where to.
-        force: write into a folder that holds results already.
-        resume: go on with the rows that are there.
-        rows: name of the file of finished rows, which `force` throws away; empty where nothing can be gone on with.
+        folder: the folder.
+        force: write into a folder with results.
+        resume: continue with the finished rows.
+        rows: name of the file of finished rows, which `force` deletes; empty for a job that cannot be continued.
 
     Returns:
         The folder.
 
     Raises:
-        ConfigurationError: it holds results, and neither or both is asked for; or files that no run wrote; or another
-            process writes there.
-        OutputError: it cannot be made or is not a folder.
+        ConfigurationError: the folder has results, and not exactly one of both is set; or it has files of the user; or
+            another process writes there.
+        OutputError: the folder cannot be made, or is no folder.
     """
     if resume and force:
-        raise ConfigurationError("--resume keeps the finished rows, --force throws them away: give one of them")
+        raise ConfigurationError("--resume keeps the finished rows, --force deletes them: set only one of them")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         begun = (folder / rows).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
@@ -108,7 +108,7 @@ def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str
 
 
 def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Path:
-    """Refuse an output folder before anything is computed.
+    """Check an output folder before the computation.
 
     Returns:
         The folder without links.
@@ -120,20 +120,20 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
     """
     try:
         folder = path.resolve()
-        here = Path.cwd()
+        current = Path.cwd()
     except (OSError, RuntimeError) as error:
         raise OutputError(f"--output {path}: cannot be reached ({error}); choose another folder") from None
     for file in protect:
         source = file.resolve()
         if folder == source or folder in source.parents:
             raise ConfigurationError(f"--output {path}: holds the input {file}; choose another folder")
-    if folder == here or folder in here.parents:
-        raise ConfigurationError(f"--output {path}: is the working folder, or holds it; give a folder of its own")
+    if folder == current or folder in current.parents:
+        raise ConfigurationError(f"--output {path}: is the working folder, or contains it; set another folder")
     if folder.exists() and not folder.is_dir():
         raise ConfigurationError(f"--output {path}: is a file; give a folder")
     if folder.exists() and not force:
         raise ConfigurationError(f"--output {path}: exists; give --force to replace it, or another folder")
-    parent = next(place for place in folder.parents if place.exists())
+    parent = next(parent for parent in folder.parents if parent.exists())
     if not os.access(parent, os.W_OK) or not parent.is_dir():
         raise OutputError(f"--output {path}: {parent} cannot be written; choose another folder")
     if folder.exists():
@@ -144,12 +144,12 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
 def check_file(
     path: Path, option: str = "--output", *, ending: str = "", force: bool, protect: tuple[Path, ...] = ()
 ) -> None:
-    """Refuse the path of a single file before anything is computed.
+    """Check the path of a single output file before the computation.
 
     Args:
-        path: of the file.
-        option: that names it.
-        ending: that its name must have, as ".csv".
+        path: path of the file.
+        option: option that names the file.
+        ending: required ending, as ".csv".
         force: replace a file that the program wrote.
         protect: input files, which are never replaced.
 
@@ -176,12 +176,12 @@ def check_file(
 
 
 def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
-    """Refuse to write files into a folder that may hold others in addition.
+    """Check files that are added to a folder with other files.
 
     Args:
         folder: the folder; it need not exist.
-        names: of the files, relative to it.
-        force: replace those that the program wrote.
+        names: names of the files, relative to the folder.
+        force: replace files of the program.
 
     Raises:
         ConfigurationError: the folder is a file, or a file is in the way.
@@ -194,22 +194,22 @@ def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
 
 
 _claimed: set[Path] = set()
-"""Folders and files that this command has locked until its end, as of `claim`."""
+"""Folders and files that this command has locked until its end, see `claim`."""
 
 
 class OccupiedError(ConfigurationError):
-    """Another process writes there."""
+    """Error if another process writes to the same folder or file."""
 
 
 @contextmanager
 def claim(path: Path) -> Iterator[None]:
-    """Lock a folder or a file that a command writes later; `folder_lock` of this process passes meanwhile.
+    """Lock a folder or a file that a command writes later; `folder_lock` in this process does not block.
 
     Args:
-        path: without links.
+        path: resolved path.
 
     Raises:
-        OccupiedError, OutputError: as of `folder_lock`.
+        OccupiedError, OutputError: see `folder_lock`.
     """
     if path in _claimed:
         raise OccupiedError(f"--output {path}: is written twice by this command; give another name")
@@ -223,19 +223,19 @@ def claim(path: Path) -> Iterator[None]:
 
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Keep other processes from writing into the same folder, or the same file, meanwhile.
+    """Lock a folder or a file against writing by other processes.
 
-    The kernel drops the lock of a process that dies, so that the file a killed one leaves behind locks nothing.
+    The kernel releases the lock of a process that ends, so the lock file of a killed process does not block.
 
     Raises:
-        OccupiedError: another process writes there; the message has its number.
+        OccupiedError: another process writes there; the message contains its process id.
         OutputError: the parent of the folder cannot be written.
     """
     if folder in _claimed:
         yield
         return
     path = folder.parent / f".{folder.name}.lock"
-    made = [parent for parent in path.parents if not parent.exists()]
+    new_folders = [parent for parent in path.parents if not parent.exists()]
     try:
         descriptor = _opened(path)
     except OSError as error:
@@ -252,7 +252,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
                 "folder"
             ) from None
         except OSError:
-            pass  # a file system without locks
+            pass  # the file system does not support locks
         os.truncate(descriptor, 0)
         os.write(descriptor, f"{os.getpid()}\n".encode())
         try:
@@ -262,7 +262,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
     finally:
         os.close(descriptor)
         with suppress(OSError):  # a folder that is in use by now
-            for parent in made:
+            for parent in new_folders:
                 parent.rmdir()
 
 
@@ -276,15 +276,15 @@ def _opened(path: Path) -> int:
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write one file under a temporary name and rename it; the list of its folder gets its name and digest.
+    """Write a file under a temporary name, rename it, and add its name and digest to the list of its folder.
 
     Args:
         path: final name.
-        write: writes the file at the path it is given; the ending of the name is kept.
+        write: function that writes the file to a path with the same ending.
 
     Raises:
-        ConfigurationError: a file is there that the program did not write, or that was changed since.
-        OutputError: the file cannot be written; nothing is left behind.
+        ConfigurationError: the existing file is of the user, or was edited.
+        OutputError: the file cannot be written; the temporary file is deleted.
     """
     if path.is_dir():
         raise OutputError(f"{path}: cannot be written: is a folder; nothing is left behind")
@@ -303,10 +303,10 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file, as `write_whole` does."""
+    """Write a text file, see `write_whole`."""
     write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
 def write_json(path: Path, content: Any) -> None:
-    """Write JSON with sorted structure kept, two blanks of indent, and no NaN."""
+    """Write JSON with an indent of two blanks; NaN raises a ValueError."""
     write_text(path, json.dumps(content, indent=2, allow_nan=False) + "\n")

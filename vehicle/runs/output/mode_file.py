@@ -14,36 +14,36 @@ from vehicle.signals.records.geometry import ModeShape
 
 
 def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
-    """Complex modes of a car at its places, the largest translation of each equal to 1.
+    """Return the complex modes of a car at its output points; the maximum translation of each mode is 1.
 
     Args:
         car: the car.
         damper: state of the dampers, stuck or sliding.
     """
-    places = tuple(one.name for one in car.vehicle.composition.outputs)
+    points = tuple(output.name for output in car.vehicle.composition.outputs)
     modes = [mode for mode in car.modes(damper) if mode.frequency > 0.0 and not mode.grows]
-    found = []
-    for number, (mode, at) in enumerate(zip(modes, shapes_at(car, modes, places), strict=True), 1):
+    shapes = []
+    for number, (mode, at) in enumerate(zip(modes, shapes_at(car, modes, points), strict=True), 1):
         scale = at.ravel()[np.argmax(np.abs(at))] or 1.0
-        shape = np.zeros((len(places), 6), dtype=np.complex128)
+        shape = np.zeros((len(points), 6), dtype=np.complex128)
         shape[:, :3] = at / scale
-        found.append(
+        shapes.append(
             ModeShape(
                 number=number,
                 frequency=mode.frequency,
                 damping_ratio=mode.damping_ratio,
                 modal_a=mode.modal_a / scale**2,
-                points=places,
+                points=points,
                 shape=shape,
                 # A line of a universal file has 80 characters: the leading motion where two do not fit.
                 name=mode.description if len(mode.description) <= 80 else next(iter(mode.motions)),
                 is_complex=True,
             )
         )
-    return tuple(found)
+    return tuple(shapes)
 
 
 def write_modes(path: Path, car: Car, damper: str = "stuck") -> None:
-    """Write datasets 151, 164, 15, 82 and 55 of a car; arguments as of `mode_shapes`."""
-    about = f"{car.vehicle.name}; modes, dampers {damper}; x to the rear, y to the driver's right, z up"
-    uff_writer.write(path, (), about, geometry(car), mode_shapes(car, damper))
+    """Write datasets 151, 164, 15, 82 and 55 of a car; arguments like `mode_shapes`."""
+    title = f"{car.vehicle.name}; modes, dampers {damper}; x to the rear, y to the driver's right, z up"
+    uff_writer.write(path, (), title, geometry(car), mode_shapes(car, damper))

@@ -1,9 +1,6 @@
-"""Comfort of a run: at the seat rail and on the seat, what the seat does, and what must be said about it."""
+"""Comfort of a run at the seat rail and on the seat: values, SEAT value and notices."""
 
 from __future__ import annotations
-
-from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 
@@ -12,34 +9,38 @@ from vehicle.runs.car import Run
 from vehicle.signals.analysis.comfort import COMFORT_BAND, settling
 from vehicle.signals.analysis.evaluation import evaluate
 from vehicle.signals.analysis.seat_value import seat_value
+from vehicle.signals.records.run_summary import ComfortSummary, SeatSummary
 
 RAIL, SEAT = "seat_rail", "seat"
 
 NO_SEAT = (
-    "comfort of the seat: the car has no seat, so the place 'seat' is a point of its body and there is no SEAT value; "
-    'a table [seat.driver] with template = "seat_occupant" gives it one'
+    "comfort of the seat: the car has no seat, so 'seat' is a point of its body, and there is no SEAT value; "
+    'for a seat add a table [seat.driver] with template = "seat_occupant" to the vehicle file'
 )
 
 
-def comfort_values(run: Run) -> dict[str, Any]:
-    """Comfort values of both places, where the car has them: the unweighted RMS of Bommer 2006, and ISO 2631-1."""
-    return {place: _at(run, place) for place in (RAIL, SEAT) if _recorded(run, place)}
+def comfort_values(run: Run) -> dict[str, ComfortSummary]:
+    """Return the comfort values at seat rail and seat, if recorded: unweighted RMS (Bommer 2006), and ISO 2631-1."""
+    return {point: _at(run, point) for point in (RAIL, SEAT) if _recorded(run, point)}
 
 
-def seat_values(run: Run) -> dict[str, Any] | None:
-    """SEAT value of a run, by RMS and by dose; None of a car without seat, or whose rail is at rest."""
+def seat_values(run: Run) -> SeatSummary | None:
+    """Return the SEAT value of a run, by RMS and by dose; None for a car without seat, or a rail at rest."""
     if not (run.car.vehicle.seated and _recorded(run, RAIL) and _recorded(run, SEAT)):
         return None
-    seat, rail = (run[f"{place}_acc_z"] for place in (SEAT, RAIL))
-    return asdict(seat_value(run.recording.timestep, seat, rail, skip=run.skip)) if np.any(rail) else None
+    seat, rail = (run[f"{point}_acc_z"] for point in (SEAT, RAIL))
+    if not np.any(rail):
+        return None
+    value = seat_value(run.recording.timestep, seat, rail, skip=run.skip)
+    return {"rms": value.rms, "vdv": value.vdv, "weighting": value.weighting}
 
 
 def comfort_notices(run: Run) -> list[str]:
-    """A sentence for each axis of the seat rail whose level changes along the record, and one on a missing seat."""
+    """Return a sentence for each axis of the seat rail with a nonstationary level, and one for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     if not _recorded(run, RAIL):
         return bare
-    found = [
+    drifting = [
         f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "
         f"more than chance ({300 * part.standard_error:.0f} %): no stationary signal, so its RMS depends on the length"
         for axis, part in zip(
@@ -47,20 +48,22 @@ def comfort_notices(run: Run) -> list[str]:
         )
         if not part.settled
     ]
-    return found + bare
+    return drifting + bare
 
 
-def _recorded(run: Run, place: str) -> bool:
-    return all(f"{place}_acc_{axis}" in run.recording.channels for axis in AXES)
+def _recorded(run: Run, point: str) -> bool:
+    return all(f"{point}_acc_{axis}" in run.recording.channels for axis in AXES)
 
 
-def _at(run: Run, place: str) -> dict[str, Any]:
-    value = run.comfort(place)
-    xyz = [run[f"{place}_acc_{axis}"] for axis in AXES]
-    rms = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
-    whole = run.signal.highest is None
+def _at(run: Run, point: str) -> ComfortSummary:
+    value = run.comfort(point)
+    xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
+    rms: dict[str, float | None] = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
+    iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
+    if run.signal.highest is None:
+        return {"rms_2_50_hz": rms, "iso2631": iso}
     return {
-        "rms_2_50_hz": rms if whole else dict.fromkeys(rms),
-        **({} if whole else {"rms_of_band": {"band_hz": list(value.band), **rms}}),
-        "iso2631": evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest),
+        "rms_2_50_hz": dict.fromkeys(rms),
+        "rms_of_band": {"band_hz": list(value.band), **rms},
+        "iso2631": iso,
     }

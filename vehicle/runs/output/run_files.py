@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -27,8 +27,17 @@ from vehicle.signals.analysis.peaks import resonances
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
-from vehicle.signals.records.frf import write_frf
+from vehicle.signals.records.frf_file import write_frf
 from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_summary import (
+    SUMMARY_FILE,
+    FrfSummary,
+    MeasuredSummary,
+    MotionSummary,
+    Peaks,
+    PlacedLoad,
+    RunSummary,
+)
 from vehicle.signals.records.table import Record
 from vehicle.signals.records.text_format import write_table
 
@@ -40,17 +49,17 @@ LOADS = (
     "; forces of elements: on the moving part, in the axes of the carrier; springs: compression positive; "
     "suspension travel: wheel centre against body, upwards from the design position"
 )
-"""What the time histories say beside where loads are among them."""
+"""Addition to the header of time histories with loads."""
 
 
 def require_plates(signal: Signal) -> None:
-    """Refuse plates that move alike but for a delay: no FRF tells them apart.
+    """Check that no plate repeats the motion of another with a delay; FRFs cannot separate such plates.
 
     Args:
         signal: plate displacement.
 
     Raises:
-        DataError: naming the plates and the delay.
+        DataError: the message contains the plates and the delay.
     """
     moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
     if len(moving) < 2:
@@ -73,19 +82,19 @@ def write_run(
     measured: Measured | None = None,
     report: tuple[Path, Callable[[Path], None]] | None = None,
     command: str = "",
-) -> dict[str, Any]:
+) -> RunSummary:
     """Write all files of a finished run.
 
     Args:
-        folder: as of `output_folder`.
+        folder: temporary folder of `output_folder`.
         run: the run.
         time_format: "npz" or "csv".
-        formats: further ones of `vehicle.signals.records.formats.WRITTEN`.
-        engine_reason: why this engine was taken, where that is not `Car.run`'s to say.
-        video: name of the film, or a path of its own, and what writes it.
-        measured: a measurement that is put beside the run.
-        report: the same of the report, which is made of the other files.
-        command: line that makes this run, for the summary.
+        formats: further formats of `vehicle.signals.records.formats.WRITTEN`.
+        engine_reason: reason for the choice of the engine; by default that of the run.
+        video: name of the film, or a path outside the folder, and the function that writes it.
+        measured: measurement to compare with the run.
+        report: path of the report and the function that writes it from the other files.
+        command: command line that makes this run, for the summary.
 
     Returns:
         The content of `summary.json`.
@@ -94,10 +103,9 @@ def write_run(
         VehicleError: a file cannot be made or written.
     """
     channels = run.car.vehicle.acceleration_channels
-    # On a road, FRFs that cannot be had are left out with a notice.
+    # On a road, FRFs that cannot be estimated are left out with a notice.
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
-    files = {"summary": "summary.json", "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
-    summary = summarise(run, responses, files)
+    files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
         files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
     if run.road is not None:
@@ -112,10 +120,10 @@ def write_run(
     write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
     if responses:
         first, *others = responses
-        further, words = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
+        further, motions = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
         write_whole(
             folder / "frf.csv",
-            lambda path: write_frf(path, first.response, channels, FRAME, further=further, words=words),
+            lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=motions),
         )
         caption = _caption(run, first.response)
         write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
@@ -130,20 +138,23 @@ def write_run(
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
         files["video"] = str(name)
-    summary["measured"] = None
+    beside = None
     if measured is not None:
         from vehicle.runs.output.comparison_files import write_beside
 
-        summary["measured"] = write_beside(folder, measured, run, files)
-        summary["notices"] += [f"{measured.file.path.name}: {text}" for text in summary["measured"]["notices"]]
-    summary["solver"]["engine_reason"] = engine_reason or run.engine_reason
-    summary["tyre"] = run.car.vehicle.driving.words
-    summary["input"]["road"] = None if run.road is None else dict(run.road)
-    summary["notices"] += missing
-    summary["command"] = command or None
+        beside = write_beside(folder, measured, run, files)
     if report is not None:
         files["report"] = str(report[0])
-    write_json(folder / "summary.json", summary)
+    summary = summarise(
+        run,
+        responses,
+        files,
+        measured=beside,
+        engine_reason=engine_reason or run.engine_reason,
+        notices=missing,
+        command=command,
+    )
+    write_json(folder / SUMMARY_FILE, summary)
     if report is not None:
         name, make = report
         write_whole(folder / name if name.parent == Path() else name, make)
@@ -151,24 +162,27 @@ def write_run(
 
 
 def _write_psd(path: Path, run: Run) -> None:
-    """One-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
+    """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
     window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
     each = [
-        power_spectral_density(recording.timestep, one[run.evaluated], window_s=window)
-        for one in recording.channels.values()
+        power_spectral_density(recording.timestep, values[run.evaluated], window_s=window)
+        for values in recording.channels.values()
     ]
-    found = each[0]
-    inside = found.frequency <= PSD_HIGHEST
+    first = each[0]
+    inside = first.frequency <= PSD_HIGHEST
     cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
-    method = f"one-sided power spectral density: Hann windows of {window:g} s, {found.averages:.3g} averages"
+    method = f"one-sided power spectral density: Hann windows of {window:g} s, {first.averages:.3g} averages"
     method += f"; from {run.skip:g} s on"
     write_table(
-        path, cells, [found.frequency[inside], *(one.density[0, inside] for one in each)], [method, f"frame: {FRAME}"]
+        path,
+        cells,
+        [first.frequency[inside], *(values.density[0, inside] for values in each)],
+        [method, f"frame: {FRAME}"],
     )
 
 
 def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse], list[str]]:
-    """FRFs of a run; none, and a notice, where they fail in a way that is accepted."""
+    """Return the FRFs of a run; after an accepted error, no FRFs and a notice."""
     try:
         return run.frfs(), []
     except accepted as error:
@@ -176,14 +190,14 @@ def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse]
 
 
 def save_last_state(error: SimulationError, output: Path) -> SimulationError:
-    """Save the last good state of a failed run beside its folder, which will not exist.
+    """Save the last good state of a failed run next to its folder, which is not made.
 
     Args:
-        error: with the state, or without one.
+        error: error of the simulation, with or without the state.
         output: folder of the run.
 
     Returns:
-        The same error, which names the file too.
+        The same error; its message contains the file.
 
     Raises:
         OutputError: the file cannot be written.
@@ -201,40 +215,38 @@ def save_last_state(error: SimulationError, output: Path) -> SimulationError:
     return SimulationError(f"{error}; last good state (t = {float(state['time']):.3f} s): {path}")
 
 
-def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, str]) -> dict[str, Any]:
-    """Content of `summary.json`.
+def summarise(
+    run: Run,
+    responses: Sequence[MotionResponse],
+    files: dict[str, str],
+    *,
+    measured: MeasuredSummary | None = None,
+    engine_reason: str = "",
+    notices: Sequence[str] = (),
+    command: str = "",
+) -> RunSummary:
+    """Return the content of `summary.json`.
 
     Args:
         run: finished run.
-        responses: its FRFs of all acceleration channels to each motion of its plates; none where there are none.
-        files: kind of file to its name, which may grow.
-
-    Returns:
-        Plain numbers, texts, lists and dictionaries; None where a value does not exist.
+        responses: its FRFs of all acceleration channels to each independent plate motion; may be empty.
+        files: name of each file by its purpose.
+        measured: measurement that the run was compared with.
+        engine_reason: reason for the choice of the engine.
+        notices: notices of the writer of the files, after those of the run.
+        command: command line that makes this run.
     """
-    statistics, static, damper = run.recording.statistics, run.car.static, run.car.vehicle.damper
-    energies, wheels = statistics.energies, run.car.vehicle.wheels
-    response, channels = (responses[0].response if responses else None), run.car.vehicle.acceleration_channels
-    said = what_moves([one.motion for one in responses]) if responses else ""
-    body = rigid_body(run.car.vehicle.body)
-    idle = idle_parameters(run.car.vehicle, run.car.overrides)
-    notices = [
-        *([body.report] if body.repaired else []),
-        *mass_difference(run.car.trimmed_body, run.car.vehicle.body, body_loads(run.car.vehicle)),
-        *idle,
-        *body_notices(run.car.vehicle, run.car.overrides),
-        *run.signal.notices,
-        *([said] if said else []),
-        *dict.fromkeys(reason for one in responses for reason in one.response.reasons),
-        *comfort_notices(run),
-        *statistics.notices,
-    ]
+    statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
+    energies, wheels = statistics.energies, vehicle.wheels
+    response, channels = (responses[0].response if responses else None), vehicle.acceleration_channels
+    motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
+    body = rigid_body(vehicle.body)
     return {
         "frame": FRAME,
         "vehicle": {
-            "name": run.car.vehicle.name,
+            "name": vehicle.name,
             **run.car.origin,
-            "inertia_about": run.car.vehicle.body.inertia.about,
+            "inertia_about": vehicle.body.inertia.about,
             "inertia": body.report,
             **_loads(run),
             "superelement": run.car.model.superelement.provenance,
@@ -247,10 +259,12 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "duration_s": run.signal.duration,
             "highest_hz": run.signal.highest,
             "wheel": run.wheel,
-            "wheel_text": run.car.vehicle.wheel_text(run.wheel),
+            "wheel_text": vehicle.wheel_text(run.wheel),
+            "road": None if run.road is None else dict(run.road),
         },
         "evaluated_s": [run.skip, run.signal.duration],
-        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels} | {"slip_velocity": damper.slip_velocity},
+        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels}
+        | {"slip_velocity": vehicle.damper.slip_velocity},
         "first_slip_s": {wheel: run.first_slip(wheel) for wheel in wheels},
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
@@ -277,36 +291,67 @@ def summarise(run: Run, responses: Sequence[MotionResponse], files: dict[str, st
             "work_in_j": energies.work_in if energies else None,
             "dissipated_j": energies.dissipated if energies else None,
             "stored_j": energies.stored if energies else None,
+            "engine_reason": engine_reason,
         },
-        "frf": response
-        and {
-            "estimator": response.estimator,
-            "window": response.window,
-            "resolution_hz": response.resolution_hz,
-            **_degrees_of_freedom(response),
-            "to": [
-                {"plates": dict(one.motion), "columns": "<channel>" if not number else f"<channel>_to_{one.first}"}
-                | ({"peaks": _peaks(one.response, channels)} if number else {})
-                for number, one in enumerate(responses)
-            ],
-        },
-        "notices": notices,
+        "frf": None if response is None else _frf_summary(responses, channels),
+        "notices": [
+            *([body.report] if body.repaired else []),
+            *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
+            *idle_parameters(vehicle, run.car.overrides),
+            *body_notices(vehicle, run.car.overrides),
+            *run.signal.notices,
+            *([motion_notice] if motion_notice else []),
+            *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
+            *comfort_notices(run),
+            *statistics.notices,
+            *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
+            *notices,
+        ],
         "files": files,
+        "measured": measured,
+        "tyre": vehicle.driving.words,
+        "command": command or None,
     }
 
 
-def _loads(run: Run) -> dict[str, Any]:
-    """Loads on the parts of the car, where it has any."""
-    loads = run.car.vehicle.composition.loads
-    each = {
-        one.path.partition(".")[2]: {"mass_kg": one.numbers.mass, "at_m": list(one.cog), "on": one.parent}
-        for one in loads
+def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -> FrfSummary:
+    """Return the settings and the accuracy of an FRF estimate, and the plate motions.
+
+    Degrees of freedom: averages that would give the random errors by H1, median and range over lines and channels.
+    """
+    response = responses[0].response
+    averages = response.averages[np.isfinite(response.averages)]
+    motions: list[MotionSummary] = []
+    for number, independent in enumerate(responses):
+        motion: MotionSummary = {"plates": dict(independent.motion), "columns": "<channel>"}
+        if number:
+            motion |= {"columns": f"<channel>_to_{independent.first}", "peaks": _peaks(independent.response, channels)}
+        motions.append(motion)
+    return {
+        "estimator": response.estimator,
+        "window": response.window,
+        "resolution_hz": response.resolution_hz,
+        "degrees_of_freedom": float(np.median(averages)) if averages.size else None,
+        "degrees_of_freedom_range": [float(averages.min()), float(averages.max())] if averages.size else None,
+        "to": motions,
     }
-    return {"loads": each} if each else {}
 
 
-def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[str, list[dict[str, float | None]]]:
-    """Resonance peaks of every acceleration channel."""
+class _Loads(TypedDict, total=False):
+    loads: dict[str, PlacedLoad]
+
+
+def _loads(run: Run) -> _Loads:
+    """Return the loads on the parts of the car as an entry of the summary; empty for a car without loads."""
+    loads: dict[str, PlacedLoad] = {
+        load.path.partition(".")[2]: {"mass_kg": load.numbers.mass, "at_m": list(load.cog), "on": load.parent}
+        for load in run.car.vehicle.composition.loads
+    }
+    return {"loads": loads} if loads else {}
+
+
+def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> Peaks:
+    """Return the resonances of every acceleration channel; empty lists without FRFs."""
     return {
         channel: [
             {
@@ -321,19 +366,8 @@ def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> dict[
     }
 
 
-def _degrees_of_freedom(response: FrequencyResponse) -> dict[str, Any]:
-    """Averages that would give the random errors by H1: median and range over all lines and channels."""
-    known = response.averages[np.isfinite(response.averages)]
-    if not known.size:
-        return {"degrees_of_freedom": None, "degrees_of_freedom_range": None}
-    return {
-        "degrees_of_freedom": float(np.median(known)),
-        "degrees_of_freedom_range": [float(known.min()), float(known.max())],
-    }
-
-
 def _caption(run: Run, response: FrequencyResponse) -> str:
-    """One line under the FRF plot: input, levels, estimator."""
+    """Return the caption of the FRF plot: input, levels, estimator."""
     moving = [wheel for wheel in run.signal.wheels if run.signal.rms(wheel) > 0.0] or [run.wheel]
     levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
     return (

@@ -21,7 +21,7 @@ _FORCE = re.compile(r"tyre_(?P<wheel>\w+)_force_z")
 
 
 def time_channels(run: Run) -> tuple[Channel, ...]:
-    """All channels of a run over its recorded times."""
+    """Return all channels of a run over the recorded times."""
     step = run.recording.timestep
     axis = uniform_axis(run.time.size, step, float(run.time[0]))
     return tuple(
@@ -31,17 +31,17 @@ def time_channels(run: Run) -> tuple[Channel, ...]:
 
 
 def response_channels(responses: Sequence[MotionResponse], channels: Sequence[str]) -> tuple[Channel, ...]:
-    """Each frequency response and beside it its coherence.
+    """Return each frequency response, followed by its coherence.
 
     Args:
-        responses: to each plate that moves by itself.
-        channels: names of their rows.
+        responses: FRFs to each independent plate motion.
+        channels: names of the rows.
     """
-    found = []
-    for one, (row, name) in product(responses, enumerate(channels)):
-        plate, response = f"plate_{one.first}", one.response
-        about = _point(name) | {"reference": f"{plate}+Z"}
-        found.append(
+    result = []
+    for motion, (row, name) in product(responses, enumerate(channels)):
+        plate, response = f"plate_{motion.first}", motion.response
+        attributes = _point(name) | {"reference": f"{plate}+Z"}
+        result.append(
             Channel(
                 name=f"{name} / {plate}",
                 values=response.response[row],
@@ -49,24 +49,24 @@ def response_channels(responses: Sequence[MotionResponse], channels: Sequence[st
                 axis=response.frequency,
                 kind="frequency",
                 function="frequency response",
-                **about,
+                **attributes,
             )
         )
-        found.append(
+        result.append(
             Channel(
                 name=f"{name} / {plate} coherence",
                 values=response.coherence[row],
                 axis=response.frequency,
                 kind="frequency",
                 function="coherence",
-                **about,
+                **attributes,
             )
         )
-    return tuple(found)
+    return tuple(result)
 
 
 def _point(name: str) -> dict[str, Any]:
-    """Place and direction that the name of a channel tells."""
+    """Return output point and direction of a channel from its name; empty for a damper."""
     match = _ACCELERATION.fullmatch(name)
     if match:
         return {"place": match["place"], "direction": f"+{match['axis'].upper()}"}
@@ -78,39 +78,39 @@ def _point(name: str) -> dict[str, Any]:
 
 
 def geometry(of: Car) -> Geometry:
-    """Places of a car in its design position, and lines from each plate over the places of its wheel."""
+    """Return the output points of a car in the design position, and lines from each plate over its wheel."""
     car = of.vehicle.composition
-    points = {one.name: tuple(one.at) for one in car.outputs}
+    points = {output.name: tuple(output.at) for output in car.outputs}
     lines = []
     for wheel in car.wheels:
         plate = f"plate_{wheel.name}"
-        own = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
+        above_plate = [name for name in points if re.search(rf"_{wheel.name}(_|$)", name)]
         points[plate] = tuple(wheel.patch)
-        lines.append([plate, *sorted(own, key=lambda name: points[name][2])])
+        lines.append([plate, *sorted(above_plate, key=lambda name: points[name][2])])
     return Geometry(points=points, lines=[line for line in lines if len(line) > 1])
 
 
 def writer(
     form: str, run: Run, responses: Sequence[MotionResponse], channels: Sequence[str], frame: str
 ) -> Callable[[Path], None]:
-    """What writes a run in a format.
+    """Return the function that writes a run in a format.
 
     Args:
-        form: of `vehicle.signals.records.formats.WRITTEN`.
+        form: name in `vehicle.signals.records.formats.WRITTEN`.
         run: the run.
-        responses: its FRFs; none where there are none.
-        channels: names of their rows.
+        responses: FRFs of the run; may be empty.
+        channels: names of the rows.
         frame: axes of the vectors, in words.
     """
     if BY_NAME[form].table:
         record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
         return lambda path: write_record(path, form, record, frame)
     histories = time_channels(run)
-    about = f"{run.car.vehicle.name}; {frame}"
+    title = f"{run.car.vehicle.name}; {frame}"
     write = BY_NAME[form].function("writer", "write")
     if form == "rpc":
-        return lambda path: write(path, histories, about)
+        return lambda path: write(path, histories, title)
     everything = histories + response_channels(responses, channels)
     if form == "uff":
-        return lambda path: write(path, everything, about, geometry(run.car))
-    return lambda path: write(path, everything, about)
+        return lambda path: write(path, everything, title, geometry(run.car))
+    return lambda path: write(path, everything, title)

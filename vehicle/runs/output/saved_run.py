@@ -1,4 +1,4 @@
-"""A run of a script as a folder, as the command `shaker` writes it."""
+"""Folder of a run, with the same files as the command `shaker`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def save_run(
     Raises:
         ConfigurationError: the folder exists without `force`, or holds files that no run wrote; or the run has not all
             default channels.
-        DataError: the record is too short for an FRF, or a plate moves as another one with a delay.
+        DataError: the record is too short for an FRF, or a plate repeats the motion of another with a delay.
         OutputError: a file cannot be written.
     """
     missing = [name for name in run.car.vehicle.channels if name not in run.recording.channels]

@@ -1,1 +1,1 @@
-"""The report of finished runs: one HTML file that needs nothing else."""
+"""Report of finished runs: one self-contained HTML file."""

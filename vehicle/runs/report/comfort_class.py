@@ -1,4 +1,4 @@
-"""Words for a frequency-weighted acceleration: the reactions of ISO 2631-1."""
+"""Likely reactions to a frequency-weighted acceleration, from ISO 2631-1."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CREST_FACTOR_LIMIT = 9.0
 
 
 def reactions(weighted_rms: float) -> tuple[str, ...]:
-    """All likely reactions to a vibration total value.
+    """Return the likely reactions to a vibration total value.
 
     Args:
         weighted_rms: vector sum of the weighted RMS accelerations [m/s2].

@@ -1,29 +1,28 @@
-"""Comfort of a run: weighted and unweighted accelerations, and what people say of them."""
+"""Comfort section of the report: weighted and unweighted accelerations, and likely reactions."""
 
 from __future__ import annotations
 
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
-from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.records.run_summary import unweighted_rms
 
 PLACES = {"seat_rail": "seat rail", "seat": "seat"}
 
 
 NO_ERROR = (
-    "No statistical error is given for MTVV, VDV, crest factor and SEAT value: they are those of this record, and "
-    "another road of the same class gives others. Repeat the run with other seeds to see their spread."
+    "MTVV, VDV, crest factor and SEAT value have no error estimate: they belong to this record, and another road of "
+    "the same class gives other values. Repeat the run with other seeds for their scatter."
 )
 """Sentence below the tables."""
 
 
 def comfort(run: FinishedRun) -> Markup:
-    """Weighted and unweighted accelerations, and the table of reactions with this run in it."""
+    """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run."""
     parts, totals = [], {}
-    for place, value in run.summary["comfort"].items():
-        iso, raw = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
-        low, high = raw.get("band_hz", COMFORT_BAND)
-        totals[PLACES.get(place, place)] = iso["vector_sum"]["weighted_rms"]
+    for point, value in run.summary["comfort"].items():
+        iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
+        totals[PLACES.get(point, point)] = iso["vector_sum"]["weighted_rms"]
         heads = (
             "axis",
             "weighting",
@@ -56,17 +55,17 @@ def comfort(run: FinishedRun) -> Markup:
             )
         )
         span = f", {run.span} of the run" if run.span else ""
-        caption = f"{PLACES.get(place, place).capitalize()}, {iso['standard']}{span}"
+        caption = f"{PLACES.get(point, point).capitalize()}, {iso['standard']}{span}"
         parts.append(table(heads, rows, caption=caption, words=2))
         parts += [tag("p", text) for text in iso["reasons"]]
-    here = {word: [place for place, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
+    matches = {word: [point for point, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
     body = [
         tag(
             "tr",
             tag("td", _range(low, high)),
             tag("td", word),
-            tag("td", ", ".join(here[word])),
-            class_="here" if here[word] else None,
+            tag("td", ", ".join(matches[word])),
+            class_="here" if matches[word] else None,
         )
         for word, low, high in REACTIONS
     ]
@@ -89,10 +88,10 @@ def comfort(run: FinishedRun) -> Markup:
     )
     seat = run.summary.get("seat_value")
     if seat is not None:
-        words = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: below 1 the seat isolates."
-        parts.append(tag("p", words))
+        text = f"SEAT value {number(seat['rms'])} by RMS, {number(seat['vdv'])} by dose: the seat isolates below 1."
+        parts.append(tag("p", text))
     parts.append(tag("p", NO_ERROR))
-    parts.append(tag("p", "The standard weights the vibration on the seat surface; the seat rail lies below it."))
+    parts.append(tag("p", "The standard applies to the vibration on the seat surface; the seat rail is below it."))
     return joined(parts)
 
 

@@ -1,4 +1,4 @@
-"""Several runs beside each other: what went in, what came out, and their FRFs over each other."""
+"""Comparison section of the report: inputs, key figures, parameters and FRFs of several runs."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from pathlib import Path
 
 from vehicle.drawing.rendering.several_runs import plot_densities, plot_responses, shared_channels
 from vehicle.names import wheel_words
-from vehicle.runs.report.comparison import changed_parameters, difference, key_figures
-from vehicle.runs.report.drawings import drawing
+from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
+from vehicle.runs.report.svg_figure import drawing
 
 
 def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
-    """Key figures, parameters and FRFs of several runs."""
+    """Return tables of inputs, key figures and parameters, and the FRFs of several runs."""
     figures = [key_figures(run) for run in runs]
     heads = ["", "unit", runs[0].name]
     for run in runs[1:]:
         heads += [run.name, "change"]
     rows = []
-    for name, unit in dict.fromkeys(key for one in figures for key in one):
-        values = [one.get((name, unit)) for one in figures]
+    for name, unit in dict.fromkeys(key for table_of_run in figures for key in table_of_run):
+        values = [table_of_run.get((name, unit)) for table_of_run in figures]
         cells = [number(values[0])]
         for value in values[1:]:
             cells += [number(value), difference(values[0], value, unit)]
@@ -39,7 +39,7 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
     ]
     parts = [
         table(("run", "car", "signal", "RMS [mm]", "length [s]", "engine"), inputs, words=3),
-        tag("h3", f"Differences against {runs[0].name}"),
+        tag("h3", f"Differences from {runs[0].name}"),
         table(heads, rows, words=2),
     ]
     changed = changed_parameters([run.car.vehicle for run in runs])
@@ -49,14 +49,14 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
         heads = ["parameter", "unit", *(run.name for run in runs)]
         parts.append(shortened(f"{len(changed)} parameters", heads, content, words=2))
     else:
-        parts.append(tag("p", "None: the cars are the same."))
+        parts.append(tag("p", "None: the cars have equal parameters."))
     if len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1:
-        parts.append(tag("p", "The signals differ, so levels are compared that were not asked for alike."))
+        parts.append(tag("p", "The signals differ: differences of level are also due to the input."))
     return joined([*parts, _overlay(runs)])
 
 
 def _overlay(runs: Sequence[FinishedRun]) -> Markup:
-    """FRFs of the runs that have some, densities of the others."""
+    """Return the plot of all FRFs, or of the densities if fewer than two runs have FRFs."""
     parts = []
     with_response = {run.name: (run, run.response) for run in runs if run.response is not None}
     wheel = runs[0].wheel
@@ -67,12 +67,12 @@ def _overlay(runs: Sequence[FinishedRun]) -> Markup:
     }
     if len(with_response) > 1:
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
-        words = "Frequency responses over each other, vertical"
-        parts.append(drawing(lambda path: plot_responses(path, with_response, channels, words), words))
+        title = "Vertical frequency responses of all runs"
+        parts.append(drawing(lambda path: plot_responses(path, with_response, channels, title), title))
     elif len(runs) > len(with_response):
         channels = shared_channels(runs, wanted)
-        words = "Densities of the vertical acceleration"
+        title = "Power spectral densities of the vertical acceleration"
         parts.append(
-            drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, words), words)
+            drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, title), title)
         )
     return joined(parts)

@@ -1,80 +1,75 @@
-"""What a run says, in sentences: computed from its summary, its FRFs and the modes of its car."""
+"""Findings of a run as sentences, computed from its summary, its FRFs and the modes of its car."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.names import side_of
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import number
-from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.records.run_summary import RunSummary, slip_shares, unweighted_rms
 
 STICKS, WORKS = 0.01, 0.25
-"""Share of the time in slip up to which a damper sticks, and from which on it works as one."""
+"""Maximum share of the time in slip of a sticking damper, and minimum share of a sliding damper."""
 
 NEAR = 0.06
-"""Relative distance of a resonance from the natural frequency of a mode that is named beside it: the peak of an
-acceleration lies above it by about the square of the damping ratio, and dampers that slip now and then move it."""
+"""Maximum relative distance of a resonance from the natural frequency of its mode: the peak of an acceleration is
+higher by about the square of the damping ratio, and dampers that slip at times shift it."""
 
 COHERENT = 0.9
-"""Coherence below which a fifth of the response over its plate displacement is not linear in it."""
+"""Coherence below which the response counts as nonlinear; at this value the incoherent part of the power is 10 %."""
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A sentence, and what it is about."""
+    """Sentence with its topic."""
 
     topic: str
     text: str
 
 
 def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Finding]:
-    """Sentences about dampers, resonances, comfort, linearity and the computation.
+    """Return sentences on dampers, resonances, body modes, comfort, linearity and computation.
 
     Args:
         run: the run.
-        modes: of its car, for dampers "stuck" and "sliding"; empty where there are none.
+        modes: modes of the car, for dampers "stuck" and "sliding".
     """
     summary = run.summary
-    found = [Finding("Dampers", text) for text in _dampers(summary)]
-    found += [Finding("Resonances", text) for text in _resonances(run, modes)]
-    found += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
-    found += [Finding("Comfort", text) for text in _comfort(summary)]
-    found += [Finding("Linearity", text) for text in _linearity(run)]
-    return [*found, *(Finding("Computation", text) for text in _computation(summary))]
+    sentences = [Finding("Dampers", text) for text in _dampers(summary)]
+    sentences += [Finding("Resonances", text) for text in _resonances(run, modes)]
+    sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
+    sentences += [Finding("Comfort", text) for text in _comfort(summary)]
+    sentences += [Finding("Linearity", text) for text in _linearity(run)]
+    return [*sentences, *(Finding("Computation", text) for text in _computation(summary))]
 
 
-def _shares(summary: Mapping[str, Any]) -> dict[str, float]:
-    """Share of the time in slip by wheel."""
-    return {name: share for name, share in summary["slip_share"].items() if name != "slip_velocity"}
-
-
-def _dampers(summary: Mapping[str, Any]) -> list[str]:
-    shares, limit = _shares(summary), 1e3 * summary["slip_share"]["slip_velocity"]
-    found = []
+def _dampers(summary: RunSummary) -> list[str]:
+    shares, limit = slip_shares(summary), 1e3 * summary["slip_share"]["slip_velocity"]
+    sentences = []
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
-        percent = "never" if first is None else f"for {100 * share:.2g} % of the time, first at {first:.3f} s"
+        times = "never exceeds" if first is None else "exceeds"
+        share_text = "" if first is None else f" for {100 * share:.2g} % of the time, first at {first:.3f} s"
         if share <= STICKS:
-            does = "sticks: it takes next to no energy out of the motion, and the wheel hangs on a rigid strut"
+            state = "sticks: it dissipates almost no energy, and the strut acts as a rigid link"
         elif share >= WORKS:
-            does = "works: friction and viscous damping act over much of the time"
+            state = "slides: friction and viscous damping act during much of the time"
         else:
-            does = "sticks and slips by turns: what it does depends on the level"
-        found.append(f"The {side} damper {does}. It is faster than {limit:g} mm/s {percent}.")
-    return found
+            state = "alternates between stick and slip: its effect depends on the level of the input"
+        sentences.append(f"The {side} damper {state}. Its velocity {times} {limit:g} mm/s{share_text}.")
+    return sentences
 
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[str]:
-    found = []
-    for channel, place in main_places(run).items():
+    sentences = []
+    for channel, point in main_places(run).items():
         peaks = run.summary["peaks"].get(channel)
         if peaks:
             top = max(peaks, key=lambda peak: peak["magnitude"])
@@ -82,22 +77,22 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
             mode = (
                 ""
                 if nearest is None
-                else f", beside the mode of {nearest.frequency:.1f} Hz ({nearest.description}; {state})"
+                else f", near the mode of {nearest.frequency:.1f} Hz ({nearest.description}; {state})"
             )
-            found.append(
-                f"The highest vertical resonance at the {place} lies at {top['frequency_hz']:.1f} Hz{mode}: "
+            sentences.append(
+                f"The highest vertical resonance at the {point} is at {top['frequency_hz']:.1f} Hz{mode}: "
                 f"{number(top['magnitude'])} m/s² per m{of_plate(run)}."
             )
-    return found or ["No resonance can be told: the input excites none, or there are no FRFs."]
+    return sentences or ["No resonance was identified: the input excites none, or there are no FRFs."]
 
 
 def main_places(run: FinishedRun) -> dict[str, str]:
-    """Channels whose resonances are told first, and their words."""
+    """Return the channels with the most important resonances, and their names in sentences."""
     return {f"knuckle_{run.wheel}_acc_z": "knuckle", "seat_rail_acc_z": "seat rail"}
 
 
 def of_plate(run: FinishedRun) -> str:
-    """Where plates move independently: words for the one to which the resonances are told."""
+    """Return words for the plate of the FRFs; empty if only one motion of the plates is independent."""
     if len(run.responses) < 2:
         return ""
     wheel = next(iter(run.responses[0].motion))
@@ -105,15 +100,15 @@ def of_plate(run: FinishedRun) -> str:
 
 
 def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequence[Mode]]) -> tuple[str, Mode | None]:
-    """The mode whose natural frequency is nearest to that of a resonance, where one is near.
+    """Return the mode with the natural frequency nearest to a resonance.
 
     Args:
-        run: tells by its slip in which state its dampers are most of the time.
-        frequency: of the resonance [Hz].
-        modes: of the car, for dampers "stuck" and "sliding".
+        run: the run; its slip shares determine the state of the dampers.
+        frequency: frequency of the resonance [Hz].
+        modes: modes of the car, for dampers "stuck" and "sliding".
 
     Returns:
-        State of the dampers in words, and the mode; None where none is near.
+        State of the dampers in words, and the mode; None if its distance exceeds `NEAR`.
     """
     state = damper_state(run)
     nearest = min(modes.get(state, ()), key=lambda mode: abs(mode.frequency - frequency), default=None)
@@ -123,64 +118,63 @@ def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequenc
 
 
 def damper_state(run: FinishedRun) -> str:
-    """What its dampers do most of the time, "stuck" or "sliding"."""
-    return "sliding" if max(_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
+    """Return the state of the dampers during most of the run, "stuck" or "sliding"."""
+    return "sliding" if max(slip_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
 
 
-def _comfort(summary: Mapping[str, Any]) -> list[str]:
-    found = []
-    for place, words in (("seat_rail", "seat rail"), ("seat", "seat")):
-        value = summary["comfort"].get(place)
+def _comfort(summary: RunSummary) -> list[str]:
+    sentences = []
+    for point, label in (("seat_rail", "seat rail"), ("seat", "seat")):
+        value = summary["comfort"].get(point)
         if value is None:
             continue
-        iso, rms = value["iso2631"], value.get("rms_of_band", value["rms_2_50_hz"])
-        low, high = rms.get("band_hz", COMFORT_BAND)
+        iso, (rms, (low, high)) = value["iso2631"], unweighted_rms(value)
         total = iso["vector_sum"]["weighted_rms"]
-        axis = max("xyz", key=lambda one: iso[one]["multiplying_factor"] * iso[one]["weighted_rms"])
-        found.append(
-            f"At the {words} the weighted acceleration is {number(total)} m/s²: {' to '.join(reactions(total))} in the "
-            f"words of ISO 2631-1, annex C. Most of it acts along {axis}. Unweighted, {low:g} to {high:g} "
+        axis = max("xyz", key=lambda direction: iso[direction]["multiplying_factor"] * iso[direction]["weighted_rms"])
+        sentences.append(
+            f"At the {label} the weighted acceleration is {number(total)} m/s²: {' to '.join(reactions(total))} "
+            f"according to ISO 2631-1, annex C. The largest share is along {axis}. Unweighted, {low:g} to {high:g} "
             f"Hz: {number(rms['overall'])} m/s². Lower is better."
         )
-        factor = max((iso[one]["crest_factor"] or 0.0) for one in "xyz")
+        factor = max((iso[direction]["crest_factor"] or 0.0) for direction in "xyz")
         if factor > CREST_FACTOR_LIMIT:
-            found.append(
-                f"At the {words} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the weighted RMS is "
-                "low for what is felt; look at MTVV and VDV in the tables (ISO 2631-1, 6.2.1)."
+            sentences.append(
+                f"At the {label} the crest factor is {factor:.3g}, above {CREST_FACTOR_LIMIT:g}: the weighted RMS "
+                "underestimates the discomfort; consider MTVV and VDV in the tables (ISO 2631-1, 6.2.1)."
             )
-    return found
+    return sentences
 
 
 def _linearity(run: FinishedRun) -> list[str]:
-    response, found = run.response, []
+    response, sentences = run.response, []
     if response is None:
         return ["There are no FRFs: see the notices." if run.summary["notices"] else "There are no FRFs."]
     rows = {name: row for row, name in enumerate(run.car.vehicle.acceleration_channels)}
-    for channel, place in ((f"knuckle_{run.wheel}_acc_z", "knuckle"), ("seat_rail_acc_z", "seat rail")):
+    for channel, point in ((f"knuckle_{run.wheel}_acc_z", "knuckle"), ("seat_rail_acc_z", "seat rail")):
         if channel not in rows:
             continue
         coherence = response.coherence[rows[channel]]
-        known = coherence[np.isfinite(coherence)]
-        if known.size:
-            low = float(np.mean(known < COHERENT))
-            found.append(
-                f"At the {place} the coherence is {np.median(known):.3f} in the median"
+        finite = coherence[np.isfinite(coherence)]
+        if finite.size:
+            low = float(np.mean(finite < COHERENT))
+            sentences.append(
+                f"At the {point} the median of the coherence is {np.median(finite):.3f}"
                 + (
-                    f", and below {COHERENT:g} on {100 * low:.2g} % of the lines: there the car does not answer "
-                    "linearly, or hardly moves."
+                    f"; it is below {COHERENT:g} on {100 * low:.2g} % of the lines: there the response is nonlinear "
+                    "or very small."
                     if low > 0.0
-                    else f", and nowhere below {COHERENT:g}: the car answers linearly."
+                    else f"; it is never below {COHERENT:g}: the response is linear."
                 )
             )
-    return found
+    return sentences
 
 
-def _computation(summary: Mapping[str, Any]) -> list[str]:
+def _computation(summary: RunSummary) -> list[str]:
     solver = summary["solver"]
     residual = solver["energy_residual"]
-    balance = "" if residual is None else f"; its energy balance closes within {residual:.1e} of the work put in"
-    found = [
+    balance = "" if residual is None else f"; the error of the energy balance is {residual:.1e} of the input work"
+    sentences = [
         f"The {solver['engine']} engine took {number(solver['wall_s'])} s, {number(solver['realtime_factor'])} times "
         f"real time, with steps of {1e3 * solver['timestep_s']:g} ms{balance}."
     ]
-    return [*found, *(f"Warning: {text}" for text in solver["warnings"])]
+    return [*sentences, *(f"Warning: {text}" for text in solver["warnings"])]

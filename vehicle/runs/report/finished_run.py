@@ -1,29 +1,28 @@
-"""A finished run, read back from its folder: what a report needs of it."""
+"""Finished run, read from its folder for the report."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from vehicle.engines.simulation.recording import Recording, Statistics
-from vehicle.errors import ConfigurationError, DataError
+from vehicle.errors import DataError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
-from vehicle.signals.records.frf import read_frf
+from vehicle.signals.records.frf_file import read_frf
 from vehicle.signals.records.reader import read_columns
+from vehicle.signals.records.run_summary import SUMMARY_FILE, FrfSummary, RunSummary, read_summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlateSignal:
-    """Excitation of a finished run, as its summary tells it.
+    """Excitation of a finished run, from its summary.
 
     Attributes:
         source: name of the file or of the road.
@@ -40,138 +39,144 @@ class PlateSignal:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FinishedRun:
-    """A folder of a run as objects.
+    """Content of the folder of a run.
 
     Attributes:
         name: short name in headings and legends.
         folder: where its files are read.
-        place: the folder as commands name it.
+        place: final path of the folder, as in commands.
         summary: content of `summary.json`.
         car: the car with the parameters as used.
         recording: time histories; no poses.
-        responses: FRFs of all acceleration channels to each motion of the plates; none where there are none.
+        responses: FRFs of all acceleration channels to each independent motion of the plates; may be empty.
     """
 
     name: str
     folder: Path
     place: Path
-    summary: dict[str, Any]
+    summary: RunSummary
     car: Car
     recording: Recording
     responses: tuple[MotionResponse, ...]
 
     @property
     def response(self) -> FrequencyResponse | None:
-        """FRFs to the first motion of the plates; None where there are none."""
+        """FRFs to the first motion of the plates, or None."""
         return self.responses[0].response if self.responses else None
 
     @property
     def wheel(self) -> str:
         """The excited wheel."""
-        return str(self.summary["input"]["wheel"])
+        return self.summary["input"]["wheel"]
 
     @property
     def span(self) -> str:
-        """Evaluated span in words, empty for the whole record."""
+        """Evaluated span in words; empty for the whole record."""
         begin, end = self.summary.get("evaluated_s") or (0.0, 0.0)
         return f"{begin:g} to {end:g} s" if begin > 0.0 else ""
 
     @cached_property
     def signal(self) -> PlateSignal:
-        """What drove it."""
+        """Excitation of the run."""
         return PlateSignal(source=self.summary["input"]["file"], plate_rms=self.summary["input"]["plate_rms_m"])
 
     @property
     def caption(self) -> str:
-        """Input, level and engine in a line."""
-        given, solver = self.summary["input"], self.summary["solver"]
+        """Caption of a plot: input, level, tyres and engine."""
+        excitation, solver = self.summary["input"], self.summary["solver"]
         estimator = f"; estimator: {self.response.estimator}" if self.response is not None else ""
         return (
-            f"{Path(given['file']).name}, RMS {1e3 * given['rms_m']:.3g} mm at wheel {given['wheel']}, "
-            f"{given['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: {solver['engine']}"
+            f"{Path(excitation['file']).name}, RMS {1e3 * excitation['rms_m']:.3g} mm at wheel {excitation['wheel']}, "
+            f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
+            f"{solver['engine']}"
         )
 
 
 def read_run(
-    folder: Path, *, place: Path | None = None, car: Car | None = None, recording: Recording | None = None
+    folder: Path, *, final_path: Path | None = None, car: Car | None = None, recording: Recording | None = None
 ) -> FinishedRun:
     """Read the folder of a run.
 
     Args:
-        folder: with `summary.json`, `vehicle.toml`, `time.npz` or `time.csv`, and `frf.csv` where there are FRFs.
-        place: what the folder will be called, where it is still written under another name.
-        car: its car where it is at hand; else built from `vehicle.toml`.
-        recording: its time histories where they are at hand; else read.
+        folder: folder with `summary.json`, `vehicle.toml`, `time.npz` or `time.csv`, and `frf.csv` if there are FRFs.
+        final_path: final path of a folder that is still written under a temporary name.
+        car: car of the run; by default built from `vehicle.toml`.
+        recording: time histories; by default read from the folder.
 
     Raises:
-        ConfigurationError: no folder of a run.
+        ConfigurationError: the folder is not of a run.
         DataError: a file of it is missing or damaged.
     """
-    if not (folder / "summary.json").is_file():
-        raise ConfigurationError(f"{folder}: holds no summary.json; give the folder of a run, as runs/low")
-    try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        names, given, solver = summary["files"], summary["input"], summary["solver"]
-        places = {kind: folder / names[kind] for kind in ("vehicle", "time", "frf") if kind in names}
-        excited = tuple(wheel for wheel, rms in given["plate_rms_m"].items() if rms > 0.0)
-        statistics = Statistics(
-            engine=solver["engine"],
-            callback=solver["callback"],
-            timestep=solver["timestep_s"],
-            steps=solver["steps"],
-            wall_time=solver["wall_s"],
-            warnings=tuple(solver["warnings"]),
-            energies=None,
-        )
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise DataError(
-            f"{folder / 'summary.json'}: is damaged ({type(error).__name__}: {error}); run it again"
-        ) from None
-    for kind, path in places.items():
+    summary = read_summary(folder)
+    names, solver = summary["files"], summary["solver"]
+    paths = {purpose: folder / names[purpose] for purpose in ("vehicle", "time", "frf") if purpose in names}
+    if missing := next((purpose for purpose in ("vehicle", "time") if purpose not in paths), None):
+        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{missing}: missing); run the simulation again")
+    for purpose, path in paths.items():
         if not path.is_file():
-            raise DataError(f"{path}: missing, though summary.json lists it as {kind}; run it again")
+            raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
     if recording is None:
-        record = read_columns(places["time"])
+        record = read_columns(paths["time"])
         recording = Recording(
             time=record.time,
             channels=record.channels,
             units=record.units,
-            excited=excited,
+            excited=tuple(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
             pose_time=np.empty(0),
             poses=np.empty((0, 0)),
-            statistics=statistics,
+            statistics=Statistics(
+                engine=solver["engine"],
+                callback=solver["callback"],
+                timestep=solver["timestep_s"],
+                steps=solver["steps"],
+                wall_time=solver["wall_s"],
+                warnings=tuple(solver["warnings"]),
+                energies=None,
+            ),
         )
-    own = car or _car(places["vehicle"], summary)
-    frfs = _responses(places["frf"], own.vehicle.acceleration_channels, summary) if "frf" in places else ()
+    run_car = car or _car(paths["vehicle"], summary)
+    estimate = summary["frf"]
+    frfs: tuple[MotionResponse, ...] = ()
+    if estimate is not None and "frf" in paths:
+        motions = [motion["plates"] for motion in estimate.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
+        frfs = _responses(paths["frf"], run_car.vehicle.acceleration_channels, estimate, motions)
     return FinishedRun(
-        name=(place or folder).resolve().name,
+        name=(final_path or folder).resolve().name,
         folder=folder,
-        place=place or folder,
+        place=final_path or folder,
         summary=summary,
-        car=own,
+        car=run_car,
         recording=recording,
         responses=frfs,
     )
 
 
-def _car(path: Path, summary: dict[str, Any]) -> Car:
-    """The car of a run; what its file names beside itself is looked for where that file lay."""
+def _car(path: Path, summary: RunSummary) -> Car:
+    """Return the car of a run; files that `vehicle.toml` names are searched in the folder of the original file."""
     origin = summary["vehicle"]["file"]
     car = Car(load_vehicle(path), folder=path.parent if origin is None else Path(origin).parent)
     car.origin = {"file": origin, "overrides": summary["vehicle"]["overrides"]}
     return car
 
 
-def _responses(path: Path, channels: Sequence[str], summary: dict[str, Any]) -> tuple[MotionResponse, ...]:
-    """FRFs of the table to each motion of the plates, with what the summary says of their estimate."""
-    table, about = read_frf(path), summary["frf"]
-    motions = [one["plates"] for one in about.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
-    found = []
+def _responses(
+    path: Path, channels: Sequence[str], estimate: FrfSummary, motions: Sequence[dict[str, float]]
+) -> tuple[MotionResponse, ...]:
+    """Read the FRFs to each motion of the plates.
+
+    Args:
+        path: table of FRFs.
+        channels: names of the acceleration channels.
+        estimate: estimate of the FRFs, from the summary.
+        motions: plates with their factors, for each motion.
+    """
+    table = read_frf(path)
+    responses = []
     for index, motion in enumerate(motions):
         ending = f"_to_{next(iter(motion))}" if index else ""
         missing = [name for name in channels if name + ending not in table.channels]
         if missing:
-            raise DataError(f"{path}: no FRFs of {missing[0] + ending}, which the car of the run has; run it again")
+            raise DataError(f"{path}: no FRFs of {missing[0] + ending}, a channel of the car; run the simulation again")
         rows = [table.channels.index(name + ending) for name in channels]
         response = FrequencyResponse(
             frequency=table.frequency,
@@ -180,10 +185,10 @@ def _responses(path: Path, channels: Sequence[str], summary: dict[str, Any]) -> 
             random_error=table.random_error[rows],
             averages=np.full((len(rows), table.frequency.size), np.nan),
             segments=0,
-            window=about["window"],
-            estimator=about["estimator"],
-            resolution_hz=about["resolution_hz"],
+            window=estimate["window"],
+            estimator=estimate["estimator"],
+            resolution_hz=estimate["resolution_hz"],
             reasons=(),
         )
-        found.append(MotionResponse(motion=motion, response=response))
-    return tuple(found)
+        responses.append(MotionResponse(motion=motion, response=response))
+    return tuple(responses)

@@ -1,4 +1,4 @@
-"""HTML as text: everything that comes from outside is escaped here."""
+"""HTML elements as text; all texts of the run are escaped."""
 
 from __future__ import annotations
 
@@ -6,49 +6,49 @@ import html
 from collections.abc import Iterable, Sequence
 
 MANY = 30
-"""Rows from which on a table is folded."""
+"""Maximum number of rows of a table that is not folded."""
 
 
 class Markup(str):
-    """Text that is HTML already."""
+    """HTML text, which needs no escaping."""
 
     __slots__ = ()
 
 
 def escaped(value: object) -> str:
-    """Markup as it is, anything else as its text."""
+    """Return the escaped text of a value; markup is returned unchanged."""
     return value if isinstance(value, Markup) else html.escape(str(value))
 
 
 def tag(name: str, *content: object, **attributes: object) -> Markup:
-    """An element.
+    """Return an HTML element.
 
     Args:
-        name: as "p".
+        name: tag name, as "p".
         content: texts, which are escaped, and markup.
-        attributes: a trailing underscore is dropped (class_), others become hyphens; None leaves one out.
+        attributes: a trailing underscore is dropped (class_), others become hyphens; None omits an attribute.
     """
     pairs = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{html.escape(str(value))}"'
         for key, value in attributes.items()
         if value is not None
     )
-    return Markup(f"<{name}{pairs}>{''.join(escaped(one) for one in content)}</{name}>")
+    return Markup(f"<{name}{pairs}>{''.join(escaped(item) for item in content)}</{name}>")
 
 
 def joined(parts: Iterable[object]) -> Markup:
-    """Parts one behind the other."""
+    """Return the concatenated parts as markup."""
     return Markup("".join(escaped(part) for part in parts))
 
 
 def table(heads: Sequence[object], rows: Iterable[Sequence[object]], *, caption: str = "", words: int = 1) -> Markup:
-    """A table.
+    """Return an HTML table.
 
     Args:
-        heads: of the columns.
+        heads: heads of the columns.
         rows: cells; numbers as texts.
-        caption: above it.
-        words: so many first columns hold words and are set to the left, the others numbers.
+        caption: caption above the table.
+        words: number of first columns with words, aligned left; the others contain numbers.
     """
 
     def cells(name: str, row: Sequence[object]) -> Markup:
@@ -68,21 +68,21 @@ def table(heads: Sequence[object], rows: Iterable[Sequence[object]], *, caption:
 
 
 def folded(title: str, *content: object) -> Markup:
-    """What is shown when it is asked for, and in print."""
+    """Return content folded under a title; print shows it unfolded."""
     return tag("details", tag("summary", title), *content)
 
 
 def shortened(title: str, heads: Sequence[object], rows: Sequence[Sequence[object]], *, words: int = 1) -> Markup:
-    """A table, folded under its title where it is long."""
+    """Return a table, folded under its title if it has more than `MANY` rows."""
     whole = table(heads, rows, words=words)
     return whole if len(rows) <= MANY else folded(title, whole)
 
 
 def section(title: str, anchor: str, *content: object, class_: str | None = None) -> Markup:
-    """A part of the page with its heading."""
+    """Return a section of the page with its heading."""
     return tag("section", tag("h2", title), *content, id=anchor, class_=class_)
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number with some digits, without a power of ten up to a million; a dash for none."""
+    """Return a number with a number of digits, without an exponent below a million; a dash for None."""
     return "–" if value is None else f"{float(f'{value:.{digits}g}'):.10g}"

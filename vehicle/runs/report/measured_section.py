@@ -1,4 +1,4 @@
-"""A measurement beside the run, where the run was compared with one."""
+"""Section of the report with the comparison of the run and a measurement."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import MANY, Markup, joined, number, shortened, table, tag
 
 WORST = 10
-"""Rows shown above a table that is folded."""
+"""Number of rows shown above a folded table."""
 
 UNITS = {
     "low_hz": "from [Hz]",
@@ -24,33 +24,33 @@ UNITS = {
 """Heads of columns with units."""
 
 ERROR = (
-    "the error of a band is the root of the mean of |ln(simulated / measured)|², weighted by both coherences; "
-    "magnitude is positive where the simulation is larger, lag where it is late; drift is the change of the lag."
+    "error of a band: RMS of |ln(simulated / measured)|, weighted by both coherences; magnitude is positive if the "
+    "simulation is larger, lag if it is late; drift is the change of the lag."
 )
 
 
 def measured(run: FinishedRun) -> Markup | None:
-    """The table of differences, worst first, and the pictures; None where nothing was measured."""
-    about = run.summary.get("measured")
-    if not about:
+    """Return the table of differences, largest first, and the pictures; None without a measurement."""
+    comparison = run.summary.get("measured")
+    if not comparison:
         return None
-    heads = list(dict.fromkeys(key for row in about["table"] for key in row))
-    rows = [[_cell(row.get(key)) for key in heads] for row in about["table"]]
-    words = [UNITS.get(head, head.replace("_", " ")) for head in heads]
+    heads = list(dict.fromkeys(key for row in comparison["table"] for key in row))
+    rows = [[_cell(row.get(key)) for key in heads] for row in comparison["table"]]
+    titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     parts = [
-        tag("p", f"Measured: {about['file']}. The table is ordered by kind, each worst first; {ERROR}"),
-        *([table(words, rows[:WORST], words=2)] if len(rows) > MANY else []),
-        shortened(f"All {len(rows)} rows", words, rows, words=2),
+        tag("p", f"Measured: {comparison['file']}. The table is sorted by type of data, largest error first; {ERROR}"),
+        *([table(titles, rows[:WORST], words=2)] if len(rows) > MANY else []),
+        shortened(f"All {len(rows)} rows", titles, rows, words=2),
     ]
-    for kind, name in run.summary["files"].items():
+    for purpose, name in run.summary["files"].items():
         path = run.folder / name
-        if kind.startswith("compare_") and path.suffix == ".png" and path.is_file():
+        if purpose.startswith("compare_") and path.suffix == ".png" and path.is_file():
             source = "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-            parts.append(tag("figure", tag("img", src=source, alt=kind.replace("_", " "))))
+            parts.append(tag("figure", tag("img", src=source, alt=purpose.replace("_", " "))))
     return joined(parts)
 
 
 def _cell(value: object) -> str:
     if isinstance(value, list | tuple):
-        return " to ".join(_cell(one) for one in value)
+        return " to ".join(_cell(item) for item in value)
     return number(value) if isinstance(value, float) or value is None else str(value)

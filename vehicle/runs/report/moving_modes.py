@@ -10,26 +10,26 @@ import numpy as np
 
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe, unit_factor
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 
 FULL = 999
-"""Largest displacement of a mode in the numbers of the page: a thousandth is finer than a dot on the screen."""
+"""Maximum displacement of a mode in the data of the page: a step of 1/999 is finer than a pixel."""
 
 SHADES = 24
-"""Colours from rest to the largest displacement."""
+"""Number of colours from rest to the maximum displacement."""
 
 
 def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Mapping[str, Sequence[Mode]]) -> dict[str, Any]:
-    """All modes of one car.
+    """Return the modes of one car for the script of the page.
 
     Args:
-        name: of the car or its run.
-        wheel: the excited one.
-        wire: its points and lines.
-        modes: for dampers "stuck" and "sliding".
+        name: name of the car or its run.
+        wheel: excited wheel.
+        wire: points and lines of the car.
+        modes: modes for dampers "stuck" and "sliding".
 
     Returns:
-        Numbers and texts that JSON knows; places in millimetres.
+        Content for JSON; coordinates in millimetres.
     """
     return {
         "name": name,
@@ -37,12 +37,12 @@ def mode_set(name: str, wheel: str, wire: CarWireframe, modes: Mapping[str, Sequ
         "points": np.rint(1e3 * wire.points).astype(int).ravel().tolist(),
         "lines": wire.lines.ravel().tolist(),
         "groups": wire.groups.tolist(),
-        "states": {state: [_mode(wire, mode) for mode in found] for state, found in modes.items()},
+        "states": {state: [_mode(wire, mode) for mode in state_modes] for state, state_modes in modes.items()},
     }
 
 
 def _mode(wire: CarWireframe, mode: Mode) -> dict[str, Any]:
-    """A mode, scaled and turned so that its largest displacement is real and `FULL`."""
+    """Return a mode, scaled and rotated in phase so that its maximum displacement is real and equal to `FULL`."""
     moved = wire.displacement(mode.shape)
     moved = unit_factor(moved) * moved
     return {
@@ -61,7 +61,7 @@ def _largest(energy: Mapping[str, float]) -> list[tuple[str, float]]:
 
 
 def as_json(sets: Sequence[Mapping[str, Any]]) -> str:
-    """The sets as one text that may stand inside a script element."""
+    """Return the mode sets as JSON text that is safe inside a script element."""
     table = colours(np.linspace(0.0, 1.0, SHADES), 1.0)[:, :3]
     shades = ["#" + "".join(f"{round(255 * float(part)):02x}" for part in colour) for colour in table]
     text = json.dumps({"full": FULL, "groups": GROUPS, "shades": shades, "cars": list(sets)}, separators=(",", ":"))

@@ -1,4 +1,4 @@
-"""The page: one HTML file with its style, script, figures and numbers, which asks no network for anything."""
+"""Page of the report: one HTML file with style, script, figures and values; it needs no network."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from vehicle.runs.report.response_section import responses
 
 
 def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] | None = None) -> str:
-    """The report of one run, or of several beside each other.
+    """Return the report of one run, or the comparison of several runs.
 
     Args:
-        runs: what was run.
+        runs: finished runs.
         progress: called with the finished fraction.
 
     Returns:
@@ -40,14 +40,14 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
     modes = [{state: run.car.modes(state, HIGHEST_MODE) for state in STATES} for run in runs]
     parts: list[tuple[str, str, Markup]] = []
     if len(runs) > 1:
-        parts += [("Beside each other", "comparison", beside_each_other(runs))]
+        parts += [("Comparison of the runs", "comparison", beside_each_other(runs))]
     done(0.1)
-    for index, (run, own) in enumerate(zip(runs, modes, strict=True)):
-        found = _of_run(run, own)
+    for index, (run, car_modes) in enumerate(zip(runs, modes, strict=True)):
+        run_parts = _of_run(run, car_modes)
         if len(runs) == 1:
-            parts += found
+            parts += run_parts
         else:
-            inner = joined(part for title, _, content in found for part in (tag("h3", title), content))
+            inner = joined(part for title, _, content in run_parts for part in (tag("h3", title), content))
             parts.append((run.name, f"run-{index + 1}", inner))
         done(0.1 + 0.8 * (index + 1) / len(runs))
     before = next((i for i, (_, anchor, _) in enumerate(parts) if anchor == "tables"), len(parts))
@@ -58,20 +58,20 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
 
 
 def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
-    """Runs of the same name with the folder above it before their names, and numbers where that is the same too."""
+    """Return the runs with unique names: the parent folder is added to equal names, then a number."""
     names = [run.name for run in runs]
     longer = [
         f"{run.place.resolve().parent.name}/{run.name}" if names.count(run.name) > 1 else run.name for run in runs
     ]
-    told = [f"{name} ({i + 1})" if longer.count(name) > 1 else name for i, name in enumerate(longer)]
-    return [dataclasses.replace(run, name=name) for run, name in zip(runs, told, strict=True)]
+    unique = [f"{name} ({i + 1})" if longer.count(name) > 1 else name for i, name in enumerate(longer)]
+    return [dataclasses.replace(run, name=name) for run, name in zip(runs, unique, strict=True)]
 
 
 def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
-    """Title, anchor and content of each part of a run."""
-    found = [
+    """Return title, anchor and content of each section of a run."""
+    parts = [
         ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
-        ("What was run", "run", sections.what_was_run(run)),
+        ("Car, signal, engine", "run", sections.what_was_run(run)),
         (
             "Frequency responses" if run.response is not None else "Densities",
             "responses",
@@ -83,16 +83,16 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
     ]
     for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
         if content is not None:
-            found.append((title, anchor, content))
+            parts.append((title, anchor, content))
     return [
-        *found,
-        ("All numbers", "tables", sections.tables(run)),
-        ("How to repeat it", "repeat", sections.repeating(run)),
+        *parts,
+        ("All values", "tables", sections.tables(run)),
+        ("How to repeat the run", "repeat", sections.repeating(run)),
     ]
 
 
 def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Markup]], data: str) -> str:
-    """The parts in a document whose policy lets nothing in from outside, and runs no script but its own."""
+    """Return the HTML document; its security policy blocks external content and scripts."""
     names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
     title = f"Car on the shaker: {names}"
     script = _file("modes.js") + _file("print.js")
@@ -100,7 +100,7 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
     policy = (
         f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src 'sha256-{allowed}'"
     )
-    about = "; ".join(dict.fromkeys(run.caption for run in runs))
+    captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
     pages = {"responses", "time", "modes", "comparison"}
     body = joined(
@@ -113,11 +113,11 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<link rel="icon" href="data:,">\n'
         f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
-        f"{tag('header', tag('h1', title), tag('p', about, class_='about'))}\n{links}\n<main>{body}</main>\n"
+        f"{tag('header', tag('h1', title), tag('p', captions, class_='about'))}\n{links}\n<main>{body}</main>\n"
         f'<script type="application/json" id="mode-data">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n'
     )
 
 
 def _file(name: str) -> str:
-    """A file of this package."""
+    """Return the text of a file of this package."""
     return resources.files("vehicle.runs.report").joinpath(name).read_text(encoding="utf-8")

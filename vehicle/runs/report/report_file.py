@@ -1,4 +1,4 @@
-"""The report of finished runs as a file."""
+"""Report of finished runs as a file."""
 
 from __future__ import annotations
 

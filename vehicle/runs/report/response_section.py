@@ -1,4 +1,4 @@
-"""Frequency responses of a run with its resonances; on a road the densities of its accelerations."""
+"""Section of the report with FRFs and resonances, or with the densities of a run without FRFs."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from collections.abc import Mapping, Sequence
 
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.several_runs import plot_densities, shared_channels
-from vehicle.engines.linear.modes import Mode
-from vehicle.runs.report.drawings import drawing
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.findings import main_places, nearest_mode, of_plate
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
+from vehicle.runs.report.svg_figure import drawing
 
 
 def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
-    """FRFs with phase and coherence and the resonances of the main places; on a road the densities."""
+    """Return FRFs and tables of resonances; for a run without FRFs the acceleration densities."""
     if run.responses:
         return joined(
             [
@@ -23,8 +23,8 @@ def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
                 ),
                 tag(
                     "p",
-                    "A band around a line is the 95 % region of its random error. Where the coherence is low the car "
-                    "does not answer linearly, or the plate drives it too little.",
+                    "The band around a line is the 95 % region of the random error. Low coherence means a nonlinear "
+                    "response, or too little excitation by the plate.",
                 ),
                 tag("div", *_resonances(run, modes), class_="columns"),
             ]
@@ -32,16 +32,16 @@ def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
     channels = shared_channels([run], ROAD_CHANNELS)
     return drawing(
         lambda path: plot_densities(
-            path, {run.name: run}, channels, "Densities of the vertical acceleration", run.caption
+            path, {run.name: run}, channels, "Power spectral densities of the vertical acceleration", run.caption
         ),
         f"Power spectral densities of {run.name}",
     )
 
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Markup]:
-    """Strongest resonances of the main places beside the nearest modes."""
-    found, plate = [], of_plate(run).replace(" of", " to motion of", 1)
-    for channel, place in main_places(run).items():
+    """Return tables of the highest resonances of the main output points with the nearest modes."""
+    tables, plate = [], of_plate(run).replace(" of", " to motion of", 1)
+    for channel, point in main_places(run).items():
         peaks = sorted(run.summary["peaks"].get(channel, ()), key=lambda peak: -peak["magnitude"])[:STRONGEST]
         rows = []
         for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
@@ -50,17 +50,17 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
             rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
         heads = ("nearest mode", "resonance [Hz]", "m/s² per m", "coherence")
         if rows:
-            many = f"the {len(rows)} highest" if len(rows) > 1 else "the only one"
-            found.append(table(heads, rows, caption=f"Vertical resonances at the {place}{plate}: {many}"))
-    return found
+            count = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
+            tables.append(table(heads, rows, caption=f"Vertical resonances at the {point}{plate}: {count}"))
+    return tables
 
 
 STRONGEST = 6
-"""Resonances of a place that are shown with the modes beside them."""
+"""Maximum number of resonances of an output point in a table."""
 
 ROAD_CHANNELS = {
     "knuckle_fr_acc_z": "knuckle, front right",
     "engine_acc_z": "engine",
     "seat_rail_acc_z": "seat rail",
 }
-"""What is shown of a run on a road, and its words."""
+"""Channels in the plot of densities, and their labels."""

@@ -1,4 +1,4 @@
-"""The parts of a report: tables and figures of one run."""
+"""Sections of a report: tables and figures of one run."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.drawing.rendering.plots import plot_time
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.names import side_of
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.comparison import changed_parameters, shipped_origin
-from vehicle.runs.report.drawings import drawing
+from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
+from vehicle.runs.report.svg_figure import drawing
+from vehicle.signals.records.run_summary import slip_shares
 
 ROAD_WORDS = {
     "class": "class of ISO 8608",
@@ -30,32 +31,32 @@ ROAD_WORDS = {
 
 
 def tiles(run: FinishedRun) -> Markup:
-    """The numbers that are asked for first."""
+    """Return the key figures of a run as tiles."""
     summary = run.summary
-    shares = {wheel: share for wheel, share in summary["slip_share"].items() if wheel != "slip_velocity"}
-    found = []
-    for place, value in list(summary["comfort"].items())[:1]:
+    shares = slip_shares(summary)
+    values = []
+    for point, value in list(summary["comfort"].items())[:1]:
         total = value["iso2631"]["vector_sum"]["weighted_rms"]
-        words = f"weighted acceleration at the {place.replace('_', ' ')}, {' to '.join(reactions(total))}"
-        found.append((f"{number(total)} m/s²", words))
-    found += [
-        (f"{100 * share:.2g} %", f"of the time in slip: {side_of(wheel, shares)} damper")
+        label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
+        values.append((f"{number(total)} m/s²", label))
+    values += [
+        (f"{100 * share:.2g} %", f"of the time in slip, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
     peaks = summary["peaks"].get(f"knuckle_{run.wheel}_acc_z")
     if peaks:
         top = max(peaks, key=lambda peak: peak["magnitude"])
-        found.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
-    found.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the plate {run.wheel}"))
-    boxes = [tag("div", tag("b", value), tag("span", words), class_="tile") for value, words in found]
+        values.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
+    values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the plate {run.wheel}"))
+    boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]
     return tag("div", *boxes, class_="tiles")
 
 
 def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
-    """Findings, and all notices."""
+    """Return findings by topic, and all notices."""
     topics: dict[str, list[str]] = {}
-    for one in findings(run, modes):
-        topics.setdefault(one.topic, []).append(one.text)
+    for finding in findings(run, modes):
+        topics.setdefault(finding.topic, []).append(finding.text)
     rows = [
         part
         for topic, texts in topics.items()
@@ -69,16 +70,20 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
 
 
 def what_was_run(run: FinishedRun) -> Markup:
-    """Car, signal and engine, and the parameters that are not those of the shipped car."""
-    given, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
-    signal = [("file", given["file"]), ("SHA-256", given["sha256"] or "–"), ("length", f"{given['duration_s']:g} s")]
+    """Return tables of car, signal and engine, and of parameters that differ from the shipped car."""
+    excitation, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
+    signal = [
+        ("file", excitation["file"]),
+        ("SHA-256", excitation["sha256"] or "–"),
+        ("length", f"{excitation['duration_s']:g} s"),
+    ]
     signal += [
         (f"plate {wheel}", f"RMS {1e3 * rms:.4g} mm" if rms else "at rest")
-        for wheel, rms in given["plate_rms_m"].items()
+        for wheel, rms in excitation["plate_rms_m"].items()
     ]
     if run.span:
         signal.append(("comfort, slip shares, densities of", run.span))
-    road = given.get("road") or {}
+    road = excitation.get("road") or {}
     signal += [(word, str(road[key])) for key, word in ROAD_WORDS.items() if road.get(key) is not None]
     engine = [
         ("engine", f"{solver['engine']} ({solver['engine_reason']})"),
@@ -92,24 +97,24 @@ def what_was_run(run: FinishedRun) -> Markup:
         ("tyres", vehicle.driving.words),
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
-    about = (("Car", car), ("Signal", signal), ("Engine", engine))
-    parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in about), class_="columns")]
+    tables = (("Car", car), ("Signal", signal), ("Engine", engine))
+    parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in tables), class_="columns")]
     default = shipped_origin(vehicle)
     if default is None:
-        parts.append(tag("p", "The car is made from no shipped car."))
+        parts.append(tag("p", "The car is not derived from a shipped car."))
         return joined(parts)
     rows = [(path, unit, *values) for path, unit, values in changed_parameters([default, vehicle])]
     if rows:
         heads = ("parameter", "unit", f"shipped car {default.name}", "this run")
-        parts.append(tag("h3", f"Changed against the shipped car {default.name}"))
+        parts.append(tag("h3", f"Differences from the shipped car {default.name}"))
         parts.append(shortened(f"{len(rows)} parameters", heads, rows, words=2))
     else:
-        parts.append(tag("p", f"All parameters are those of the shipped car {default.name}."))
+        parts.append(tag("p", f"All parameters are equal to those of the shipped car {default.name}."))
     return joined(parts)
 
 
 def _origin(run: FinishedRun) -> str:
-    """File of the car; of a shipped one no path, which is another on every machine."""
+    """Return the vehicle file; no path for a shipped car, since it depends on the machine."""
     file = run.summary["vehicle"]["file"]
     if file is None or Path(file).resolve().parent.parent == VEHICLES.resolve():
         return "shipped with the program"
@@ -117,20 +122,22 @@ def _origin(run: FinishedRun) -> str:
 
 
 def time_figure(run: FinishedRun) -> Markup:
-    """The main time histories."""
+    """Return the plot of the main time histories."""
     return drawing(lambda path: plot_time(path, run), f"Time histories of {run.name}")
 
 
 def dampers(run: FinishedRun) -> Markup:
-    """Slip of each damper, its largest velocity and force."""
+    """Return the table of slip, maximum velocity and maximum force of each damper."""
     summary = run.summary
     share, first = summary["slip_share"], summary["first_slip_s"]
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     slip, limit = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
-    heads = ("damper", f"time faster than {slip:g} mm/s", "first", f"time faster than {limit:g} mm/s", "first")
+    heads = ("damper", f"time above {slip:g} mm/s", "first", f"time above {limit:g} mm/s", "first")
     rows = []
     for wheel in first:
-        velocity, force = (np.abs(run.recording[f"damper_{wheel}_{kind}"]).max() for kind in ("velocity", "force"))
+        velocity, force = (
+            np.abs(run.recording[f"damper_{wheel}_{quantity}"]).max() for quantity in ("velocity", "force")
+        )
         rows.append(
             (
                 side_of(wheel, list(first)),
@@ -142,10 +149,10 @@ def dampers(run: FinishedRun) -> Markup:
                 f"{force:.3g} N",
             )
         )
-    words = (
-        f"Faster than {slip:g} mm/s counts as slip in all tables; from {limit:g} mm/s on the friction is at its limit."
+    note = (
+        f"Slip in all tables: a damper velocity above {slip:g} mm/s. Above {limit:g} mm/s the friction is at its limit."
     )
-    return joined([table((*heads, "largest velocity", "largest force"), rows), tag("p", words)])
+    return joined([table((*heads, "largest velocity", "largest force"), rows), tag("p", note)])
 
 
 def _when(value: float | None) -> str:
@@ -153,33 +160,37 @@ def _when(value: float | None) -> str:
 
 
 def film(run: FinishedRun) -> Markup | None:
-    """The film of the run, if there is one that can be read."""
+    """Return the film of the run; None if there is no readable film."""
     name = run.summary["files"].get("video")
-    path = None if name is None else next((one for one in (run.folder / name, Path(name)) if one.is_file()), None)
+    path = (
+        None
+        if name is None
+        else next((candidate for candidate in (run.folder / name, Path(name)) if candidate.is_file()), None)
+    )
     if path is None:
         return None
     source = "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-    words = f"{path.name}: the motion is exaggerated; the factor stands in the picture."
+    note = f"{path.name}: the motion is exaggerated by the factor in the picture."
     video = tag("video", src=source, controls="", preload="metadata", class_="only-screen")
-    return joined([video, tag("p", words)])
+    return joined([video, tag("p", note)])
 
 
 def tables(run: FinishedRun) -> Markup:
-    """Everything else in numbers."""
+    """Return folded tables of levels, resonances and static loads."""
     summary, recording = run.summary, run.recording
     levels = []
     for name, values in recording.channels.items():
         numbers = (float(np.sqrt(np.mean(values**2))), float(values.min()), float(values.max()))
         levels.append((name, recording.units[name], *(number(value, 4) for value in numbers)))
     peaks = [
-        (channel, ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in found))
-        for channel, found in summary["peaks"].items()
-        if found
+        (channel, ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in resonances))
+        for channel, resonances in summary["peaks"].items()
+        if resonances
     ]
     static = summary["static"]
     loads = [(f"tyre {wheel}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
     loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static["rear_support_load_n"].items()]
-    heads = ("channel", "unit", "RMS", "least", "largest")
+    heads = ("channel", "unit", "RMS", "minimum", "maximum")
     parts = [folded(f"Levels of all {len(levels)} channels", table(heads, levels, words=2))]
     if peaks:
         columns = ("channel", "frequency [Hz] (magnitude [m/s² per m])")
@@ -189,11 +200,11 @@ def tables(run: FinishedRun) -> Markup:
 
 
 def repeating(run: FinishedRun) -> Markup:
-    """The command that made the run, and one that repeats it from its own files."""
+    """Return the command of the run, and a command that repeats the run from its folder."""
     summary = run.summary
     parts = []
     if summary.get("command"):
-        parts += [tag("p", "This run was made by:"), tag("pre", summary["command"])]
+        parts += [tag("p", "Command of this run:"), tag("pre", summary["command"])]
     again = [
         "python",
         "-m",
@@ -207,8 +218,8 @@ def repeating(run: FinishedRun) -> Markup:
     parts += [
         tag(
             "p",
-            "Its folder keeps every parameter as used, so that it can be repeated without the file of the car (options "
-            "that choose channels, units or a stretch of the input are to be given again; the notices name them):",
+            "The folder of the run contains all parameters, so it can be repeated without the vehicle file. Repeat "
+            "options for channels, units or an excerpt of the input; the notices list them:",
         ),
         tag("pre", shlex.join(again)),
         tag("p", "Files of the run: ", ", ".join(summary["files"].values()), "."),
@@ -217,7 +228,7 @@ def repeating(run: FinishedRun) -> Markup:
 
 
 def _signal_again(run: FinishedRun) -> list[str]:
-    """What puts the same displacements under the wheels: of a road, those that the run recorded."""
+    """Return options for the same plate displacements; for a road the recorded displacements."""
     if run.summary["input"].get("road"):
         again = ["--input", f"{run.place}/{run.summary['files']['time']}", "--any-level"]
     else:

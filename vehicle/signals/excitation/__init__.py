@@ -1,1 +1,1 @@
-"""Plate excitation: signal files and generated signals, always a `vehicle.signals.excitation.signal.Signal`."""
+"""Plate excitation from files and generators, as `vehicle.signals.excitation.signal.Signal`."""

@@ -1,4 +1,4 @@
-"""A frequency band on the lines of a record: which spectral lines a periodic random signal uses."""
+"""Frequency band of a periodic random signal: spectral lines within the band, and their synthesis."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.slip_set import CHOSEN
 
 LOWER_BAND_EDGE_HZ = 2.0
-"""Lower edge of generated roads [Hz] where none is given."""
+"""Default lower band edge of generated roads [Hz]."""
 
 SHAKER_EDGE_HZ = CHOSEN.shaker_edge_hz
 """Lower edge of the shipped shaker inputs [Hz], half power."""
 
 SHAKER_ROLL_OFF_ORDER = 2
 """Order of the Butterworth edge of the shipped inputs. Assumed: an electrodynamic shaker with limited stroke follows a
-constant velocity no further down, but it does not stop at a line either; FRFs from 1 Hz stay defined."""
+constant velocity no further down, but without a sharp limit; FRFs remain defined from 1 Hz."""
 
 LOWEST_FREQUENCY_HZ = 1.0
 """Lowest line of the shipped inputs [Hz]: the lower end of the source's range of interest."""
@@ -26,10 +26,10 @@ UPPER_BAND_EDGE_HZ = 50.0
 
 
 def samples_of(duration: float, rate: float) -> int:
-    """Whole number of steps N in `duration` [s] at `rate` [Hz]; a record from 0 to `duration` has N + 1 samples.
+    """Return the number of steps N in `duration` [s] at `rate` [Hz]; a record from 0 to `duration` has N + 1 samples.
 
     Raises:
-        ConfigurationError: not positive, not a whole number, or fewer than 32.
+        ConfigurationError: N is not positive, not a whole number, or less than 32.
     """
     steps = duration * rate
     if not (np.isfinite(steps) and duration > 0.0 and rate > 0.0):
@@ -43,10 +43,10 @@ def samples_of(duration: float, rate: float) -> int:
 
 
 def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDArray[np.int64]:
-    """Numbers k of the spectral lines f = k rate / steps within lower <= f <= upper.
+    """Return the numbers k of the spectral lines f = k * rate / steps within lower <= f <= upper.
 
     Raises:
-        ConfigurationError: edges not in order, beyond 0.8 of the Nyquist frequency, or no line between them.
+        ConfigurationError: edges not in order, above 0.8 of the Nyquist frequency, or no line in the band.
     """
     if not 0.0 < lower < upper or not upper <= 0.4 * rate:
         raise ConfigurationError(
@@ -54,7 +54,7 @@ def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDA
             "frequency)"
         )
     line = rate / steps
-    # Edges that are lines belong to the band although their quotient may round to either side.
+    # The tolerance keeps lines at the band edges in spite of rounding.
     first = max(int(np.ceil(lower / line * (1.0 - 1e-12))), 1)
     last = int(np.floor(upper / line * (1.0 + 1e-12)))
     if last < first:
@@ -65,13 +65,13 @@ def lines_in_band(*, steps: int, rate: float, lower: float, upper: float) -> NDA
 
 
 def positive(name: str, value: float, unit: str) -> None:
-    """Refuse a level that is not positive and finite."""
+    """Reject a value that is not positive and finite."""
     if not 0.0 < value < np.inf:
         raise ConfigurationError(f"{name} {value!r} {unit}; allowed: positive and finite")
 
 
 def period_of(coefficients: NDArray[np.complex128], lines: NDArray[np.int64], steps: int) -> NDArray[np.float64]:
-    """One period x[i] = sum over k of Re(c_k exp(2 pi j k i / N)), i = 0 ... N - 1.
+    """Return one period x[i] = sum over k of Re(c_k exp(2 pi j k i / N)), i = 0 ... N - 1.
 
     Args:
         coefficients: complex amplitude c_k of each line, shape (m,).

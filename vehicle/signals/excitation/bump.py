@@ -1,4 +1,4 @@
-"""The bump of the source: one period of a raised cosine between random noise."""
+"""Generate the bump of Bommer 2006: one period of a raised cosine, with random noise before and after."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 BUMP_START_S = 5.0
-"""The bump begins here [s] (thesis section 3.2.2)."""
+"""Time of the beginning of the bump [s] (thesis section 3.2.2)."""
 
 BUMP_DURATION_S = 1.0 / 3.0
-"""One period of cos(6 pi t) [s]."""
+"""Length of the bump [s]: one period of cos(6 pi t)."""
 
 NOISE_RMS = 5e-5
 """RMS of the noise before and after the bump [m] (thesis section 3.2.2)."""
 
 NOISE_SEED = 7
-"""Another seed than the random inputs': the noise is not the low input in small."""
+"""Seed of the noise, different from that of the random inputs: the noise is not a scaled copy of the input `low`."""
 
 Reading = Literal["height", "literal"]
 
@@ -30,7 +30,7 @@ Reading = Literal["height", "literal"]
 def bump_shape(
     time: ArrayLike, *, amplitude: float, start: float = BUMP_START_S, reading: Reading = "height"
 ) -> NDArray[np.float64]:
-    """One period of a raised cosine, zero before and after.
+    """Return one period of a raised cosine, zero before and after.
 
     height: x = A/2 (1 - cos(6 pi (t - start))), peak A; literal: x = A (1 - cos(6 pi (t - start))), peak 2 A.
 
@@ -45,7 +45,7 @@ def bump_shape(
     Returns:
         Displacement [m], shape (n,).
 
-    Source: thesis section 3.2.2; the source's slip times speak for the height.
+    Source: thesis section 3.2.2; the slip times of the source support the reading "height".
     """
     if reading not in ("height", "literal"):
         raise ConfigurationError(f"reading {reading!r} of the bump; allowed: 'height', 'literal'")
@@ -58,6 +58,7 @@ def bump_shape(
 def bump(
     *,
     amplitude: float,
+    wheel: str,
     reading: Reading = "height",
     duration: float = 10.0,
     rate: float = 1000.0,
@@ -65,24 +66,23 @@ def bump(
     noise_rms: float = NOISE_RMS,
     seed: int = NOISE_SEED,
     noise_edge: float = SHAKER_EDGE_HZ,
-    wheel: str = "fr",
 ) -> Signal:
-    """Bump with the shaker's random noise before and after it.
+    """Generate a bump with random noise of the shaker before, during and after the bump.
 
-    z = bump_shape + noise. The shaker of the source could not hold a static load, so it kept moving. The noise has the
-    spectrum and band of the random inputs and goes on through the bump: cutting it off there would add jumps or another
-    frequency to the moment at which the damper begins to slip. Its RMS is exact over the record without the bump.
+    z = bump_shape + noise. The shaker of the source could not hold a static load and kept moving. The noise has the
+    spectrum and band of the random inputs and continues through the bump: an interruption would add jumps or another
+    frequency at the moment when the damper begins to slip. Its RMS is exact over the record without the bump.
 
     Args:
         amplitude: A of the bump [m].
+        wheel: wheel whose plate moves, such as `car.vehicle.shaker_wheel`.
         reading: 'height' (peak A) or 'literal' (peak 2 A).
         duration: length of the record [s].
         rate: samples per second [Hz].
         start: beginning of the bump [s].
         noise_rms: RMS of the noise before and after the bump [m]; 0 for none.
         seed: seed of the noise.
-        noise_edge: lower edge of its band [Hz].
-        wheel: driven wheel.
+        noise_edge: lower band edge of the noise [Hz].
 
     Raises:
         ConfigurationError: a parameter is out of range.
@@ -102,11 +102,12 @@ def bump(
         noise = random_road(
             rms=noise_rms,
             seed=seed,
+            wheel=wheel,
             duration=duration,
             rate=rate,
             lower_band_edge=noise_edge,
             roll_off_order=SHAKER_ROLL_OFF_ORDER,
-        ).displacement["fr"]
+        ).displacement[wheel]
         outside = (time <= start) | (time >= start + BUMP_DURATION_S)
         z = z + noise * (noise_rms / np.std(noise[outside]))
     return Signal(

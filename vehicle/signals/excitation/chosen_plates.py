@@ -1,4 +1,4 @@
-"""Plates driven by chosen channels of a measurement file."""
+"""Read plate displacements from selected channels of a measurement file."""
 
 from __future__ import annotations
 
@@ -15,48 +15,60 @@ from vehicle.signals.records.integration import displacement
 from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.table import TIME, USABLE, Header, Table
 
+WHEEL_REMEDY = "pass wheel='fl' (of a car: wheel=car.vehicle.shaker_wheel), or name the column displacement_fl"
+"""Remedy for a plate displacement without a wheel, read from Python; a command takes the wheel of its car."""
+
 
 def _moves(channel: Channel) -> bool:
-    """A run records the plate that it did not drive, too."""
+    """Return False for the constant plate channel of a run, which records undriven plates too."""
     return not channel.name.startswith("plate_") or bool(np.ptp(channel.values) > 0.0)
 
 
-def chosen_plates(path: Path, choice: Choice | None, wheel: str) -> tuple[Table, float]:
-    """Displacements of plates as a table with the heads `time [s]`, `displacement_fr [m]`.
+def chosen_plates(path: Path, choice: Choice | None, wheel: str | None) -> tuple[Table, float]:
+    """Read plate displacements as a table with the headers `time [s]`, `displacement_fr [m]`.
 
     Args:
-        path: the file, of any format.
-        choice: channels for wheels, and what is done to them; None, or no channel, where the file holds
-            one time history alone.
-        wheel: the plate that this one drives.
+        path: measurement file of any format.
+        choice: channel of each wheel, and preprocessing; may be None or without channels if channel names identify the
+            plates, or for a file with a single channel.
+        wheel: wheel driven by a displacement channel without a wheel in its name; None if there is no such channel.
 
     Returns:
-        The table, and the sampling rate that its band stands for [Hz]: the lower of those before and after resampling.
+        Table, and sampling rate that limits its band [Hz]: the lower rate before and after resampling.
 
     Raises:
-        ConfigurationError: no such file, or a role that is no wheel.
-        DataError: bad data, or nothing chosen among several channels.
+        ConfigurationError: unknown file, or a role that is not a wheel.
+        DataError: bad data, or no plate identified among several channels.
     """
     choice = Choice() if choice is None else choice
     measurement = read_record(path, choice.databases)
     unknown = next((role for role in choice.channels if role != "time" and not is_wheel(role)), None)
     if unknown is not None:
-        raise ConfigurationError(f"--channel {unknown}=...: allowed are {', '.join(CORNERS.values())} and time")
+        raise ConfigurationError(f"--channel {unknown}=...: must be one of {', '.join(CORNERS.values())}, time")
     if not any(role != "time" for role in choice.channels):
         wheels = CORNERS.values()
-        named = {f"displacement_{one}": one for one in wheels} | {f"plate_{one}_displacement": one for one in wheels}
-        found = {named[one.name]: one.name for one in measurement.channels if one.name in named and _moves(one)}
-        if not found and len(measurement.channels) == 1:
-            found = {wheel: "1"}
-        elif not found and (plain := [one for one in measurement.channels if one.name == "displacement"]):
-            found = {wheel: plain[0].name}
-        if not found:
-            names = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
-            raise DataError(
-                f"{path}: {len(measurement.channels)} channels: {names}; say which one drives the plate: --channel "
-                f"{wheel}=NAME, with its number, exact name, or a pattern with *"
+        named = {f"displacement_{channel}": channel for channel in wheels} | {
+            f"plate_{channel}_displacement": channel for channel in wheels
+        }
+        assigned = {
+            named[channel.name]: channel.name
+            for channel in measurement.channels
+            if channel.name in named and _moves(channel)
+        }
+        plain = [channel for channel in measurement.channels if channel.name == "displacement"] or measurement.channels
+        if not assigned and (plain[0].name == "displacement" or len(plain) == 1):
+            if wheel is None:
+                raise DataError(f"{path}: channel {plain[0].name!r} names no wheel; {WHEEL_REMEDY}")
+            assigned = {wheel: "1" if len(measurement.channels) == 1 else plain[0].name}
+        if not assigned:
+            names = ", ".join(
+                f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
             )
-        choice = replace(choice, channels={**choice.channels, **found})
+            raise DataError(
+                f"{path}: {len(measurement.channels)} channels: {names}; select the channel of the plate: --channel "
+                f"{wheel or 'fl'}=NAME, with its number, exact name, or a pattern with *"
+            )
+        choice = replace(choice, channels={**choice.channels, **assigned})
     chosen = choose(measurement, choice)
     columns, notices = displacement(chosen, choice, str(path))
     header = Header(path=path, line=0, cells=(TIME, *(f"displacement_{role} [m]" for role in columns)))

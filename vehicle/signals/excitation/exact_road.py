@@ -1,7 +1,7 @@
-"""The smooth and the rough road of Bommer 2006 under one wheel.
+"""Generate the smooth and the rough road of Bommer 2006 under one wheel.
 
-Both are one road at two levels: constant velocity PSD G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) from f1 to f2, so the lower
-edge f1 decides how much of the printed RMS is motion that the suspension feels.
+Both are the same road at two levels: constant velocity PSD G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) from f1 to f2, so the
+lower edge f1 determines the share of the printed RMS that excites the suspension.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ ROAD_RMS = {"smooth": 0.0075, "rough": 0.043}
 """RMS of the displacement [m] (Bommer 2006, chapter 4)."""
 
 ROAD_EDGE_HZ = CHOSEN.road_edge_hz
-"""Lower band edge f1 of both roads [Hz]. One number for two shares: 31.6 % and 81.5 % remain against 31.3 % and
-79.4 %. A record of 30 s, which the source shows with a swing of 0.1 to 0.2 m, has its lowest line at 0.033 Hz."""
+"""Lower band edge f1 of both roads [Hz]. Fitted to two slip shares: 31.6 % and 81.5 %, printed 31.3 % and
+79.4 %. A record of 30 s, shown in the source with peak to peak 0.1 to 0.2 m, has its lowest line at 0.033 Hz."""
 
 LEAD_S = 10.0
 """Time before the evaluated record [s]: several decay times of the slowest mode with both dampers stuck."""
@@ -29,31 +29,38 @@ RISE_S = 2.0
 """Half-cosine rise from rest at the beginning of the lead [s]."""
 
 RATE_HZ = 1000.0
-"""Samples per second of the signals."""
+"""Sampling rate of the signals [Hz]."""
 
 
 @lru_cache(maxsize=16)
 def road(
-    *, rms: float, seed: int, duration: float = 60.0, lead: float = LEAD_S, lower_band_edge: float = ROAD_EDGE_HZ
+    *,
+    rms: float,
+    seed: int,
+    wheel: str,
+    duration: float = 60.0,
+    lead: float = LEAD_S,
+    lower_band_edge: float = ROAD_EDGE_HZ,
 ) -> Signal:
-    """Road of constant velocity PSD with exact level: a lead from rest, then the record to evaluate.
+    """Generate a road of constant velocity PSD with exact level: a lead from rest, then the record to evaluate.
 
     z(t) = a sum over j of cos(2 pi f_j t + phi_j) / f_j,  f_j = f1 + (j + 1/2) / T, one line in each cell of the band
 
-    Equal velocity amplitude on every line, random phases. A road of Gaussian amplitudes scaled to its RMS would not do:
-    its few lowest lines make the RMS, so that the level at 2 to 50 Hz would differ by a fifth from one record of 60 s
-    to the next. Here both RMS and PSD are exact, and only the phases are left to chance. Lines 1 / T apart are
+    Equal velocity amplitude on every line, random phases. Gaussian amplitudes scaled to the RMS are not suitable: the
+    few lowest lines dominate the RMS, so the level at 2 to 50 Hz would differ by a fifth between records of 60 s.
+    Here both RMS and PSD are exact, and only the phases are random. Lines 1 / T apart are
     orthogonal over the record, whole periods or not.
 
     Args:
         rms: root mean square of the displacement [m], a^2 sum(1 / f_j^2) / 2.
         seed: seed of the PCG64 generator of the phases; one seed is one road at any level.
+        wheel: wheel whose plate moves, such as `car.vehicle.shaker_wheel`.
         duration: evaluated length T [s].
-        lead: length before it [s]; the beginning rises from rest.
-        lower_band_edge: f1 [Hz].
+        lead: length of the lead before the evaluated record [s], with a rise from rest.
+        lower_band_edge: lower band edge f1 [Hz].
 
     Returns:
-        Signal of the right front wheel, from 0 to lead + duration.
+        Signal from 0 to lead + duration.
 
     Raises:
         ConfigurationError: a parameter is out of range.
@@ -69,13 +76,13 @@ def road(
     amplitude = rms * np.sqrt(2.0 / np.sum(frequency**-2.0)) / frequency
     spectrum = np.zeros(steps, dtype=np.complex128)
     spectrum[:cells] = amplitude * np.exp(1j * phase) * steps
-    # The inverse transform has the period T; the offset of its lines from multiples of 1 / T turns it.
+    # The inverse transform has the period T; a phase rotation shifts its lines from the multiples of 1 / T.
     index = np.arange(-before, steps + 1)
-    turned = np.fft.ifft(spectrum)[index % steps] * np.exp(2j * np.pi * frequency[0] / RATE_HZ * index)
+    record = np.fft.ifft(spectrum)[index % steps] * np.exp(2j * np.pi * frequency[0] / RATE_HZ * index)
     rise = half_cosine(samples=index.size, timestep=1.0 / RATE_HZ, length=min(RISE_S, lead))
     return Signal(
         time=uniform_time(samples=index.size, timestep=1.0 / RATE_HZ),
-        displacement={"fr": turned.real * rise},
+        displacement={wheel: record.real * rise},
         source=(
             f"road, RMS {rms:g} m, constant velocity PSD {lower_band_edge:g} to {UPPER_BAND_EDGE_HZ:g} Hz, {duration:g}"
             f" s after a lead of {lead:g} s, seed {seed}"
@@ -84,5 +91,5 @@ def road(
 
 
 def velocity_density(rms: float, lower_band_edge: float = ROAD_EDGE_HZ) -> float:
-    """One-sided velocity PSD of a road, G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) [(m/s)^2/Hz]."""
+    """Return the one-sided velocity PSD of a road, G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) [(m/s)^2/Hz]."""
     return float((2.0 * np.pi * rms) ** 2 / (1.0 / lower_band_edge - 1.0 / UPPER_BAND_EDGE_HZ))

@@ -1,4 +1,4 @@
-"""Finding an input file by its path or by the name of a shipped one."""
+"""Find input files by path or by the name of a shipped input."""
 
 from __future__ import annotations
 
@@ -8,34 +8,34 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 
 INPUT_FOLDER = Path(__file__).resolve().parents[1] / "inputs"
-"""The shipped inputs, part of the package; `python -m scenarios.inputs.make_inputs` writes them."""
+"""Folder of the shipped inputs, part of the package; `python -m scenarios.inputs.make_inputs` writes them."""
 
 
 def find_input(name: str | Path) -> Path:
-    """Return the file at the path as given, else the shipped one of that name.
+    """Return the path of an existing file, else of the shipped input with this name.
 
     Args:
-        name: path of a measurement file, or the plain name of a shipped one such as 'low.csv'.
+        name: path of a measurement file, or name of a shipped input, such as 'low.csv'.
 
     Raises:
-        ConfigurationError: there is no such file; the message lists the names that exist.
+        ConfigurationError: neither exists; the message lists the names of the shipped inputs.
     """
-    given = Path(name)
-    if given.is_file():
-        return given
-    if given.exists():
-        raise ConfigurationError(f"input {str(name)!r} is not a file; give the path of a measurement file")
+    path = Path(name)
+    if path.is_file():
+        return path
+    if path.exists():
+        raise ConfigurationError(f"input {str(name)!r} is not a file; set the path of a measurement file")
     names = shipped_inputs()
-    if given.name == str(name) and given.name in names:
-        return INPUT_FOLDER / given.name
-    close = get_close_matches(given.name, names, n=1)
+    if path.name == str(name) and path.name in names:
+        return INPUT_FOLDER / path.name
+    close = get_close_matches(path.name, names, n=1)
     hint = f" Did you mean {close[0]}?" if close else ""
     raise ConfigurationError(
-        f"input {str(name)!r} not found: no such file, and none of that name is shipped.{hint} "
-        f"Give the path of a measurement file or one of: {', '.join(names)}"
+        f"input {str(name)!r} not found: no such file, and no shipped input of that name.{hint} "
+        f"Set the path of a measurement file or one of: {', '.join(names)}"
     )
 
 
 def shipped_inputs() -> list[str]:
-    """Return the names of the shipped input files, as `Car.run` takes them, sorted."""
+    """Return the sorted names of the shipped inputs, which `Car.run` accepts."""
     return sorted(path.name for path in INPUT_FOLDER.glob("*.csv"))

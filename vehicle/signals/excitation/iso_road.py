@@ -1,4 +1,4 @@
-"""Road of ISO 8608 in two tracks: its class is its level, the isotropic plane relates right and left.
+"""Generate a two-track road of ISO 8608: the class determines the level, an isotropic surface the coherence.
 
     G(n) = G(n0) (n / n0)^-2,  n0 = 0.1 cycles/m,  from a lower to an upper wavenumber n [cycles/m]
 
@@ -7,8 +7,8 @@ The height over the wavenumber lines n_k = k / P of a length P is, with a mean a
     z(x) = sum over k of A_k (sqrt((1 + g_k) / 2) cos(2 pi n_k x + phi_k)
                               +- sqrt((1 - g_k) / 2) cos(2 pi n_k x + psi_k))
 
-right with +, left with -; A_k^2 / 2 = G(n_k) / P; g is the normalised cross spectrum. The power of both tracks together
-is exactly that of the class on every line; phases alone are left to chance.
+right with +, left with -; A_k^2 / 2 = G(n_k) / P; g is the normalised cross spectrum. The power of both tracks is
+exactly that of the class on every line; only the phases are random.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ from vehicle.signals.excitation.band import positive, samples_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 COPIES = 8
-"""Arrays as long as the record that are in memory beside the signals: lines, their transform and its plan."""
+"""Number of arrays of the length of the record in memory, without the signals: lines, transform, its plan."""
 
 CLASSES = {letter: 16e-6 * 4.0**number for number, letter in enumerate("ABCDEFGH")}
 """G(n0) [m3] of each class, the geometric mean of its range. Source: ISO 8608, table of road classes."""
 
 REFERENCE = 0.1
-"""Wavenumber n0 [cycles/m] at which a class states its level (ISO 8608)."""
+"""Reference wavenumber n0 of the level of a class [cycles/m] (ISO 8608)."""
 
 LOWEST, HIGHEST = 0.011, 10.0
-"""Wavenumbers [cycles/m]: the lower end of ISO 8608, waves of 91 m; waves of 0.1 m, shorter than a contact patch."""
+"""Minimum and maximum wavenumber [cycles/m]: lower end of ISO 8608 (waves of 91 m); waves of 0.1 m, a contact patch."""
 
 RISE_S = 1.0
-"""Time [s] over which the road rises out of a plane, where the car stands."""
+"""Time [s] of the rise of the road from the plane on which the car starts."""
 
 Side = Literal["right", "left"]
 
@@ -49,25 +49,25 @@ class Road(Protocol):
 
     @property
     def repeats(self) -> bool:
-        """True if the heights repeat after the number of places that is asked for."""
+        """True if the heights repeat after the requested number of positions."""
 
     @property
     def words(self) -> str:
-        """What it is, for messages and headers."""
+        """Description of the road, for messages and headers."""
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Heights [m] at equal distances; arguments as of `IsoRoad.height`."""
+        """Return heights [m] at equally spaced positions; arguments see `IsoRoad.height`."""
 
 
 def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArray[np.float64]:
-    """Cross spectrum of two tracks over their spectrum, g(n) = y K1(y) with y = 2 pi n b.
+    """Return the cross spectrum of two tracks over their spectrum, g(n) = y K1(y) with y = 2 pi n b.
 
-    The surface is isotropic: its two-dimensional spectrum depends on the length of the wave vector alone, and falls
-    with its third power where that of a track falls with the second. Then integral of cos(2 pi m b) / (n2 + m2)^(3/2)
-    over m, divided by that at b = 0, is y K1(y) (Basset). The ordinary coherence is g^2.
+    The surface is isotropic: its two-dimensional spectrum depends on the length of the wave vector only, and falls
+    with its third power if the spectrum of a track falls with the second. Then integral of cos(2 pi m b) / (n2 +
+    m2)^(3/2) over m, divided by that at b = 0, is y K1(y) (Basset). The ordinary coherence is g^2.
 
     Args:
-        wavenumber: n [cycles/m], above 0.
+        wavenumber: wavenumbers n [cycles/m], above 0.
         track: distance b of the tracks [m].
 
     Source: Dodds and Robson, Journal of Sound and Vibration 31 (1973); Abramowitz and Stegun 9.6.25.
@@ -78,19 +78,19 @@ def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArra
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class IsoRoad:
-    """A road of a class; one seed is one road for a length of it.
+    """Road of an ISO 8608 class; seed and length determine the road.
 
     Attributes:
-        level: G(n0) [m3] at 0.1 cycles/m.
-        seed: of the PCG64 generator of the phases.
+        level: level G(n0) at 0.1 cycles/m [m3].
+        seed: seed of the PCG64 generator of the phases.
         track: distance of the two tracks [m].
-        lowest: smallest wavenumber [cycles/m].
-        highest: largest wavenumber [cycles/m].
-        coherence: None for that of the isotropic plane; 1 for equal tracks, 0 for unrelated ones.
-        patch: length of the contact patch [m]; the tyre averages the road over it, sinc(n a).
+        lowest: minimum wavenumber [cycles/m].
+        highest: maximum wavenumber [cycles/m].
+        coherence: g of the tracks [-]; None for an isotropic surface, 1 for equal and 0 for independent tracks.
+        patch: length a of the contact patch [m], over which the tyre averages the road: factor sinc(n a).
 
     Raises:
-        ConfigurationError: a value out of its range.
+        ConfigurationError: a value out of range.
     """
 
     level: float
@@ -115,12 +115,12 @@ class IsoRoad:
 
     @property
     def repeats(self) -> bool:
-        """True: a sum of waves repeats after its length."""
+        """True: a sum of waves is periodic."""
         return True
 
     @property
     def words(self) -> str:
-        """What it is, for messages and headers."""
+        """Description of the road, for messages and headers."""
         related = "isotropic plane" if self.coherence is None else f"coherence {self.coherence:g}"
         return (
             f"road of ISO 8608, G(0.1 cycles/m) = {self.level:g} m3, {self.lowest:g} to {self.highest:g} cycles/m, "
@@ -128,26 +128,27 @@ class IsoRoad:
         )
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Heights of a track at equal distances.
+        """Return the heights of a track at equally spaced positions.
 
         Args:
-            start: first place [m].
-            step: distance of the places [m].
-            steps: number of places N; the road repeats after P = N step.
+            start: first position [m].
+            step: distance of the positions [m].
+            steps: number of positions N; the road repeats after P = N * step.
             side: right or left track.
-            highest: wavenumber [cycles/m] above which a sampling of `step` shows nothing.
+            highest: maximum wavenumber for the sampling with `step` [cycles/m].
 
         Returns:
-            z [m], shape (N,).
+            Heights z [m], shape (N,).
 
         Raises:
-            ConfigurationError: no line of the length lies in the band.
+            ConfigurationError: the band contains no line of the length.
         """
         length = steps * step
         lines = np.arange(max(1, int(np.ceil(self.lowest * length))), int(min(self.highest, highest) * length) + 1)
         if lines.size == 0:
             raise ConfigurationError(
-                f"{length:.4g} m of road hold no wave of {self.lowest:g} cycles/m; drive farther or raise the edge"
+                f"{length:.4g} m of road are too short for a wave of {self.lowest:g} cycles/m; drive farther or raise "
+                "the lower edge"
             )
         wavenumber = lines / length
         related = isotropic_coherence(wavenumber, self.track) if self.coherence is None else self.coherence
@@ -170,44 +171,44 @@ class IsoRoad:
 def drive(
     road: Road, *, speed: float, wheels: Mapping[str, tuple[float, Side]], duration: float, rate: float = 1000.0
 ) -> Signal:
-    """Plate displacements of a car that drives over a road: z(t) = w(V t - d) z(V t - d).
+    """Generate the plate displacements of a car that drives over a road: z(t) = w(V t - d) z(V t - d).
 
-    A wheel that stands d behind the first meets the same road d / V later, exactly (the shift is made on the lines);
-    the rise w out of the plane is a part of the road and is met later too.
+    A wheel at the distance d behind the foremost wheel has the same displacement d / V later, exactly (the phases of
+    the lines are shifted), including the rise w from the plane.
 
     Args:
-        road: the road.
-        speed: V [m/s].
-        wheels: name of each wheel to its distance d [m] behind the foremost one, at least 0, and its track.
+        road: road to drive on.
+        speed: speed V [m/s].
+        wheels: name of each wheel to its distance d behind the foremost wheel [m], at least 0, and its track.
         duration: length of the record [s].
-        rate: samples per second [Hz].
+        rate: sampling rate [Hz].
 
     Returns:
-        Signal with duration * rate + 1 samples for all the wheels.
+        Signal with duration * rate + 1 samples for all wheels.
 
     Raises:
-        ConfigurationError: a value out of its range.
+        ConfigurationError: a value out of range.
     """
     positive("speed", speed, "m/s")
     steps = samples_of(duration, rate)
-    needed, there = 8.0 * steps * (len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    if needed > 0.5 * there:
+    needed, memory = 8.0 * steps * (len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed > 0.5 * memory:
         raise ConfigurationError(
             f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "
-            f"{needed / 1e9:.3g} GB, allowed is half the memory of this machine, {0.5 * there / 1e9:.3g} GB; give a "
-            "shorter --duration or a lower --rate"
+            f"{needed / 1e9:.3g} GB, must be at most half the memory of this machine, {0.5 * memory / 1e9:.3g} GB; set "
+            "a shorter --duration or a lower --rate"
         )
     behind = [distance for distance, _ in wheels.values()]
     if not wheels or min(behind) < 0.0 or not np.isfinite(behind).all():
         raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
-    # Longer than the record by the last wheel's delay: no wheel meets the beginning of the road again.
+    # Longer than the record by the delay of the last wheel: no wheel reaches the repetition of the road.
     period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
     step, displacement = speed / rate, {}
     for wheel, (distance, side) in wheels.items():
         # 0.8 of the Nyquist frequency, as for every generated signal.
         z = road.height(-distance, step, period, side, 0.4 / step)[: steps + 1]
-        late = np.arange(steps + 1) / rate - distance / speed
-        displacement[wheel] = z * half_cosine_at(late, RISE_S) + 0.0  # no -0.0 in files
+        delayed_time = np.arange(steps + 1) / rate - distance / speed
+        displacement[wheel] = z * half_cosine_at(delayed_time, RISE_S) + 0.0  # adding 0.0 avoids -0.0 in files
     return Signal(
         time=uniform_time(samples=steps + 1, timestep=1.0 / rate),
         displacement=displacement,
@@ -216,5 +217,5 @@ def drive(
 
 
 def half_cosine_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
-    """Weights [-] (1 - cos(pi t / length)) / 2 from 0 to `length` [s], 0 before and 1 after."""
+    """Return the weights (1 - cos(pi t / length)) / 2 from 0 to `length` [s], 0 before and 1 after [-]."""
     return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.clip(time / length, 0.0, 1.0))))

@@ -1,4 +1,4 @@
-"""Is this the displacement of a shaker plate in metres? Level, acceleration, bandwidth, drift, pauses."""
+"""Check the plausibility of plate displacements: level, acceleration, bandwidth, drift, pauses, clipping."""
 
 from __future__ import annotations
 
@@ -15,122 +15,122 @@ from vehicle.signals.records.clock import PAUSE
 from vehicle.signals.records.rare_events import rare_events
 
 LARGEST_DISPLACEMENT = 0.15
-"""Largest plausible |z| [m]: beyond it a plate leaves the stroke of a rig and a wheel the ground."""
+"""Maximum plausible |z| [m]: stroke of a rig; above it a wheel lifts off the ground."""
 
 LARGEST_ACCELERATION = 50.0
-"""Largest plausible |z''| [m/s2] below 100 Hz."""
+"""Maximum plausible |z''| below 100 Hz [m/s2]."""
 
 SMALLEST_RMS = 1e-7
-"""Smallest plausible RMS [m]: below it no sensor sees the motion."""
+"""Minimum plausible RMS [m]: resolution limit of sensors."""
 
 ACCELERATION_BAND = 100.0
-"""The acceleration is judged up to this frequency [Hz]."""
+"""Maximum frequency of the checked acceleration [Hz]."""
 
 ALIAS_SHARE = 0.05
-"""Share of the velocity variance above 0.8 of the Nyquist frequency that raises a notice [-]."""
+"""Maximum share of the velocity variance above 0.8 of the Nyquist frequency without a notice [-]."""
 
 DRIFT_SHARE = 1.0
-"""Drift from the beginning to the end, as a share of the RMS about it, from which it is mentioned [-]. A stationary
-record of 20 periods of its lowest frequency stays below 0.2."""
+"""Minimum drift over the record for a notice, over the RMS about the drift line [-]. A stationary record of 20 periods
+of its lowest frequency has less than 0.2."""
 
 
 def check_level(
     path: Path, displacement: Mapping[str, NDArray[np.float64]], timestep: float, units: Mapping[str, str] | None = None
 ) -> list[str]:
-    """Stop at magnitudes that speak of another unit or quantity; name rare events, such as a pothole.
+    """Reject levels that indicate a wrong unit or quantity; return notices on rare events, such as a pothole.
 
     Args:
         path: file, for messages.
         displacement: wheel -> plate displacement [m], shape (n,).
-        timestep: distance of the samples [s].
-        units: wheel -> unit that its column is declared in, "m" (by default) or "mm": messages speak in it; "" for a
-            channel of a measurement file, whose unit the file or --unit tells.
+        timestep: sampling interval [s].
+        units: wheel -> unit of its column, "m" (by default) or "mm", used in messages; "" for a channel of a
+            measurement file with a unit from the file or --unit.
 
     Returns:
         A notice for each plate that exceeds a level in rare events; see `rare_events`.
 
     Raises:
-        DataError: |z| > 0.15 m or |z''| > 50 m/s2 beyond rare events, or RMS < 1e-7 m (a plate at rest beside a moving
-            one is accepted).
+        DataError: |z| > 0.15 m or |z''| > 50 m/s2 other than rare events, or RMS < 1e-7 m (unless another
+            plate moves).
     """
     events = []
     moving = any(np.std(z) >= SMALLEST_RMS for z in displacement.values())
     for wheel, z in displacement.items():
         unit = (units or {}).get(wheel, "m")
-        per_metre, other = (1e3, "um") if unit == "mm" else (1.0, "mm")
-        doubt, mend = (
-            f"looks like {other}? The column is declared in [{unit}]",
+        per_metre, other_unit = (1e3, "um") if unit == "mm" else (1.0, "mm")
+        question, remedy = (
+            f"looks like {other_unit}? The column is declared in [{unit}]",
             "write its unit into the header ([m] or [mm])",
         )
         if not unit:
-            unit, doubt, mend = "m", "is the unit of the channel right?", f"give another: --unit {wheel}=UNIT"
-        at = int(np.argmax(np.abs(z)))
-        if abs(z[at]) > LARGEST_DISPLACEMENT and rare_events(z, LARGEST_DISPLACEMENT):
+            unit, question, remedy = "m", "is the unit of the channel right?", f"set another: --unit {wheel}=UNIT"
+        index = int(np.argmax(np.abs(z)))
+        if abs(z[index]) > LARGEST_DISPLACEMENT and rare_events(z, LARGEST_DISPLACEMENT):
             events.append(
-                f"plate {wheel} is displaced by {per_metre * z[at]:.4g} {unit} at t = {at * timestep:.6g} s, beyond "
-                f"{per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
+                f"plate {wheel} is displaced by {per_metre * z[index]:.4g} {unit} at t = {index * timestep:.6g} s, "
+                f"beyond {per_metre * LARGEST_DISPLACEMENT:g} {unit}: a pothole or a kerb?"
             )
-        elif abs(z[at]) > LARGEST_DISPLACEMENT:
+        elif abs(z[index]) > LARGEST_DISPLACEMENT:
             raise DataError(
-                f"{path}: plate {wheel} is displaced by {per_metre * z[at]:.6g} {unit} at sample {at} "
-                f"(t = {at * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {doubt}; {mend}, "
-                "or remove a constant offset (--remove-mean)"
+                f"{path}: plate {wheel} is displaced by {per_metre * z[index]:.6g} {unit} at sample {index} "
+                f"(t = {index * timestep:.6g} s); allowed {per_metre * LARGEST_DISPLACEMENT:g} {unit}; {question}; "
+                f"{remedy}, or remove a constant offset (--remove-mean)"
             )
         rms = float(np.std(z))
         if rms < SMALLEST_RMS and not (moving and np.ptp(z) == 0.0):
-            doubt = (
+            question = (
                 "does the column, declared in [mm], hold metres?" if unit == "mm" else "does the column hold metres?"
             )
             raise DataError(
                 f"{path}: RMS of plate {wheel} is {per_metre * rms:.3g} {unit}; allowed from "
-                f"{per_metre * SMALLEST_RMS:g} {unit}; {doubt} Otherwise it is another quantity, or a dead sensor"
+                f"{per_metre * SMALLEST_RMS:g} {unit}; {question} Otherwise it is another quantity, or a dead sensor"
             )
         acceleration = band_limited_acceleration(z, timestep)
-        at = int(np.argmax(np.abs(acceleration)))
-        # The edge of a pothole has any acceleration: 60 mm within 12 ms 800 m/s2. Its depth is judged above.
-        if abs(acceleration[at]) > LARGEST_ACCELERATION and rare_events(acceleration, LARGEST_ACCELERATION, np.inf):
+        index = int(np.argmax(np.abs(acceleration)))
+        # A pothole has high accelerations: 60 mm within 12 ms give 800 m/s2. Its depth is checked above.
+        if abs(acceleration[index]) > LARGEST_ACCELERATION and rare_events(acceleration, LARGEST_ACCELERATION, np.inf):
             events.append(
-                f"plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s (below "
+                f"plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s (below "
                 f"{ACCELERATION_BAND:g} Hz), beyond {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
             )
-        elif abs(acceleration[at]) > LARGEST_ACCELERATION:
+        elif abs(acceleration[index]) > LARGEST_ACCELERATION:
             raise DataError(
-                f"{path}: plate {wheel} accelerates by {acceleration[at]:.4g} m/s2 at t = {at * timestep:.6g} s "
-                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {doubt}; {mend}. Otherwise "
-                "look there for a jump or a spike in the record, or give --any-level if it is a road and no signal of "
-                "a shaker"
+                f"{path}: plate {wheel} accelerates by {acceleration[index]:.4g} m/s2 at t = {index * timestep:.6g} s "
+                f"(below {ACCELERATION_BAND:g} Hz); allowed {LARGEST_ACCELERATION:g} m/s2; {question}; {remedy}. "
+                "Otherwise look there for a jump or a spike in the record, or set --any-level if it is a road, not a "
+                "shaker signal"
             )
     return events
 
 
 def acceleration_events(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> list[str]:
-    """Return a notice for each plate of a road whose acceleration exceeds that of a shaker: its largest event.
+    """Return a notice for each plate of a road with an acceleration above that of a shaker, with its maximum.
 
     Args:
         displacement: wheel -> plate displacement [m], shape (n,).
-        timestep: distance of the samples [s].
+        timestep: sampling interval [s].
     """
-    found = []
+    events = []
     for wheel, z in displacement.items():
         acceleration = band_limited_acceleration(z, timestep)
-        at = int(np.argmax(np.abs(acceleration)))
-        if abs(acceleration[at]) > LARGEST_ACCELERATION:
+        index = int(np.argmax(np.abs(acceleration)))
+        if abs(acceleration[index]) > LARGEST_ACCELERATION:
             share = 100.0 * float(np.mean(np.abs(acceleration) > LARGEST_ACCELERATION))
-            found.append(
-                f"plate {wheel} accelerates by up to {acceleration[at]:.4g} m/s2, at t = {at * timestep:.6g} s, and by "
-                f"more than {LARGEST_ACCELERATION:g} m/s2 for {share:.2g} % of the time (below {ACCELERATION_BAND:g} "
-                "Hz): a pothole, or a rough road; the tyre may lift off"
+            events.append(
+                f"plate {wheel} accelerates by up to {acceleration[index]:.4g} m/s2, at t = {index * timestep:.6g} s, "
+                f"and by more than {LARGEST_ACCELERATION:g} m/s2 for {share:.2g} % of the time (below "
+                f"{ACCELERATION_BAND:g} Hz): a pothole, or a rough road; the tyre may lift off"
             )
-    return found
+    return events
 
 
 def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArray[np.float64]:
-    """Second time derivative of the record below 100 Hz [m/s2], shape (n,).
+    """Return the second time derivative of the record below 100 Hz [m/s2], shape (n,).
 
     z'' = (z[i+1] - 2 z[i] + z[i-1]) / dt^2, after a zero-phase low pass (Butterworth, 4th order, forwards and
-    backwards). Bare second differences amplify quantisation without limit: steps of 10 um at 1 kHz give 7 m/s2 RMS of
-    nothing, behind the filter 0.2 m/s2. Differences read low near the Nyquist frequency, so a coarse record is never
-    refused for its rate. Within 10 ms of both ends the filter may add 10 %.
+    backwards). Unfiltered second differences amplify quantisation: steps of 10 um at 1 kHz give an error of 7 m/s2 RMS,
+    with the filter 0.2 m/s2. Differences are too small near the Nyquist frequency, so a low sampling rate alone is
+    never rejected. Within 10 ms of both ends the filter may add 10 %.
     """
     nyquist = 0.5 / timestep
     smooth = z
@@ -141,12 +141,12 @@ def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArra
 
 
 def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
-    """Share of the variance of the VELOCITY above 0.8 of the Nyquist frequency [-].
+    """Return the share of the VELOCITY variance above 0.8 of the Nyquist frequency [-].
 
-    sum over f > 0.8 fN of f^2 |Z(f)|^2 / sum over all f, Hann window. The displacement of a road falls so steeply
-    (1/f^2) that its variance never shows the upper end of the band, and the acceleration shows sensor noise there
-    even in a good record; the velocity spectrum of a road is flat, so without anti-alias filter a fifth of it lies
-    there.
+    sum over f > 0.8 fN of f^2 |Z(f)|^2 / sum over all f, Hann window. The displacement PSD of a road falls so steeply
+    (1/f^2) that its variance is insensitive to the upper end of the band, and the acceleration contains sensor noise
+    there even in a good record; the velocity PSD of a road is flat, so without anti-alias filter it has a share of a
+    fifth there.
     """
     centred = z - z.mean()
     spectrum = scipy.fft.rfft(centred * np.hanning(z.size), scipy.fft.next_fast_len(z.size, real=True))
@@ -157,7 +157,7 @@ def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
 
 
 def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: float) -> tuple[str, ...]:
-    """One notice for each plate whose velocity has more than 5 % of its variance above 0.8 of the Nyquist frequency."""
+    """Return a notice for each plate with more than 5 % of its velocity variance above 0.8 of the Nyquist frequency."""
     limit = 0.4 / timestep
     shares = {wheel: velocity_share_near_nyquist(z) for wheel, z in displacement.items()}
     return tuple(
@@ -170,55 +170,56 @@ def aliasing_notices(displacement: Mapping[str, NDArray[np.float64]], timestep: 
 
 
 def drifts(displacement: Mapping[str, NDArray[np.float64]]) -> list[str]:
-    """A notice for each plate whose straight line of least squares rises by more than the RMS about it.
+    """Return a notice for each plate whose least-squares line rises by more than the RMS about the line.
 
-    b = 12 / (n^2 - 1) mean((k - (n - 1)/2) z_k) a sample, k = 0 ... n - 1; drift b (n - 1).
+    Slope b = 12 / (n^2 - 1) mean((k - (n - 1)/2) z_k) per sample, k = 0 ... n - 1; drift b (n - 1).
 
     Args:
         displacement: wheel -> plate displacement [m], shape (n,).
     """
-    found = []
+    notices = []
     for wheel, z in displacement.items():
-        place = np.arange(z.size) - 0.5 * (z.size - 1)
-        slope = 12.0 / (z.size**2 - 1.0) * float(np.mean(place * z))
-        drift, rms = slope * (z.size - 1), float(np.std(z - slope * place))
+        offsets = np.arange(z.size) - 0.5 * (z.size - 1)
+        slope = 12.0 / (z.size**2 - 1.0) * float(np.mean(offsets * z))
+        drift, rms = slope * (z.size - 1), float(np.std(z - slope * offsets))
         if abs(drift) > DRIFT_SHARE * rms:
-            found.append(
+            notices.append(
                 f"plate {wheel} drifts by {1e3 * drift:.4g} mm from beginning to end (RMS about that line "
                 f"{1e3 * rms:.4g} mm): a drifting sensor or integrator? Nothing was subtracted"
             )
-    return found
+    return notices
 
 
 def pauses(wheel: str, time: NDArray[np.float64], values: NDArray[np.float64]) -> list[str]:
-    """A notice for the longest stretch of equal values between two motions, if it is a pause.
+    """Return a notice on the longest constant part between two motions if it is at least `PAUSE` long.
 
     Args:
-        wheel: whose plate.
+        wheel: wheel of the plate, for the message.
         time: sample times [s], shape (n,).
-        values: of the plate in any unit, shape (n,).
+        values: displacement of the plate in any unit, shape (n,).
     """
     part = constant_part(values)
     if part is None or time[part[1]] - time[part[0]] < PAUSE:
         return []
     moves = np.flatnonzero(np.diff(values) != 0.0)
-    more = int(np.count_nonzero(time[moves[1:]] - time[moves[:-1] + 1] >= PAUSE)) - 1
+    further = int(np.count_nonzero(time[moves[1:]] - time[moves[:-1] + 1] >= PAUSE)) - 1
     return [
         f"plate {wheel} stands still for {time[part[1]] - time[part[0]]:.4g} s from t = {time[part[0]]:.6g} s on, "
-        "between two motions: a pause of the record? RMS, comfort and slip shares count it"
-        + (f"; {more} shorter pauses beside it" if more else "")
+        "between two motions: a pause of the record? RMS, comfort and slip shares include it"
+        + (f"; {further} further shorter pauses" if further else "")
     ]
 
 
 def clipping(wheel: str, values: NDArray[np.float64]) -> list[str]:
-    """A notice for each side on which the displacement of a plate is clipped.
+    """Return a notice for each side on which the displacement of a plate is clipped.
 
     Args:
-        wheel: whose plate.
-        values: of the plate in any unit, shape (n,).
+        wheel: wheel of the plate, for the message.
+        values: displacement of the plate in any unit, shape (n,).
     """
     return [
         f"plate {wheel}: clipped? {100.0 * share:.3g} % of the samples are equal to the {side}, {level:.4g}, with "
-        "sharp edges, where the velocity jumps; measure with a larger range, or take a part without (--from S, --to S)"
+        "sharp edges, where the velocity jumps; measure with a larger range, or select an "
+        "unclipped part (--from S, --to S)"
         for side, level, share in clipped(values)
     ]

@@ -1,4 +1,4 @@
-"""Random plate displacement with constant velocity PSD: the standard road of the source."""
+"""Generate random plate displacements with constant velocity PSD: the standard road of Bommer 2006."""
 
 from __future__ import annotations
 
@@ -25,34 +25,34 @@ def random_road(
     *,
     rms: float,
     seed: int,
+    wheel: str,
     duration: float = 60.0,
     rate: float = 1000.0,
     lower_band_edge: float = LOWER_BAND_EDGE_HZ,
     upper_band_edge: float = UPPER_BAND_EDGE_HZ,
     roll_off_order: int = 0,
     taper_length: float = RAMP_S,
-    wheel: str = "fr",
     level: Literal["record", "lines"] = "record",
 ) -> Signal:
-    """Band-limited Gaussian displacement whose PSD falls with 1/f^2 between two band edges.
+    """Generate a band-limited Gaussian displacement with a PSD proportional to 1/f^2 between two band edges.
 
     G_z(f) = G_v / (2 pi f)^2, G_v constant, from the lower to the upper edge; z = sum of A_k cos(2 pi k t / T +
     phi_k) over the lines k / T in the band, A_k = R_k / k with Rayleigh R_k and uniform phases: a sample of a
     Gaussian process, unlike random phases alone, whose estimated PSD would have no scatter. Periodic over the record
-    before the taper. The taper (half cosine at both ends) makes it begin and end at rest; the mean is then removed in
-    proportion to the taper, and the whole scaled, so that mean 0 and RMS are exact.
+    before the taper. With the taper (half cosine at both ends) it begins and ends at rest; then the mean is removed in
+    proportion to the taper, and the record scaled, so that mean 0 and RMS are exact.
 
-    That is `level="record"`: the one factor makes the level of every line depend on the chance of all others (of the
-    lowest, where the power is, above all). `level="lines"` gives each line exactly the power of the density instead,
-    A_k^2 / 2 = G_z(k / T) / T with G_v such that all lines together have the RMS, and a random phase: the level of each
-    frequency band is exact, its estimate has no scatter, and the RMS is exact before the taper, which takes off what it
-    takes (0.5 % of the RMS with 0.5 s at both ends of 60 s).
+    This is `level="record"`: the scale factor depends on the random amplitudes of all lines, mainly the lowest ones.
+    `level="lines"` gives each line exactly the power of the density, A_k^2 / 2 = G_z(k / T) / T with G_v for the RMS of
+    all lines, and a random phase: the level of each frequency band is exact, its estimate has no scatter, and the RMS
+    is exact before the taper, which reduces it (by 0.5 % with 0.5 s at both ends of 60 s).
 
-    A line keeps its R_k and phase whatever the band edges, so one seed is one road, seen through different bands.
+    R_k and phase of a line do not depend on the band edges: a seed determines the road, filtered by the band.
 
     Args:
-        rms: root mean square of the displacement [m], over the whole record or before the taper as of `level`.
-        seed: seed of the PCG64 generator; only its uniform numbers are used, the part of numpy that changes least.
+        rms: root mean square of the displacement [m], over the record or before the taper, see `level`.
+        seed: seed of the PCG64 generator; only its uniform numbers are used, the most stable part of NumPy.
+        wheel: wheel whose plate moves, such as `car.vehicle.shaker_wheel`.
         duration: length T [s].
         rate: samples per second [Hz].
         lower_band_edge: lowest frequency [Hz].
@@ -60,8 +60,7 @@ def random_road(
         roll_off_order: 0 for a sharp lower edge; n > 0 for the power 1 / (1 + (edge/f)^2n) of a Butterworth edge,
             with lines down to 1 Hz.
         taper_length: length of the half cosine at each end [s]; 0 keeps the record periodic, not at rest.
-        wheel: driven wheel.
-        level: what is exact, the RMS of the "record" or the power of each of its "lines".
+        level: exact quantity: "record" for the RMS of the record, "lines" for the power of each line.
 
     Returns:
         Signal with duration * rate + 1 samples, from 0 to `duration`.
@@ -82,16 +81,16 @@ def random_road(
     lines = lines_in_band(steps=steps, rate=rate, lower=lowest, upper=upper_band_edge)
     if level not in ("record", "lines"):
         raise ConfigurationError(f"level {level!r}; allowed: record, lines")
-    numbers = _gaussian(seed, int(lines[-1]))[lines - 1]
+    amplitudes = _gaussian(seed, int(lines[-1]))[lines - 1]
     if level == "lines":
-        numbers = np.exp(1j * np.angle(numbers))
-    numbers = numbers / lines
+        amplitudes = np.exp(1j * np.angle(amplitudes))
+    amplitudes = amplitudes / lines
     if roll_off_order:
-        below = lower_band_edge * steps / rate / lines
-        numbers = numbers / np.sqrt(1.0 + below ** (2 * roll_off_order))
+        edge_ratio = lower_band_edge * steps / rate / lines
+        amplitudes = amplitudes / np.sqrt(1.0 + edge_ratio ** (2 * roll_off_order))
     if level == "lines":
-        numbers = numbers * (rms / np.sqrt(0.5 * np.sum(np.abs(numbers) ** 2)))
-    period = period_of(numbers, lines, steps)
+        amplitudes = amplitudes * (rms / np.sqrt(0.5 * np.sum(np.abs(amplitudes) ** 2)))
+    period = period_of(amplitudes, lines, steps)
     z = np.append(period, period[0])
     weights = taper(samples=z.size, timestep=1.0 / rate, length=taper_length)
     z = weights * (z - np.sum(weights * z) / np.sum(weights))
@@ -113,7 +112,7 @@ def random_road(
 
 
 def _gaussian(seed: int, count: int) -> NDArray[np.complex128]:
-    """Complex Gaussian numbers R exp(j phi), shape (count,), by Box and Muller: R^2 = -2 ln(1 - u), phi = 2 pi v."""
+    """Return complex Gaussian numbers R exp(j phi), (count,), by Box and Muller: R^2 = -2 ln(1 - u), phi = 2 pi v."""
     uniform = np.random.Generator(np.random.PCG64(seed)).random((count, 2))
-    numbers: NDArray[np.complex128] = np.sqrt(-2.0 * np.log1p(-uniform[:, 0])) * np.exp(2j * np.pi * uniform[:, 1])
-    return numbers
+    values: NDArray[np.complex128] = np.sqrt(-2.0 * np.log1p(-uniform[:, 0])) * np.exp(2j * np.pi * uniform[:, 1])
+    return values

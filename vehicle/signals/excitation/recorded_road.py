@@ -1,16 +1,17 @@
-"""A road that was recorded over time together with the speed of the car, and a drive over it at that speed.
+"""Input from a road recorded over time together with the speed of the car: a drive at the recorded speed.
 
-The record holds the height z(t) of the road under the foremost wheels and the speed v(t). The distance is
+The record contains the height z(t) of the road under the foremost wheels and the speed v(t). The distance is
 
     s(t) = integral of v from the first time to t,
 
-by the trapezoidal rule, exact for a speed that is linear between its samples. A wheel that stands d behind the
-foremost one meets at the time t what the foremost one met at the time tau, where s(tau) = s(t) - d, so
+by the trapezoidal rule, exact for a speed that is linear between its samples. A wheel at the distance d behind the
+foremost wheel reaches at the time t the point that the foremost wheel reached at tau, s(tau) = s(t) - d, so
 
     z_d(t) = w(tau) (z(tau) - z(first)),    0 where s(t) < d.
 
-w is the rise from rest over `RISE_S`, a part of the road as in `iso_road.drive`. tau is found by linear interpolation
-of the inverse of s between samples h apart, with an error below h^2 |dv/dt| / (8 v): 0.4 us at 1 kHz, 3 m/s2 and 1 m/s.
+w is the rise from rest over `RISE_S`, a part of the road as in `iso_road.drive`. tau is computed by linear
+interpolation of the inverse of s between samples h apart, with an error below h^2 |dv/dt| / (8 v): 0.4 us at 1 kHz,
+3 m/s2 and 1 m/s.
 """
 
 from __future__ import annotations
@@ -40,38 +41,38 @@ from vehicle.signals.records.resampled import resampled
 from vehicle.signals.records.table import USABLE, Vector
 
 PREFIX = "channel:"
-"""Begins a speed that is the name of a channel."""
+"""Prefix of a speed that is a channel name."""
 
 FASTEST = 111.0
-"""Largest speed of a record [m/s], 400 km/h; above it its unit is wrong."""
+"""Maximum speed of a record [m/s], 400 km/h; a larger one indicates a wrong unit."""
 
 BACKWARDS = 0.3
-"""Largest speed [m/s] below zero that is noise of a sensor at rest."""
+"""Maximum negative speed that is accepted as sensor noise at rest [m/s]."""
 
 STANDING = 0.1
-"""Speed [m/s] below which the car stands."""
+"""Speed below which the car counts as standing [m/s]."""
 
 NAMES = {
     "left": (*TRACKS["left"], "displacement_fl", "plate_fl_displacement", "height left", "height_left"),
     "right": (*TRACKS["right"], "displacement_fr", "plate_fr_displacement", "height right", "height_right"),
     "height": ("height", "profile", "road", "displacement", "elevation"),
 }
-"""Names of channels, in small letters, that are taken where none is chosen."""
+"""Default channel names, in lower case."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RecordedDrive:
-    """A drive over a recorded road at its recorded speed; all wheels follow, each with its own delay.
+    """Drive over a recorded road at the recorded speed, with a delay for each wheel.
 
     Attributes:
-        road: the record.
-        channel: number, exact name, or pattern of the speed.
-        wheels: name of each wheel, its distance d behind the foremost one [m], its track.
-        choice: channels of the heights (left and right, or height for both tracks), and what is done to them.
-        duration: length [s]; the whole record where None.
-        rate: samples a second [Hz].
+        road: file of the record.
+        channel: number, exact name, or pattern of the speed channel.
+        wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
+        choice: channels of the heights (left and right, or height for both tracks), and preprocessing.
+        duration: length [s]; None for the whole record.
+        rate: sampling rate [Hz].
         driving: speed at which the tyres roll [m/s]; NaN for the mean speed of the record while the car drives, 0 for
-            tyres that stand, None for what the car itself specifies.
+            tyres that do not roll, None for the parameter of the car.
     """
 
     road: Path
@@ -89,35 +90,35 @@ class RecordedDrive:
 
     @property
     def speed(self) -> None:
-        """No constant speed: a film shows the plates without the road."""
+        """None, as the speed is not constant: a film shows the plates without the road."""
         return
 
     def signal(self) -> Signal:
         """Return the plate signals.
 
         Raises:
-            ConfigurationError: no such file, or a duration longer than the record.
-            DataError: bad data, or a speed that is none.
+            ConfigurationError: unknown file, or a duration longer than the record.
+            DataError: bad data, or an implausible speed.
         """
         measurement = read_record(self.road, self.choice.databases)
-        time, heights, highest, notices = self._heights(measurement)
-        v, said = self._driven(measurement, time)
-        notices += said
-        distance = scipy.integrate.cumulative_trapezoid(v, time, initial=0.0)
+        time, tracks, highest, notices = self._heights(measurement)
+        speed, speed_notices = self._driven(measurement, time)
+        notices += speed_notices
+        distance = scipy.integrate.cumulative_trapezoid(speed, time, initial=0.0)
         if distance[-1] < max(behind for _, behind, _ in self.wheels):
             raise DataError(
-                f"{self.road}: {distance[-1]:.4g} m are driven, less than the wheelbase; use a longer record"
+                f"{self.road}: the distance of {distance[-1]:.4g} m is less than the wheelbase; use a longer record"
             )
         grid = uniform_time(samples=self._samples(float(time[-1] - time[0])), timestep=1.0 / self.rate)
         plates = {}
         for wheel, behind, side in self.wheels:
-            late = delayed(time - time[0], distance, grid, behind)
-            spline = scipy.interpolate.CubicSpline(time - time[0], heights[side] - heights[side][0])
-            met = np.isfinite(late)
-            at = np.where(met, late, 0.0)
-            plates[wheel] = np.where(met, spline(at) * half_cosine_at(at, RISE_S), 0.0) + 0.0
+            tau = delayed(time - time[0], distance, grid, behind)
+            spline = scipy.interpolate.CubicSpline(time - time[0], tracks[side] - tracks[side][0])
+            reached = np.isfinite(tau)
+            times = np.where(reached, tau, 0.0)
+            plates[wheel] = np.where(reached, spline(times) * half_cosine_at(times, RISE_S), 0.0) + 0.0
         notices += acceleration_events(plates, 1.0 / self.rate)
-        moving = v[v > STANDING]
+        moving = speed[speed > STANDING]
         if self.driving is not None and math.isnan(self.driving):
             notices.append(
                 f"the tyres roll at the mean speed of the record, {moving.mean():.4g} m/s: their slip at "
@@ -128,14 +129,14 @@ class RecordedDrive:
             displacement=plates,
             notices=tuple(dict.fromkeys(notices)),
             source=f"road of {self.road.name} over time, {distance[-1]:.5g} m at {3.6 * float(moving.min()):.3g} to "
-            f"{3.6 * float(v.max()):.3g} km/h, {RISE_S:g} s rise from rest",
+            f"{3.6 * float(speed.max()):.3g} km/h, {RISE_S:g} s rise from rest",
             sha256=measurement.sha256,
             highest=highest,
         )
 
     @property
     def skip(self) -> float:
-        """Default start of the evaluation [s], see `RoadDrive.skip`: here by the distance at the recorded speed."""
+        """Default start of the evaluation [s], see `RoadDrive.skip`; computed with the recorded speed."""
         measurement = read_record(self.road, self.choice.databases)
         time = self._heights(measurement)[0]
         distance = scipy.integrate.cumulative_trapezoid(self._driven(measurement, time)[0], time, initial=0.0)
@@ -154,99 +155,102 @@ class RecordedDrive:
         return (f"driving.speed={round(float(v[v > STANDING].mean()), 2)!r}",)
 
     def _driven(self, measurement: Measurement, time: Vector) -> tuple[Vector, list[str]]:
-        """Return the speed at the times of the heights [m/s], (n,), and all notices on the speed."""
+        """Read the speed at the times of the heights [m/s], (n,), and notices on the speed channel."""
         speed = choose(measurement, self._choice_of_speed())
         if speed.quantities["speed"] != "velocity":
             raise DataError(
-                f"{self.road}: --speed {PREFIX}{self.channel}: a {speed.quantities['speed']}; needed is a velocity; "
-                "choose another channel, or set --unit speed=km/h or speed=m/s if the file is wrong"
+                f"{self.road}: --speed {PREFIX}{self.channel}: a {speed.quantities['speed']}, must be a velocity; "
+                "choose another channel, or set --unit speed=km/h or speed=m/s if the unit in the file is wrong"
             )
         v, notices = self._speed(speed, time)
         return v, [*notices, *speed.notices]
 
     def _choice_of_speed(self) -> Choice:
-        """Return the choice of the speed: its own unit, the excerpt of the heights."""
-        given = self.choice
-        times = {role: name for role, name in given.channels.items() if role == "time"}
-        units = {role: unit for role, unit in given.units.items() if role in ("speed", "time")}
-        return Choice(channels={**times, "speed": self.channel}, units=units, first=given.first, last=given.last)
+        """Return the selection of the speed channel, with the excerpt of the heights."""
+        choice = self.choice
+        times = {role: name for role, name in choice.channels.items() if role == "time"}
+        units = {role: unit for role, unit in choice.units.items() if role in ("speed", "time")}
+        return Choice(channels={**times, "speed": self.channel}, units=units, first=choice.first, last=choice.last)
 
     def _samples(self, length: float) -> int:
-        """Return the number of samples of a record of a length [s]."""
+        """Return the number of samples of the signal for a record of this length [s]."""
         if self.duration is not None and not 0.0 < self.duration <= length * (1.0 + 1e-9):
             raise ConfigurationError(
-                f"--duration {self.duration:g} s: the record holds {length:.6g} s; set up to that, or leave it out"
+                f"--duration {self.duration:g} s: must be at most the length of the record, {length:.6g} s"
             )
         return int(np.floor((self.duration or length) * self.rate * (1.0 + 1e-12))) + 1
 
     def _heights(self, measurement: Measurement) -> tuple[Vector, dict[str, Vector], float | None, list[str]]:
-        """Return times [s], the heights of both tracks [m], the highest frequency where it is low, and notices."""
+        """Read times [s], heights of both tracks [m], maximum frequency (None if not limiting), and notices."""
         roles = self._roles(measurement)
         choice = replace(self.choice, channels={**self.choice.channels, **roles})
         units = {role: unit for role, unit in choice.units.items() if role != "speed"}
         chosen = choose(measurement, replace(choice, units=units))
         chosen.require_uniform(self.road)
-        values, said = displacement(chosen, choice, str(self.road))
-        notices, time = [*chosen.notices, *said], chosen.time
+        values, notices_of_plates = displacement(chosen, choice, str(self.road))
+        notices, time = [*chosen.notices, *notices_of_plates], chosen.time
         rate = (time.size - 1) / float(time[-1] - time[0])
         if rate < FINE_RATE * (1.0 - UNIFORM_TOLERANCE):
-            values, how = resampled(time, values, FINE_RATE, lambda row: f"{self.road}: sample {row + 1}", True)
+            values, notice = resampled(time, values, FINE_RATE, lambda row: f"{self.road}: sample {row + 1}", True)
             time = time[0] + np.arange(next(iter(values.values())).size) / FINE_RATE
-            notices.append(how)
-        slow = chosen.highest < USABLE * SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE)
-        if slow:
-            notices.append(f"the heights hold up to {chosen.highest:.4g} Hz; FRFs and comfort end there")
+            notices.append(notice)
+        limited = chosen.highest < USABLE * SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE)
+        if limited:
+            notices.append(f"the heights are valid up to {chosen.highest:.4g} Hz, the limit of FRFs and comfort")
         if len(values) == 1:
-            (alone,) = values
-            notices.append(f"{self.road.name}: one track, {roles[alone]!r}: both sides of the car drive on it")
-            values = dict.fromkeys(("left", "right"), values[alone])
-        return time, values, chosen.highest if slow else None, notices
+            (role,) = values
+            notices.append(f"{self.road.name}: one track, {roles[role]!r}: both sides of the car drive on it")
+            values = dict.fromkeys(("left", "right"), values[role])
+        return time, values, chosen.highest if limited else None, notices
 
     def _roles(self, measurement: Measurement) -> dict[str, str]:
-        """Return the channels of the heights, by the choice or by their names."""
-        asked = {role: name for role, name in self.choice.channels.items() if role != "time"}
-        unknown = next((role for role in asked if role not in NAMES), None)
+        """Return the channels of the heights, from the selection or by default names."""
+        roles = {role: name for role, name in self.choice.channels.items() if role != "time"}
+        unknown = next((role for role in roles if role not in NAMES), None)
         if unknown is not None:
-            raise ConfigurationError(f"--channel {unknown}=...: roles of a recorded road are left and right, or height")
-        if not asked:
-            held = {one.name.strip().rstrip(".").lower(): one.name for one in measurement.channels}
+            raise ConfigurationError(f"--channel {unknown}=...: must be left, right, or height for a recorded road")
+        if not roles:
+            names_in_file = {channel.name.strip().rstrip(".").lower(): channel.name for channel in measurement.channels}
             for role, names in NAMES.items():
-                hit = next((held[name] for name in names if name in held), None)
-                if hit is not None and not (role == "height" and asked):
-                    asked[role] = hit
-        if not asked or ("height" in asked and len(asked) > 1):
-            listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
+                match = next((names_in_file[name] for name in names if name in names_in_file), None)
+                if match is not None and not (role == "height" and roles):
+                    roles[role] = match
+        if not roles or ("height" in roles and len(roles) > 1):
+            listed = ", ".join(
+                f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
+            )
             raise DataError(
                 f"{self.road}: which channels are the heights? set --channel left=NAME --channel right=NAME, or "
                 f"--channel height=NAME for both tracks; the file has {listed}"
             )
-        return asked
+        return roles
 
     def _speed(self, speed: Chosen, time: Vector) -> tuple[Vector, list[str]]:
-        """Return the speed at the times of the heights [m/s], (n,), and notices."""
-        own, values = speed.time, speed.values["speed"]
-        slack = 1.5 * float(np.median(np.diff(own)))
-        if own[0] > time[0] + slack or own[-1] < time[-1] - slack:
+        """Interpolate the speed to the times of the heights [m/s], (n,); return it with notices."""
+        speed_time, values = speed.time, speed.values["speed"]
+        slack = 1.5 * float(np.median(np.diff(speed_time)))
+        if speed_time[0] > time[0] + slack or speed_time[-1] < time[-1] - slack:
             raise DataError(
-                f"{self.road}: the speed is known from {own[0]:.6g} to {own[-1]:.6g} s, the heights from {time[0]:.6g} "
-                f"to {time[-1]:.6g} s; set --from {max(own[0], time[0]):.6g} --to {min(own[-1], time[-1]):.6g}"
+                f"{self.road}: the speed is known from {speed_time[0]:.6g} to {speed_time[-1]:.6g} s, the heights from "
+                f"{time[0]:.6g} to {time[-1]:.6g} s; set --from {max(speed_time[0], time[0]):.6g} --to "
+                f"{min(speed_time[-1], time[-1]):.6g}"
             )
         low, high = float(values.min()), float(values.max())
         if low < -BACKWARDS or high > FASTEST or high <= STANDING:
             raise DataError(
-                f"{self.road}: the speed {self.channel!r} goes from {low:.4g} to {high:.4g} m/s; allowed are "
-                f"{-BACKWARDS:g} to {FASTEST:g} m/s and some motion; is its unit right? set --unit speed=km/h "
+                f"{self.road}: the speed {self.channel!r} is {low:.4g} to {high:.4g} m/s, must be "
+                f"{-BACKWARDS:g} to {FASTEST:g} m/s, with some motion; is its unit right? set --unit speed=km/h "
                 "or speed=m/s"
             )
-        found = np.maximum(np.interp(time, own, values), 0.0)
-        standing = float(np.mean(found < STANDING))
+        resampled_speed = np.maximum(np.interp(time, speed_time, values), 0.0)
+        standing = float(np.mean(resampled_speed < STANDING))
         notices = []
         if standing > 0.0:
             notices.append(f"the car stands for {100.0 * standing:.3g} % of the record (below {STANDING:g} m/s)")
-        return found, notices
+        return resampled_speed, notices
 
     def identity(self) -> dict[str, object]:
-        """Return what distinguishes the signal from others: the numbers, and the content of the record."""
+        """Return all data that determine the signal: parameters, and the digest of the record."""
         return {
             "road": hashlib.sha256(self.road.read_bytes()).hexdigest(),
             "channel": self.channel,
@@ -257,7 +261,7 @@ class RecordedDrive:
         }
 
     def summary(self, signal: Signal) -> Mapping[str, object]:
-        """Return the road for the summary of a run.
+        """Return the description of the road for the summary of a run.
 
         Args:
             signal: signal of the drive.
@@ -286,8 +290,8 @@ def delayed(time: Vector, distance: Vector, grid: Vector, behind: float) -> Vect
     """
     if behind == 0.0:
         return grid
-    # A car at rest has many times for one place: the last one, from which it drives on.
-    kept = np.append(np.diff(distance) > 0.0, True)
-    place = np.interp(grid, time, distance) - behind
-    late = np.interp(place, distance[kept], time[kept])
-    return np.where(place < distance[0], np.nan, late)
+    # A car at rest has many times for the same position: use the last one.
+    last_times = np.append(np.diff(distance) > 0.0, True)
+    positions = np.interp(grid, time, distance) - behind
+    tau = np.interp(positions, distance[last_times], time[last_times])
+    return np.where(positions < distance[0], np.nan, tau)

@@ -1,4 +1,4 @@
-"""The beginning at rest: the car stands trimmed on still plates, so a signal starts with no offset and no speed."""
+"""Make signals begin at rest, without offset and velocity, as the car starts in equilibrium on plates at rest."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ RAMP_S = 0.5
 """Length of the half-cosine ramp [s]: half a period of 1 Hz, the lower end of the range of interest."""
 
 OFFSET_SHARE = 0.01
-"""A first value above this share of the RMS is a step of the plate at t = 0."""
+"""Maximum first value over the RMS [-]; a larger one is a step of the plate at t = 0."""
 
 VELOCITY_SHARE = 0.1
-"""A first difference above this share of the RMS of all first differences is a jump of the plate velocity at t = 0."""
+"""Maximum first difference over the RMS of all differences [-]; a larger one is a velocity jump at t = 0."""
 
 
 def half_cosine(*, samples: int, timestep: float, length: float) -> NDArray[np.float64]:
-    """Weights that rise from 0 to 1 over `length` seconds with zero slope at both ends, then stay 1.
+    """Return weights that rise from 0 to 1 over `length` seconds with zero slope at both ends, then 1.
 
     w(t) = (1 - cos(pi t / length)) / 2
 
     Args:
         samples: number of weights n.
-        timestep: distance of the samples [s].
+        timestep: sampling interval [s].
         length: duration of the rise [s]; 0 gives ones.
 
     Returns:
@@ -38,7 +38,7 @@ def half_cosine(*, samples: int, timestep: float, length: float) -> NDArray[np.f
 
 
 def taper(*, samples: int, timestep: float, length: float) -> NDArray[np.float64]:
-    """Half-cosine rise at the beginning and the same fall at the end: weights [-], shape (n,)."""
+    """Return weights with a half-cosine rise at the beginning and fall at the end [-], shape (n,)."""
     rise = half_cosine(samples=samples, timestep=timestep, length=length)
     return rise * rise[::-1]
 
@@ -46,25 +46,25 @@ def taper(*, samples: int, timestep: float, length: float) -> NDArray[np.float64
 def start_from_rest(
     displacement: Mapping[str, NDArray[np.float64]], *, timestep: float
 ) -> tuple[dict[str, NDArray[np.float64]], tuple[str, ...]]:
-    """Apply the half-cosine ramp to all wheels if one of them does not begin at rest; nothing is ever subtracted.
+    """Apply the half-cosine ramp to all wheels if at least one does not begin at rest; subtract nothing.
 
     Args:
         displacement: wheel -> plate displacement [m], shape (n,).
-        timestep: distance of the samples [s].
+        timestep: sampling interval [s].
 
     Returns:
-        The displacements, and one notice for each cause with the length of the ramp (none: untouched).
+        Displacements, and a notice for each cause with the length of the ramp; no notice if unchanged.
     """
     causes = [cause for wheel, z in displacement.items() for cause in _causes(wheel, z, timestep)]
-    kept = {wheel: np.array(z) for wheel, z in displacement.items()}
+    plates = {wheel: np.array(z) for wheel, z in displacement.items()}
     if not causes:
-        return kept, ()
-    samples = next(iter(kept.values())).size
+        return plates, ()
+    samples = next(iter(plates.values())).size
     length = min(RAMP_S, 0.1 * (samples - 1) * timestep)
     weights = half_cosine(samples=samples, timestep=timestep, length=length)
     done = f"half-cosine ramp applied to all plates over the first {length:.3f} s; nothing was subtracted"
-    # Adding 0 turns the -0 of a negative first value into 0.
-    return {wheel: z * weights + 0.0 for wheel, z in kept.items()}, tuple(f"{cause}; {done}" for cause in causes)
+    # Adding 0.0 avoids -0.0 for a negative first value.
+    return {wheel: z * weights + 0.0 for wheel, z in plates.items()}, tuple(f"{cause}; {done}" for cause in causes)
 
 
 def _causes(wheel: str, z: NDArray[np.float64], timestep: float) -> list[str]:

@@ -1,4 +1,4 @@
-"""A car that drives over a road, as an input: class of ISO 8608 or measured profile, speed, where the wheels are."""
+"""Input of a car that drives over a road at constant speed: ISO 8608 class or measured profile."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ from vehicle.signals.excitation.plausibility import acceleration_events
 from vehicle.signals.excitation.signal import Signal
 
 FASTEST = 400.0
-"""Largest speed [km/h]."""
+"""Maximum speed [km/h]."""
 
 CONTACT_PATCH = 0.10
-"""Length of a contact patch [m], assumed: of a car tyre at its load; the tyre averages the road over it."""
+"""Length of the contact patch of a car tyre under load [m], assumed; the tyre averages the road over this length."""
 
 USUAL_DURATION = 60.0
-"""Length of a drive over a class [s] where none is asked for."""
-
+"""Default length of a drive over a road class [s]."""
 
 SKIP_S = 2.0
-"""Minimum default of --skip on a road [s]: the rise from rest and 1 s more, in which a motion of 1 Hz with a damping
-ratio of 0.2 decays to 28 %, its power to 8 %."""
+"""Minimum default of --skip on a road [s]: the rise from rest and 1 s, in which a motion of 1 Hz with a damping ratio
+of 0.2 decays to 28 %, its power to 8 %."""
 
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
@@ -33,23 +32,23 @@ AFTER_RISE_S = 0.5
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadDrive:
-    """A drive at constant speed; each wheel meets the same road d / V after the foremost one, in its track.
+    """Drive at constant speed; each wheel reaches the road d / V after the foremost wheel, in its track.
 
     Attributes:
-        road: class of ISO 8608 as "C", or the file of a measured profile.
-        speed: [km/h].
-        wheels: name of each wheel, its distance d behind the foremost one [m], its track.
+        road: class of ISO 8608, such as "C", or the file of a measured profile.
+        speed: speed V [km/h].
+        wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
-        duration: length [s]; 60 for a class, the whole of a profile, where None.
-        rate: samples a second [Hz].
-        seed: of a class.
-        coherence: of the tracks of a class; None for the isotropic plane.
+        duration: length [s]; None for 60 s of a class or a whole profile.
+        rate: sampling rate [Hz].
+        seed: seed of a class.
+        coherence: coherence of the tracks of a class; None for an isotropic surface.
         tagged: the name contains the seed, for several seeds of one road.
         patch: length of the contact patch [m] over which a tyre averages the road; 0 for a point.
-        driving: speed [m/s] at which the tyres roll, 0 where they stand; None leaves that to the car.
+        driving: speed of rolling tyres [m/s], 0 for tyres that do not roll; None for the parameter of the car.
 
     Raises:
-        ConfigurationError: a value out of range, or one that a measured profile does not have.
+        ConfigurationError: a value out of range, or a coherence for a measured profile.
     """
 
     road: str | Path
@@ -66,21 +65,23 @@ class RoadDrive:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
-            raise ConfigurationError(f"--speed {self.speed:g} km/h: allowed above 0 to {FASTEST:g}")
+            raise ConfigurationError(f"--speed {self.speed:g} km/h: must be above 0 and at most {FASTEST:g}")
         if isinstance(self.road, Path):
             if self.coherence is not None:
-                raise ConfigurationError("--coherence: belongs to a class; a measured profile is taken as it is")
+                raise ConfigurationError(
+                    "--coherence: valid for a road class only, not for a measured profile; omit it"
+                )
             if not 0.0 <= self.patch < 1.0:
                 raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
         elif self.road not in CLASSES:
             raise ConfigurationError(
-                f"road class {self.road!r}: allowed are {', '.join(CLASSES)}, from good to poor; or give the file of a "
+                f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, or the file of a "
                 "measured profile"
             )
 
     @property
     def name(self) -> str:
-        """Of its results: "road_C_80", with several seeds "road_C_80_seed_2"."""
+        """Name of the results: "road_C_80", with several seeds "road_C_80_seed_2"."""
         tag = f"_seed_{self.seed}" if self.tagged else ""
         return f"road_{self.road.stem if isinstance(self.road, Path) else self.road}_{self.speed:g}{tag}"
 
@@ -92,14 +93,14 @@ class RoadDrive:
 
     @property
     def overrides(self) -> tuple[str, ...]:
-        """What the drive asks of its car: whether the tyres roll, as texts of `Car.load`."""
+        """Parameters that the drive sets on its car, as texts of `Car.load`: the speed of rolling tyres."""
         return () if self.driving is None else (f"driving.speed={self.driving!r}",)
 
     def signal(self) -> Signal:
-        """The plate signals.
+        """Generate the plate signals.
 
         Raises:
-            ConfigurationError, DataError: as of `IsoRoad`, `read_road`, `drive`.
+            ConfigurationError, DataError: see `IsoRoad`, `read_road`, `drive`.
         """
         speed, duration = self.speed / 3.6, self.duration
         road: IsoRoad | MeasuredRoad
@@ -114,26 +115,26 @@ class RoadDrive:
                 coherence=self.coherence,
                 patch=self.patch,
             )
-        places = {name: (behind, side) for name, behind, side in self.wheels}
+        wheels = {name: (behind, side) for name, behind, side in self.wheels}
         duration = USUAL_DURATION if duration is None else duration
-        signal = drive(road, speed=speed, wheels=places, duration=duration, rate=self.rate)
+        signal = drive(road, speed=speed, wheels=wheels, duration=duration, rate=self.rate)
         if isinstance(road, IsoRoad):
             return signal
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
 
     def identity(self) -> dict[str, object]:
-        """What tells the signal from others: all numbers, and the content of a measured profile."""
-        found = asdict(self) | {"road": str(self.road)}
-        del found["tagged"]
+        """Return all data that determine the signal: parameters, and the digest of a measured profile."""
+        identity = asdict(self) | {"road": str(self.road)}
+        del identity["tagged"]
         if isinstance(self.road, Path):
-            found["road"] = hashlib.sha256(self.road.read_bytes()).hexdigest()
-        return found
+            identity["road"] = hashlib.sha256(self.road.read_bytes()).hexdigest()
+        return identity
 
     def summary(self, signal: Signal) -> dict[str, object]:
-        """The road for the summary of a run: kind, speed, seed, words.
+        """Return the description of the road for the summary of a run.
 
         Args:
-            signal: its signal.
+            signal: signal of the drive.
         """
         measured = isinstance(self.road, Path)
         return {

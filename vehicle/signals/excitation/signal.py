@@ -1,4 +1,4 @@
-"""The displacement of the plates over time: what every source of excitation delivers and every simulation reads."""
+"""Plate displacements over time: the input of every simulation."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from vehicle.errors import DataError
 from vehicle.names import CORNERS, in_order, is_wheel
 
 STEP_TOLERANCE = 1e-6
-"""Largest deviation of one time step from the mean step, as a share of it: rounding, since readers rebuild the grid."""
+"""Maximum deviation of a time step from the mean step, relative [-]: rounding; readers rebuild the grid."""
 
 MINIMUM_SAMPLES = 32
-"""Fewer samples than this are no signal: the filter of the plausibility check needs its padding on both sides."""
+"""Minimum number of samples of a signal: padding of the filter of the plausibility check."""
 
 MARGIN = 64
-"""Samples on each side of the times for which a spline is made: what a sample does to it shrinks by 2 - sqrt(3) = 0.27
-from each to the next, so to 1e-36 over them."""
+"""Number of samples on each side of the times of a spline: the influence of a sample decreases by 2 - sqrt(3) = 0.27
+per sample, to 1e-36 over this margin."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PlateMotion:
-    """Motion of plates at chosen times; a wheel without excitation stands on a plate at rest (zeros)."""
+    """Motion of plates at given times; zeros for a wheel without excitation."""
 
     time: NDArray[np.float64]
     """Simulation times [s], shape (m,)."""
@@ -45,11 +45,11 @@ class Signal:
 
     Args:
         time: sample times [s], shape (n,), first value 0, uniform.
-        displacement: wheel, as 'fr' -> plate displacement [m], shape (n,), positive upwards.
-        notices: one sentence for everything that was done to the data or noticed about them.
-        source: name of the file or text of the generator.
+        displacement: wheel, such as 'fr' -> plate displacement [m], shape (n,), positive upwards.
+        notices: messages on changes and suspicious features of the data.
+        source: name of the file or description of the generator.
         sha256: hexadecimal digest of the file, None for a generated signal.
-        highest: highest frequency that the signal holds [Hz] where that is below 50 Hz; else None.
+        highest: maximum usable frequency [Hz] if below 50 Hz; else None.
 
     Raises:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
@@ -69,10 +69,10 @@ class Signal:
         object.__setattr__(self, "displacement", displacement)
         self._check_time()
         if not displacement:
-            raise DataError(f"{self.source}: the signal drives no wheel; give a displacement for one of {_wheels()}")
+            raise DataError(f"{self.source}: the signal drives no wheel; set a displacement for one of {_wheels()}")
         for wheel, values in displacement.items():
             if not is_wheel(wheel):
-                raise DataError(f"{self.source}: unknown wheel {wheel!r}; allowed are {_wheels()}")
+                raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
             if values.shape != time.shape:
                 raise DataError(
                     f"{self.source}: displacement of {wheel} has shape {values.shape}, time has {time.shape}; "
@@ -107,7 +107,7 @@ class Signal:
 
     @property
     def timestep(self) -> float:
-        """Distance of two samples [s]."""
+        """Sampling interval [s]."""
         return float(self.time[-1]) / (self.time.size - 1)
 
     @property
@@ -121,76 +121,76 @@ class Signal:
         return self.source
 
     def signal(self) -> Signal:
-        """The signal itself, as the input of a case."""
+        """Return this signal, as the input of a case."""
         return self
 
     def identity(self) -> dict[str, object]:
-        """Digest of all that tells it from other signals."""
+        """Return the digest of times, wheels and displacements."""
         content = hashlib.sha256(self.time.tobytes())
         for wheel, values in self.displacement.items():
             content.update(wheel.encode() + values.tobytes())
         return {"sha256": content.hexdigest()}
 
     def band(self, band: tuple[float, float]) -> tuple[float, float]:
-        """Return the part of a band [Hz] that the signal holds."""
+        """Limit a band [Hz] to the usable frequencies of the signal."""
         return band if self.highest is None else (band[0], min(band[1], self.highest))
 
     def rms(self, wheel: str) -> float:
-        """Root mean square of the displacement about its mean [m]; 0 for a plate at rest."""
+        """Return the root mean square of the displacement about its mean [m]; 0 for a plate at rest."""
         if wheel not in self.displacement:
             return 0.0
         return float(np.std(self.displacement[wheel]))
 
     def spline(self, wheel: str, first: float, last: float) -> scipy.interpolate.CubicSpline:
-        """That of `plate_motion` for the times from first to last [s], through the samples around them."""
+        """Return the cubic spline of `plate_motion` for the times from first to last [s]."""
         begin, end = (int(time / self.timestep) for time in (first, last))
         near = slice(max(begin - MARGIN, 0), end + 2 + MARGIN)
         return scipy.interpolate.CubicSpline(self.time[near], self.displacement[wheel][near], bc_type="not-a-knot")
 
     def plate_motion(self, times: ArrayLike, wheels: Iterable[str] | None = None) -> PlateMotion:
-        """Displacement, velocity and acceleration of the plates at arbitrary times within the record.
+        """Return displacement, velocity and acceleration of the plates at times within the record.
 
         A cubic spline through the samples: z is twice continuously differentiable, and velocity and acceleration are
-        its exact derivatives, so that the three agree at every step of the simulation. Both ends are not-a-knot (the
-        first two and the last two pieces are one cubic). A natural end would force zero acceleration and a clamped
-        one a given velocity on data that have neither; not-a-knot claims nothing and keeps the fourth order up to the
-        ends. At 1 kHz a sine of 50 Hz keeps its velocity within 0.03 % and its acceleration within 1 %.
+        its exact derivatives, consistent at every step of the simulation. Both ends are not-a-knot (the first two and
+        the last two segments are one cubic). A natural end would enforce zero acceleration, a clamped end a given
+        velocity; not-a-knot needs no assumption and is of fourth order up to the ends. For a sine of 50 Hz sampled at
+        1 kHz, the error of the velocity is 0.03 % and that of the acceleration 1 %.
 
         Args:
-            times: simulation times [s], shape (m,), within 0 and `duration`.
-            wheels: whose plates; by default those that the signal drives.
+            times: simulation times [s], shape (m,), from 0 to `duration`.
+            wheels: wheels of the plates; by default the wheels driven by the signal.
 
         Returns:
-            The motion of the plates; zeros for a wheel that the signal does not drive.
+            Motion of the plates; zeros for a wheel that the signal does not drive.
 
         Raises:
-            DataError: a time lies outside the record (no extrapolation of a spline).
+            DataError: a time outside the record (splines are not extrapolated).
 
         Source: de Boor, A Practical Guide to Splines, chapter IV.
         """
-        at = np.atleast_1d(np.asarray(times, dtype=np.float64))
-        rounding = STEP_TOLERANCE * self.timestep  # a sum of many steps ends a few ulp beyond the record
-        inside = (at >= -rounding) & (at <= self.duration + rounding)
+        instants = np.atleast_1d(np.asarray(times, dtype=np.float64))
+        rounding = STEP_TOLERANCE * self.timestep  # a sum of many steps may exceed the record by rounding
+        inside = (instants >= -rounding) & (instants <= self.duration + rounding)
         if not inside.all():
             raise DataError(
-                f"{self.source}: plate motion asked for t = {at[~inside][0]:.9g} s; the record covers 0 to "
-                f"{self.duration:.9g} s; shorten the simulation or give a longer signal"
+                f"{self.source}: plate motion requested at t = {instants[~inside][0]:.9g} s, must be 0 to "
+                f"{self.duration:.9g} s; shorten the simulation or use a longer signal"
             )
-        at = np.clip(at, 0.0, self.duration)
+        instants = np.clip(instants, 0.0, self.duration)
         motion: list[dict[str, NDArray[np.float64]]] = [{}, {}, {}]
         for wheel in self.wheels if wheels is None else wheels:
-            driven = wheel in self.displacement and at.size
-            spline = self.spline(wheel, float(at.min()), float(at.max())) if driven else None
+            driven = wheel in self.displacement and instants.size
+            spline = self.spline(wheel, float(instants.min()), float(instants.max())) if driven else None
             for order, values in enumerate(motion):
-                values[wheel] = np.zeros_like(at) if spline is None else spline(at, order)
-        return PlateMotion(time=at, displacement=motion[0], velocity=motion[1], acceleration=motion[2])
+                values[wheel] = np.zeros_like(instants) if spline is None else spline(instants, order)
+        return PlateMotion(time=instants, displacement=motion[0], velocity=motion[1], acceleration=motion[2])
 
 
 @lru_cache(maxsize=2)
 def uniform_time(*, samples: int, timestep: float) -> NDArray[np.float64]:
-    """Sample times i * timestep, i = 0 ... samples - 1 [s]; one product each, so that rounding does not add up.
+    """Return sample times i * timestep, i = 0 ... samples - 1 [s], as products, without accumulated rounding.
 
-    A signal and the run on it share them, so they cannot be written to.
+    The array is read-only, as it is shared by a signal and its runs.
     """
     time: NDArray[np.float64] = np.arange(samples, dtype=np.float64)
     time *= timestep

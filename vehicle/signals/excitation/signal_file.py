@@ -1,4 +1,4 @@
-"""Plate signals as files: the whole path from a file to a checked `Signal`, and back."""
+"""Read plate signals from files, with all checks, and write them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.names import CORNERS, in_order, is_wheel
-from vehicle.signals.excitation.chosen_plates import chosen_plates
+from vehicle.signals.excitation.chosen_plates import WHEEL_REMEDY, chosen_plates
 from vehicle.signals.excitation.plausibility import aliasing_notices, check_level, clipping, drifts, pauses
 from vehicle.signals.excitation.rest import start_from_rest
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
@@ -42,48 +42,49 @@ _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
 def read_signal(
     path: str | Path,
     *,
-    wheel: str = "fr",
+    wheel: str | None = None,
     interpolate: bool = False,
     remove_mean: bool = False,
     accept_implausible: bool = False,
     choice: Choice | None = None,
 ) -> Signal:
-    """Read plate displacements from a file; everything unusual is refused or recorded in `notices`.
+    """Read plate displacements from a file; reject bad data, and report unusual data in `notices`.
 
     Columns `time [s],displacement [m]` (or `[mm]`; or `displacement_fr [m]`, `displacement_fl [m]`), one row per sample
-    in uniform time; or the `time.csv` or `time.npz` of a run, whose plates are taken and all else left. Times are
-    shifted to begin at 0. A record that does not begin at rest gets a half-cosine ramp.
+    at uniform times; or the plates in the `time.csv` or `time.npz` of a run. Times are shifted to begin at 0. A record
+    that does not begin at rest gets a half-cosine ramp.
 
     Args:
-        path: the file, of a format of `vehicle.signals.records`.
-        wheel: wheel that a plain `displacement` column drives, as 'fr'.
+        path: measurement file of any format of `vehicle.signals.records`.
+        wheel: wheel that a plain `displacement` column drives, such as `car.vehicle.shaker_wheel`; None if the columns
+            name their wheels.
         interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.
         remove_mean: subtract the mean of each column.
-        accept_implausible: keep going where level or acceleration is beyond a shaker's (roads), with a notice.
-        choice: channels of a measurement file, and what is done to them; None, or a rate to resample to alone, for the
-            columns above.
+        accept_implausible: accept levels and accelerations above those of a shaker (roads), with a notice.
+        choice: channels of a measurement file, and preprocessing; None, or a resampling rate only, for the columns
+            above.
 
     Returns:
-        The signal, with a notice for everything that was done to the data.
+        Signal with a notice on each change of the data.
 
     Raises:
-        ConfigurationError: no such file, unknown wheel, resampling rate out of range.
-        DataError: bad data; the message names file, line, column, the value found, what is allowed and the remedy.
+        ConfigurationError: unknown file, unknown wheel, or a resampling rate out of range.
+        DataError: bad data; the message names file, line, column, value, limit and remedy.
     """
     path = Path(path)
-    if not is_wheel(wheel):
-        raise ConfigurationError(f"wheel {wheel!r} is unknown; allowed: {', '.join(CORNERS.values())}")
+    if wheel is not None and not is_wheel(wheel):
+        raise ConfigurationError(f"wheel {wheel!r} is unknown; must be one of {', '.join(CORNERS.values())}")
     resample = None if choice is None else choice.resample
     if resample is not None and not LOWEST_RATE <= resample < np.inf:
-        raise ConfigurationError(f"--resample {resample:g} Hz: allowed from {LOWEST_RATE:g} Hz on (samples a second)")
+        raise ConfigurationError(f"--resample {resample:g} Hz: must be at least {LOWEST_RATE:g} Hz")
     wanted = Wanted(
         needed=NEEDED,
         key=lambda header: plate_columns(header, wheel)["time"][0],
         missing="fill" if interpolate else "refuse",
-        remedy="repair the cell, or ask for interpolation (--interpolate)",
+        remedy="repair the cell, or set --interpolate",
     )
-    plain = (choice is None or choice == Choice(resample=resample)) and is_table(path)
-    table, band_rate = (read_table(path, wanted), math.inf) if plain else chosen_plates(path, choice, wheel)
+    is_plain_table = (choice is None or choice == Choice(resample=resample)) and is_table(path)
+    table, band_rate = (read_table(path, wanted), math.inf) if is_plain_table else chosen_plates(path, choice, wheel)
     plates = plate_columns(table.header, wheel)
     del plates["time"]
     units = {driven: unit for driven, (_, unit) in plates.items()}
@@ -91,33 +92,33 @@ def read_signal(
     notices = [*table.notices, *(f"column {cell!r} converted from mm to m" for cell in cells)]
     time = table.values[:, table.key]
     if time.size < MINIMUM_SAMPLES:
-        raise DataError(
-            f"{path}: {time.size} rows; allowed from {MINIMUM_SAMPLES} rows; this is no record of a vibration"
-        )
+        raise DataError(f"{path}: {time.size} rows, must be at least {MINIMUM_SAMPLES} rows; use a longer record")
     check_increasing(table, time)
     columns = {}
     for driven, (column, unit) in plates.items():
         values, filled = fill_missing(table, time, column)
         if table.header.cells[column].startswith("plate_") and not np.ptp(values) > 0.0:
-            continue  # a run records the plate that it did not drive, too
-        plain_said = [*pauses(driven, time, values), *clipping(driven, values)] if plain else []  # else `choose` has
-        notices.extend([*filled, *plain_said])
+            continue  # a run also records the plates that it did not drive
+        plain_notices = (
+            [*pauses(driven, time, values), *clipping(driven, values)] if is_plain_table else []
+        )  # otherwise checked by `choose`
+        notices.extend([*filled, *plain_notices])
         columns[driven] = values * _LENGTH_UNITS[unit]
-    timestep, columns, recorded, brought = _uniform_columns(table, time, columns, resample)
-    notices.extend(brought)
+    timestep, columns, recorded, grid_notices = _uniform_columns(table, time, columns, resample)
+    notices.extend(grid_notices)
     band_rate = min(band_rate, recorded)
     notices.extend(check_rate(path, band_rate))
     if time[0] != 0.0:
         notices.append(f"time begins at {time[0]:.9g} s in the file and was shifted to 0")
     if remove_mean:
-        for driven, z in columns.items():
-            notices.append(f"mean {np.mean(z):.6g} m of plate {driven} removed on request")
-            columns[driven] = z - np.mean(z)
-    if not any(np.ptp(z) > 0.0 for z in columns.values()):
-        raise DataError(f"{path}: no plate moves: every column holds one value only; give a record with motion")
+        for driven, displacement in columns.items():
+            notices.append(f"mean {np.mean(displacement):.6g} m of plate {driven} removed on request")
+            columns[driven] = displacement - np.mean(displacement)
+    if not any(np.ptp(displacement) > 0.0 for displacement in columns.values()):
+        raise DataError(f"{path}: no plate moves: all columns are constant; use a record with motion")
     notices.extend(drifts(columns))
     try:
-        notices.extend(check_level(path, columns, timestep, units if plain else dict.fromkeys(units, "")))
+        notices.extend(check_level(path, columns, timestep, units if is_plain_table else dict.fromkeys(units, "")))
     except DataError as error:
         if not accept_implausible:
             raise
@@ -134,73 +135,80 @@ def read_signal(
     )
 
 
-def plate_columns(header: Header, wheel: str) -> dict[str, tuple[int, str]]:
-    """Find the time and the plates in the header of a file; nothing is mapped by position.
+def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str]]:
+    """Find the columns of time and plates in a header by name.
 
     Args:
-        header: of the file.
-        wheel: the one that a plain `displacement` column drives.
+        header: column headers of the file.
+        wheel: wheel that a plain `displacement` column drives; None if the columns name their wheels.
 
     Returns:
-        "time" and the wheels, in the order of files, to the index of their column and its unit.
+        "time" and the wheels, in the order of written files, to index and unit of their columns.
 
     Raises:
-        DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity.
+        DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity, a
+            plain `displacement` column without `wheel`.
     """
     if any(_is_number(cell) for cell in header.cells):
         raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
-    ends = [_WHEEL_COLUMN.fullmatch(name.lower()) for _, _, name, _ in named]
-    wheels = in_order({one for end in ends if end and is_wheel(one := end[1] or end[2])})
-    keys = {"time": "time", "displacement": wheel, **{f"displacement_{one}": one for one in wheels}}
-    channels = {"time": "time", **{f"plate_{one}_displacement": one for one in wheels}}
+    matches = [_WHEEL_COLUMN.fullmatch(name.lower()) for _, _, name, _ in named]
+    wheels = in_order({name_of_wheel for match in matches if match and is_wheel(name_of_wheel := match[1] or match[2])})
+    keys = {
+        "time": "time",
+        "displacement": wheel or "",
+        **{f"displacement_{name_of_wheel}": name_of_wheel for name_of_wheel in wheels},
+    }
+    channels = {"time": "time", **{f"plate_{name_of_wheel}_displacement": name_of_wheel for name_of_wheel in wheels}}
     if any(name.startswith("plate_") and name in channels for _, _, name, _ in named):
-        keys, named = channels, [one for one in named if one[2] in channels]
+        keys, named = channels, [name_of_wheel for name_of_wheel in named if name_of_wheel[2] in channels]
     columns: dict[str, tuple[int, str]] = {}
     unknown = []
     for index, cell, name, unit in named:
-        place = f"{header.where}:{index + 1}: column {cell!r}"
+        where = f"{header.where}:{index + 1}: column {cell!r}"
         if _OTHER_UNIT.fullmatch(unit or "") or _OTHER_QUANTITY.search(name):
             raise DataError(
-                f"{place} is an acceleration or a velocity; the plate needs a displacement. Drift makes "
-                "integration depend on a high-pass filter that only you can choose: name the column and the corner, as "
-                f"--channel {wheel}={name!r} --highpass 0.5; "
-                f"or give {NEEDED}"
+                f"{where} is an acceleration or a velocity; the plate needs a displacement. Because of "
+                "drift, integration needs a high-pass filter chosen by you: set column and corner frequency, as "
+                f"--channel {wheel or 'fl'}={name!r} --highpass 0.5; "
+                f"or use {NEEDED}"
             )
         key = keys.get(name.lower())
+        if key == "":
+            raise DataError(f"{where} names no wheel; {WHEEL_REMEDY}")
         if key is None:
             unknown.append(repr(cell))
         elif key in columns:
             first = columns[key][0]
             raise DataError(
-                f"{place} gives the same quantity as column {first + 1} ({header.cells[first]!r}); each may appear "
+                f"{where} gives the same quantity as column {first + 1} ({header.cells[first]!r}); each may appear "
                 f"once; found {header.found}"
             )
         else:
-            columns[key] = index, _checked_unit(place, key, unit)
+            columns[key] = index, _checked_unit(where, key, unit)
     if unknown:
         raise DataError(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
-            "the others, or say which one drives a plate: --channel fr=NAME"
+            f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME"
         )
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"
         raise DataError(f"{header.where}: no {missing} column; found {header.found}; needed are {NEEDED}")
-    return {key: columns[key] for key in ("time", *in_order({wheel, *wheels})) if key in columns}
+    return {key: columns[key] for key in ("time", *in_order({wheel or "fl", *wheels})) if key in columns}
 
 
-def _checked_unit(place: str, key: str, unit: str | None) -> str:
-    allowed, shown = (("s",), "[s]") if key == "time" else (tuple(_LENGTH_UNITS), "[m] or [mm]")
+def _checked_unit(where: str, key: str, unit: str | None) -> str:
+    allowed, expected = (("s",), "[s]") if key == "time" else (tuple(_LENGTH_UNITS), "[m] or [mm]")
     if not unit:
-        raise DataError(f"{place} has no unit; write it in brackets behind the name, allowed: {shown}")
+        raise DataError(f"{where} has no unit; write {expected} after the name")
     if unit not in allowed:
-        known, hint = find_unit(unit), ""
-        if known is not None and known.si == ("s" if key == "time" else "m"):
+        unit_entry, hint = find_unit(unit), ""
+        if unit_entry is not None and unit_entry.si == ("s" if key == "time" else "m"):
             hint = (
-                "; with --channel, as --channel fr=displacement, the shaker reads any unit of `python -m vehicle "
-                "inspect`, and every command takes the time.npz of its run"
+                "; with --channel, as --channel fl=displacement, the shaker reads any unit of `python -m vehicle "
+                "inspect`, and every command reads the time.npz of its run"
             )
-        raise DataError(f"{place} has the unit [{unit}]; allowed: {shown}{hint}")
+        raise DataError(f"{where} has the unit [{unit}], must be {expected}{hint}")
     return unit
 
 
@@ -215,58 +223,61 @@ def _is_number(cell: str) -> bool:
 def _uniform_columns(
     table: Table, time: Vector, columns: dict[str, Vector], rate: float | None
 ) -> tuple[float, dict[str, Vector], float, list[str]]:
-    """Check the time grid, or make a new one.
+    """Check for uniform times, or resample the columns.
 
     Args:
-        table: for messages.
+        table: table of the columns, for messages.
         time: increasing times [s], shape (n,).
         columns: wheel -> displacement [m], shape (n,).
-        rate: wanted sampling rate [Hz]; None for that of the file.
+        rate: new sampling rate [Hz]; None for that of the file.
 
     Returns:
-        Step [s], columns, the rate for which their band stands [Hz], and notices.
+        Step [s], columns, sampling rate that limits their band [Hz], and notices.
     """
     time, rounded = without_rounding(time)
     notices = list(rounded)
     if rate is None:
         check_uniform(table, time, f"set {' '.join(clock_options(time)) or '--resample HZ'}")
     uniform = is_uniform(time)
-    held = (time.size - 1) / float(time[-1] - time[0]) if uniform else 1.0 / float(np.median(np.diff(time)))
-    notices.extend(aliasing_notices(columns, 1.0 / held))
-    lowest = held
+    current = (time.size - 1) / float(time[-1] - time[0]) if uniform else 1.0 / float(np.median(np.diff(time)))
+    notices.extend(aliasing_notices(columns, 1.0 / current))
+    lowest = current
     wanted = [] if rate is None else [rate]
-    if (rate or held) < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE):
+    if (rate or current) < SMOOTH_RATE * (1.0 - UNIFORM_TOLERANCE):
         wanted.append(FINE_RATE)
     for target in wanted:
-        if uniform and abs(held / target - 1.0) < 1e-9:
+        if uniform and abs(current / target - 1.0) < 1e-9:
             continue
-        columns, said = resampled(time, columns, target, table.place, uniform)
-        notices.append(said)
+        columns, notice = resampled(time, columns, target, table.place, uniform)
+        notices.append(notice)
         time = time[0] + np.arange(next(iter(columns.values())).size) / target
-        lowest, held, uniform = min(lowest, target), target, True
-    return 1.0 / held, columns, lowest, notices
+        lowest, current, uniform = min(lowest, target), target, True
+    return 1.0 / current, columns, lowest, notices
 
 
-def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = ()) -> None:
-    """Write a signal as `read_signal` reads it: comments, header, time, displacements with 7 significant digits.
+def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = (), *, plain: bool = False) -> None:
+    """Write a signal in the format of `read_signal`.
 
-    Written under a temporary name and renamed when complete. A signal of the front right wheel alone gets the plain
-    column `displacement [m]`.
+    Comments, header, times, displacements with 7 significant digits. Written under a temporary name and renamed when
+    complete. The columns name their wheels, as `displacement_fl [m]`.
 
     Args:
-        path: the file.
-        signal: what it holds.
+        path: file to write.
+        signal: plate displacements.
         comments: lines above the header.
+        plain: name the column of the only plate `displacement [m]`; it then drives the shaker wheel of any car.
 
     Raises:
-        OutputError: the file cannot be written, or a comment holds a line break.
+        OutputError: the file cannot be written, or a comment contains a line break.
     """
     path = Path(path)
     if any("\n" in comment or "\r" in comment for comment in comments):
-        raise OutputError(f"{path}: a comment holds a line break; give one line for each comment")
-    names = ["displacement"] if signal.wheels == ("fr",) else [f"displacement_{wheel}" for wheel in signal.wheels]
+        raise OutputError(f"{path}: a comment contains a line break; use one comment per line")
+    names = (
+        ["displacement"] if plain and len(signal.wheels) == 1 else [f"displacement_{wheel}" for wheel in signal.wheels]
+    )
     columns = [signal.time, *(signal.displacement[wheel] for wheel in signal.wheels)]
-    # Fewest decimals that keep each time stamp within 1e-6 of a step.
+    # Minimum number of decimals for time stamps accurate to 1e-6 of a step.
     errors = {digits: np.max(np.abs(np.round(signal.time, digits) - signal.time)) for digits in range(3, 12)}
     digits = next((digits for digits, error in errors.items() if error < 1e-6 * signal.timestep), 12)
     forms = ",".join([f"%.{digits}f", *(["%.6e"] * len(names))])

@@ -1,4 +1,4 @@
-"""The samples of a plate signal: often enough; filled in or resampled on request."""
+"""Check the sampling rate of plate signals, and fill missing samples on request."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
 from vehicle.signals.records.table import USABLE, Table, Vector
 
 LOWEST_RATE = 10.0
-"""Lowest sampling rate [Hz]: usable up to 4 Hz, the bounce and pitch of a body."""
+"""Minimum sampling rate [Hz]: usable up to 4 Hz, bounce and pitch of a body."""
 
 SMOOTH_RATE, FINE_RATE = 125.0, 1000.0
-"""A plate sampled below the first rate [Hz] is brought to the second: the cubic spline between its samples would add
+"""A plate sampled below the first rate [Hz] is resampled to the second: the cubic spline between its samples would add
 images of its upper band, 16 % of a sine at 0.4 of the rate."""
 
 FULL_RATE = 250.0
-"""From this sampling rate on the whole range up to 100 Hz of the weighting filters is covered [Hz]."""
+"""Minimum sampling rate for the whole range of the weighting filters, up to 100 Hz [Hz]."""
 
 
 def check_rate(path: Path, rate: float) -> tuple[str, ...]:
-    """Reject a sampling rate below `LOWEST_RATE`; below `FULL_RATE` return a notice with the usable band.
+    """Reject a sampling rate below `LOWEST_RATE`; return a notice on the usable band below `FULL_RATE`.
 
     Args:
         path: file, for messages.
-        rate: at which the file was sampled [Hz].
+        rate: sampling rate of the file [Hz].
 
     Raises:
         DataError: the rate is too low.
     """
-    if rate < LOWEST_RATE * (1.0 - 1e-9):  # a rate computed from rounded times
+    if rate < LOWEST_RATE * (1.0 - 1e-9):  # tolerance for a rate from rounded times
         hint = "; the time looks like ms" if FULL_RATE <= rate * 1000.0 <= 5e3 else ""
         raise DataError(
-            f"{path}: sampling rate {rate:.6g} Hz; allowed from {LOWEST_RATE:g} Hz (usable up to "
+            f"{path}: sampling rate {rate:.6g} Hz, must be at least {LOWEST_RATE:g} Hz (usable up to "
             f"{USABLE * LOWEST_RATE:g} Hz){hint}; measure or export with a higher rate"
         )
     if rate >= FULL_RATE * (1.0 - UNIFORM_TOLERANCE):
@@ -52,15 +52,15 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     """Interpolate missing displacements by a cubic spline through the values on both sides.
 
     Args:
-        table: NaN where a value is missing.
+        table: table with NaN for missing values.
         time: increasing times [s], shape (n,).
         column: index of the column.
 
     Returns:
-        The column, shape (n,), and a notice with the count (none: nothing was missing).
+        Column, shape (n,), and a notice with the number of interpolated values, if any.
 
     Raises:
-        DataError: a gap too long, or at the beginning or end.
+        DataError: a gap that is too long, or at the beginning or end.
     """
     values, name = table.values[:, column], f"column {table.header.cells[column]!r}"
     valid = np.isfinite(values)
@@ -69,16 +69,16 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
     first = int(np.flatnonzero(~valid)[0])
     if not (valid[0] and valid[-1]) or np.count_nonzero(valid) < MINIMUM_SAMPLES:
         raise DataError(
-            f"{table.place(first)}:{column + 1}: {name} has missing values at its beginning or end, or hardly any "
+            f"{table.place(first)}:{column + 1}: {name} has missing values at its beginning or end, or too few "
             "others; interpolation needs values on both sides; remove those rows"
         )
     gaps = np.diff(time[valid])
     limit = longest_gap(float(np.median(np.diff(time))))
-    worst = int(np.argmax(gaps))
-    if gaps[worst] > limit * (1.0 + UNIFORM_TOLERANCE):
-        begin = int(np.flatnonzero(valid)[worst]) + 1
+    largest = int(np.argmax(gaps))
+    if gaps[largest] > limit * (1.0 + UNIFORM_TOLERANCE):
+        begin = int(np.flatnonzero(valid)[largest]) + 1
         raise DataError(
-            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[worst]:.6g} s from this line on; "
+            f"{table.place(begin)}:{column + 1}: {name} has no value for {gaps[largest]:.6g} s from this line on; "
             f"interpolation bridges at most {limit:.6g} s; use the part before or after it"
         )
     filled = values.copy()

@@ -1,1 +1,1 @@
-"""Records and tables as files: text and npz, read and written in one place."""
+"""Measurement files: formats, units, tables and records, read and written here only."""

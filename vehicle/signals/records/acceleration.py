@@ -1,4 +1,4 @@
-"""The acceleration of one point in three axes, taken from a record and checked."""
+"""Read the acceleration of one point in up to three axes from a record, and check its level."""
 
 from __future__ import annotations
 
@@ -19,50 +19,58 @@ from vehicle.signals.records.table import Record, Vector
 from vehicle.signals.records.units import STANDARD_GRAVITY
 
 UNITS = {"m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY}
-"""accepted units of acceleration and their value in m/s2"""
+"""Accepted units of acceleration and their values in m/s2."""
+
 LARGEST_ACCELERATION = 50.0
-"""deviation from the mean above which a record is taken for one in a wrong unit (bad-inputs item 7) [m/s2]"""
+"""Maximum deviation from the mean [m/s2]; a larger one indicates a wrong unit."""
+
 ALIASED_SHARE = 0.05
-"""share of the variance above 0.8 of Nyquist that is worth a notice (bad-inputs item 12) [-]"""
+"""Minimum share of the variance above 0.8 of the Nyquist frequency for an aliasing notice [-]."""
 
 
 def _notices(xyz: Mapping[str, Vector], rate: float) -> tuple[str, ...]:
-    """Return remarks on constant axes and on content near Nyquist."""
-    found = []
+    """Return notices on constant axes and on content near the Nyquist frequency."""
+    notices = []
     for axis, record in xyz.items():
         power = np.abs(np.fft.rfft(record - record.mean())) ** 2
         total = float(power.sum())
         if np.ptp(record) == 0.0:
-            found.append(f"{axis}: constant at {record[0]:g} m/s2 (no sensor?)")
+            notices.append(f"{axis}: constant at {record[0]:g} m/s2 (no sensor?)")
         elif total > 0.0:
             share = float(power[int(0.8 * power.size) :].sum()) / total
             if share > ALIASED_SHARE:
-                found.append(
+                notices.append(
                     f"{axis}: {100 * share:.0f} % of the variance lies above {0.4 * rate:g} Hz (0.8 of Nyquist); "
                     "the record may be aliased"
                 )
-    return tuple(found)
+    return tuple(notices)
 
 
 def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
-    """Chosen channels under the names of the axes, in m/s2."""
+    """Read the chosen channels of a measurement file as accelerations [m/s2].
+
+    Args:
+        path: measurement file.
+        choice: channels for the roles x, y, z; without roles, the channels named `names` are used.
+        names: channel names of the result for the axes x, y, z.
+    """
     measurement = read_record(path, choice.databases)
     roles = {role: wanted for role, wanted in choice.channels.items() if role != "time"}
-    held = {one.name for one in measurement.channels}
+    names_in_file = {one.name for one in measurement.channels}
     if not roles:
-        roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in held}
+        roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in names_in_file}
     if not roles or not set(roles) <= set(AXES):
         listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
         raise DataError(
-            f"{path}: needed are the axes: --channel x=NAME --channel y=NAME --channel z=NAME, or one or two of them, "
-            f"each a number, exact name or a pattern with *; the file has {listed}"
+            f"{path}: no axis is assigned; set --channel x=NAME --channel y=NAME --channel z=NAME, or one or two of "
+            f"them, each with a number, an exact name or a pattern with *; the file has {listed}"
         )
     chosen = choose(measurement, replace(choice, channels={**choice.channels, **roles}))
     wrong = next((role for role, quantity in chosen.quantities.items() if quantity != "acceleration"), None)
     if wrong is not None:
         raise DataError(
-            f"{path}: channel {roles[wrong]!r} for {wrong} is no acceleration but a {chosen.quantities[wrong]}; choose "
-            f"another, or give --unit {wrong}=m/s2 or {wrong}=g if the file is wrong"
+            f"{path}: channel {roles[wrong]!r} for {wrong} is a {chosen.quantities[wrong]}, must be an acceleration; "
+            f"choose another channel, or set --unit {wrong}=m/s2 or {wrong}=g if the unit in the file is wrong"
         )
     chosen.require_uniform(path)
     values, notices = dict(chosen.values), chosen.notices
@@ -78,63 +86,65 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     )
 
 
-def read_acceleration(path: str | Path, place: str | None = None, choice: Choice | None = None) -> Record:
-    """Read the acceleration of a point, in all three axes or in those that were measured.
+def read_acceleration(path: str | Path, point: str | None = None, choice: Choice | None = None) -> Record:
+    """Read the acceleration of a point in x, y and z, or in the measured axes only.
 
     Args:
-        path: a record, as of `read_columns`.
-        place: point of a run, as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
-        choice: channels of a measurement file for the roles x, y and z, one of them or more, and what is done to them.
+        path: table with a time column, or measurement file; see `read_columns` and `read_record`.
+        point: point of a run, such as "seat_rail", for the channels `seat_rail_acc_x|y|z`; None for columns x, y, z.
+        choice: channels for at least one of the roles x, y, z, and their preprocessing; for measurement files.
 
     Returns:
-        Channels x, y, z [m/s2], those that are there, with remarks on what is odd.
+        Channels x, y, z [m/s2], as far as measured, with notices on suspicious values.
 
     Raises:
-        ConfigurationError: no such file.
-        DataError: it is no record, a channel is missing or in another unit, or a value is none of a vehicle.
+        ConfigurationError: the file does not exist.
+        DataError: not a record, a missing channel, a unit other than acceleration, or an implausible level.
     """
     file = Path(path)
-    axes = [axis if place is None else f"{place}_acc_{axis}" for axis in AXES]
+    axes = [axis if point is None else f"{point}_acc_{axis}" for axis in AXES]
     needed = f"time [s], {', '.join(f'{name} [m/s2]' for name in axes)} (or [g])"
     if choice is not None or not is_table(file):
         record = _chosen(file, choice or Choice(), axes)
     else:
         record = read_columns(file, needed)
-    # A record of the vertical axis alone is usual; any other missing axis must be meant.
-    here = [name for name in axes if name in record.channels]
-    partial = here == axes[2:] or (choice is not None and bool({*AXES} & {*choice.channels}))
+    # A record of z only is common; any other missing axis is accepted only if `choice` assigns axes.
+    present = [name for name in axes if name in record.channels]
+    partial = present == axes[2:] or (choice is not None and bool({*AXES} & {*choice.channels}))
     xyz: dict[str, Vector] = {}
     events = []
     for axis, name in zip(AXES, axes, strict=True):
         if name not in record.channels and partial:
             continue
         if name not in record.channels:
-            places = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
-            places_shown = f"; give --channel with one of {', '.join(places)}" if places else ""
+            points = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
+            points_shown = f"; set --channel to one of {', '.join(points)}" if points else ""
             shown = ", ".join(list(record.channels)[:6])
-            raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{places_shown}")
+            raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{points_shown}")
         if (unit := record.units[name]) not in UNITS:
             raise DataError(
-                f"{file}: column {name!r} has the unit {unit!r}, allowed are "
-                f"{', '.join(f'[{one}]' for one in UNITS)}; write the header as {needed}"
+                f"{file}: column {name!r} has the unit {unit!r}, must be one of "
+                f"{', '.join(f'[{allowed}]' for allowed in UNITS)}; write the header as {needed}"
             )
         values = record.channels[name] * UNITS[unit]
-        about = np.abs(values - values.mean())
-        swing = float(about.max())
-        if swing > LARGEST_ACCELERATION and rare_events(about, LARGEST_ACCELERATION):
+        deviation = np.abs(values - values.mean())
+        largest = float(deviation.max())
+        if largest > LARGEST_ACCELERATION and rare_events(deviation, LARGEST_ACCELERATION):
             events.append(
-                f"{axis}: swings by {swing:.4g} m/s2 about its mean at t = {record.time[int(np.argmax(about))]:.6g} s, "
-                f"beyond {LARGEST_ACCELERATION:g} m/s2: a pothole, or a spike of the logger?"
+                f"{axis}: deviates by {largest:.4g} m/s2 from its mean at t = "
+                f"{record.time[int(np.argmax(deviation))]:.6g} s, more than {LARGEST_ACCELERATION:g} m/s2: "
+                "a pothole, or a spike of the logger?"
             )
-        elif swing > LARGEST_ACCELERATION:
+        elif largest > LARGEST_ACCELERATION:
             raise DataError(
-                f"{file}: column {name!r} swings by {swing:g} m/s2 about its mean, allowed are "
-                f"{LARGEST_ACCELERATION:g}; looks like mm/s2 or a spike? correct the unit in the header or the record"
+                f"{file}: column {name!r} deviates by {largest:g} m/s2 from its mean, must be at most "
+                f"{LARGEST_ACCELERATION:g}; is the unit mm/s2, or is there a spike? correct the unit in the "
+                "header or the record"
             )
         xyz[axis] = values
-    # Chosen channels were judged before they were filtered.
-    plain = faults(xyz, record.time, moving=list(xyz)) if choice is None and is_table(file) else []
-    notices = (*record.notices, *events, *plain, *_notices(xyz, 1.0 / record.step))
+    # `choose` checks its channels before they are filtered.
+    channel_notices = faults(xyz, record.time, moving=list(xyz)) if choice is None and is_table(file) else []
+    notices = (*record.notices, *events, *channel_notices, *_notices(xyz, 1.0 / record.step))
     return Record(
         time=record.time, channels=xyz, units=dict.fromkeys(xyz, "m/s2"), notices=notices, highest=record.highest
     )

@@ -1,4 +1,4 @@
-"""An `.npz` of a run as a measurement."""
+"""Read the `.npz` file of a run as a `Measurement`."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from vehicle.signals.records.table import TIME, Wanted, key_column, name_and_uni
 
 
 def read(path: Path) -> Measurement:
-    """Read all arrays that are as long as the time.
+    """Read the array `time` and all arrays of its length as channels.
 
     Raises:
-        DataError: as of `vehicle.signals.records.npz_format.read`.
+        DataError: see `vehicle.signals.records.npz_format.read`.
     """
-    needed = "'time', and an array for each channel"
+    needed = "'time', and one array per channel"
     table = npz_format.read(path, Wanted(needed=needed, key=key_column(TIME, needed)))
     time = table.values[:, table.key]
     channels = []

@@ -1,4 +1,4 @@
-"""Logs of a CAN bus as text (Vector .asc, PEAK .trc, candump): frames, which a database (.dbc) decodes into channels.
+"""Read text logs of a CAN bus (Vector .asc, PEAK .trc, candump) and decode their frames with a DBC database.
 
 Sources: Vector, CAN ASC logging file format; PEAK, PCAN-View TRC file format; can-utils, `candump -l`.
 """
@@ -42,13 +42,13 @@ SHOWN = 6
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Frame:
-    """A frame of a bus.
+    """Data frame of a CAN bus.
 
     Attributes:
-        time: of its reception [s].
-        identifier: of the message.
+        time: time of reception [s].
+        identifier: arbitration ID of the message.
         extended: True for an identifier of 29 bits.
-        data: payload.
+        data: payload bytes.
     """
 
     time: float
@@ -58,102 +58,106 @@ class Frame:
 
 
 def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
-    """Decode the frames of a log into the signals of databases.
+    """Read a bus log and decode its frames into channels.
 
     Args:
-        path: the log.
-        databases: files of the form DBC.
+        path: bus log.
+        databases: DBC files.
 
     Raises:
-        ConfigurationError: a database that is not there or cannot be read.
-        DataError: no database is given, no frames, or none of the identifiers is in the databases.
+        ConfigurationError: a database is missing or unreadable.
+        DataError: no database, no frames, or no identifier of the log in the databases.
         MissingPartError: asammdf is not installed.
     """
     text = read_text(path, western=True)
-    form = can_log_type(text.body[:4096])
-    frames = list(_frames(form, text.lines))
+    log_format = can_log_type(text.body[:4096])
+    frames = list(_frames(log_format, text.lines))
     if not frames:
-        raise DataError(f"{path}: is a log of a CAN bus ({form}) without frames of data; record it again")
+        raise DataError(f"{path}: log of a CAN bus ({log_format}) without data frames; record it again")
     if not databases:
-        raise needs_database(path, form, [one.identifier for one in frames])
-    loaded = [load_database(one) for one in databases]
+        raise needs_database(path, log_format, [database.identifier for database in frames])
+    loaded = [load_database(database) for database in databases]
     try:
         with quiet():
             channels = tuple(decoded(frames, loaded))
-    except Exception as error:  # damaged databases raise what they like
-        raise DataError(f"{path}: {_names(databases)} does not decode its frames ({error}); give another") from None
+    except Exception as error:  # asammdf raises errors of any type for damaged databases
+        raise DataError(
+            f"{path}: {_names(databases)} cannot decode its frames ({error}); use another database"
+        ) from None
     if not channels:
-        raise none_decoded(path, [one.identifier for one in frames], databases)
+        raise none_decoded(path, [database.identifier for database in frames], databases)
     return Measurement(
         path=path,
-        format=form,
+        format=log_format,
         channels=channels,
         sha256=text.sha256,
         program=text.lines[0].strip(" ;")[:80],
-        start=frames[0].time.__format__(".6f") + " s after 1970" if form == "candump" else "",
+        start=frames[0].time.__format__(".6f") + " s after 1970" if log_format == "candump" else "",
         notices=(*text.notices, f"log of a CAN bus: {len(frames)} frames, decoded by {_names(databases)}"),
     )
 
 
 def _names(databases: Sequence[Path]) -> str:
-    return ", ".join(one.name for one in databases)
+    return ", ".join(database.name for database in databases)
 
 
-def needs_database(path: Path, form: str, identifiers: Sequence[int]) -> DataError:
-    """Return the refusal of a bus log that no database decodes.
+def needs_database(path: Path, log_format: str, identifiers: Sequence[int]) -> DataError:
+    """Return the error for a bus log that is read without a database.
 
     Args:
-        path: the log.
-        form: of the file, in words.
-        identifiers: of its frames.
+        path: bus log.
+        log_format: name of the log format.
+        identifiers: identifiers of its frames.
     """
     different = sorted(set(identifiers))
-    shown = ", ".join(f"0x{one:X}" for one in different[:SHOWN]) + ("..." if len(different) > SHOWN else "")
+    shown = ", ".join(f"0x{identifier:X}" for identifier in different[:SHOWN]) + (
+        "..." if len(different) > SHOWN else ""
+    )
     return DataError(
-        f"{path}: is a log of a CAN bus ({form}) with {len(identifiers)} frames of {len(different)} messages "
-        f"({shown}), no channels; give --dbc FILE with the database that decodes them"
+        f"{path}: log of a CAN bus ({log_format}) with {len(identifiers)} frames of {len(different)} messages "
+        f"({shown}), not channels; set --dbc FILE to the database of this bus"
     )
 
 
 def none_decoded(path: Path, identifiers: Sequence[int], databases: Sequence[Path]) -> DataError:
-    """Return the refusal of a bus log whose messages are in no database.
+    """Return the error for a bus log whose messages are missing from all databases.
 
     Args:
-        path: the log.
-        identifiers: of its frames.
-        databases: that were given.
+        path: bus log.
+        identifiers: identifiers of its frames.
+        databases: DBC files searched.
     """
-    shown = ", ".join(f"0x{one:X}" for one in sorted(set(identifiers))[:SHOWN])
-    return DataError(f"{path}: none of its messages ({shown}) is in {_names(databases)}; give the database of this bus")
+    shown = ", ".join(f"0x{identifier:X}" for identifier in sorted(set(identifiers))[:SHOWN])
+    return DataError(f"{path}: none of its messages ({shown}) is in {_names(databases)}; use the database of this bus")
 
 
 def load_database(path: Path) -> Any:
-    """Load a database of messages.
+    """Load a database of CAN messages.
 
     Args:
-        path: a file of the form DBC, or another form of canmatrix.
+        path: DBC file, or another format of canmatrix.
 
     Raises:
-        ConfigurationError: there is no such file, or it holds no messages.
+        ConfigurationError: the file does not exist or contains no messages.
     """
     extra("asammdf", "mdf", "decoding a bus log")
     if not path.is_file():
-        raise ConfigurationError(f"--dbc {path}: no such file; give the path of a database of CAN messages")
+        raise ConfigurationError(f"--dbc {path}: file not found; set the path of a database of CAN messages")
     from asammdf.blocks.utils import load_can_database
 
     try:
         with quiet():
-            found = load_can_database(path)
-    except Exception as error:  # damaged files raise what they like
-        raise ConfigurationError(f"--dbc {path}: cannot be read ({error}); give a DBC file") from None
-    if found is None or not list(found.frames):
-        raise ConfigurationError(f"--dbc {path}: holds no messages; give a DBC file")
-    return found
+            database = load_can_database(path)
+    except Exception as error:  # asammdf raises errors of any type for damaged files
+        raise ConfigurationError(f"--dbc {path}: cannot be read ({error}); use a DBC file") from None
+    if database is None or not list(database.frames):
+        raise ConfigurationError(f"--dbc {path}: contains no messages; use a DBC file")
+    return database
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep the library from logging and printing: what is wrong becomes one message."""
+    """Suppress log records and prints of asammdf; callers raise one error instead."""
     logger = logging.getLogger("asammdf")
     level = logger.level
     logger.setLevel(logging.CRITICAL + 1)
@@ -165,31 +169,31 @@ def quiet() -> Iterator[None]:
 
 
 def decoded(frames: Sequence[Frame], databases: Sequence[Any]) -> Iterator[Channel]:
-    """Yield the signals of all frames that a database describes, each over the times of its message.
+    """Yield the signals of all frames described by a database, each over the times of its message.
 
     Args:
-        frames: of a log.
-        databases: see `load_database`.
+        frames: frames of a log.
+        databases: databases returned by `load_database`.
     """
     from asammdf.blocks.bus_logging_utils import extract_mux
 
     groups: dict[tuple[int, bool], list[Frame]] = {}
     for one in frames:
         groups.setdefault((one.identifier, one.extended), []).append(one)
-    for (identifier, extended), held in groups.items():
+    for (identifier, extended), group in groups.items():
         for database in databases:
-            match = [m for m in database.frames if m.arbitration_id.id == identifier
+            matches = [m for m in database.frames if m.arbitration_id.id == identifier
                      and bool(m.arbitration_id.extended) == extended]  # fmt: skip
-            if not match:
+            if not matches:
                 continue
-            size = max(match[0].size, 1)
-            kept = [one for one in held if len(one.data) >= size]
-            if not kept:
+            size = max(matches[0].size, 1)
+            complete = [one for one in group if len(one.data) >= size]
+            if not complete:
                 continue
-            payload = np.frombuffer(b"".join(one.data[:size] for one in kept), np.uint8).reshape(-1, size)
-            times = np.array([one.time for one in kept]) - frames[0].time
-            found = extract_mux(payload, match[0], identifier, 0, times, ignore_value2text_conversion=True)
-            for signals in found.values():
+            payload = np.frombuffer(b"".join(one.data[:size] for one in complete), np.uint8).reshape(-1, size)
+            times = np.array([one.time for one in complete]) - frames[0].time
+            decoded_groups = extract_mux(payload, matches[0], identifier, 0, times, ignore_value2text_conversion=True)
+            for signals in decoded_groups.values():
                 for name, signal in signals.items():
                     values = np.asarray(signal["samples"])
                     if values.dtype.kind in "fiub" and values.ndim == 1:
@@ -198,31 +202,31 @@ def decoded(frames: Sequence[Frame], databases: Sequence[Any]) -> Iterator[Chann
                             values=values.astype(np.float64),
                             unit=str(signal["unit"] or ""),
                             axis=np.asarray(signal["t"], dtype=np.float64),
-                            place=f"{match[0].name} 0x{identifier:X}",
+                            place=f"{matches[0].name} 0x{identifier:X}",
                         )
             break
 
 
-def _frames(form: str, lines: Sequence[str]) -> Iterator[Frame]:
-    """Frames of data of a log; lines of other events are passed over."""
+def _frames(log_format: str, lines: Sequence[str]) -> Iterator[Frame]:
+    """Yield the data frames of a log; skip lines of other events."""
     base, relative, time = 16, False, 0.0
     new = any(line.startswith(";$FILEVERSION=2") for line in lines[:20])
-    pattern = {"asc": _ASC, "candump": _DUMP}.get(form, _TRC_2 if new else _TRC_1)
+    pattern = {"asc": _ASC, "candump": _DUMP}.get(log_format, _TRC_2 if new else _TRC_1)
     for line in lines:
-        if form == "asc" and line.startswith("base"):
+        if log_format == "asc" and line.startswith("base"):
             base, relative = 10 if " dec" in line else 16, "relative" in line
         match = pattern.match(line)
         if match is None:
             continue
-        stamp = float(match["time"]) * (1e-3 if form == "trc" else 1.0)
+        stamp = float(match["time"]) * (1e-3 if log_format == "trc" else 1.0)
         time = time + stamp if relative else stamp
         digits = match["id"]
-        extended = match["long"] == "x" if form == "asc" else len(digits) == 8
+        extended = match["long"] == "x" if log_format == "asc" else len(digits) == 8
         text = re.sub(r"[\s.]", "", match["data"])
         if len(text) % 2:
             continue
-        count = len(text) // 2 if form == "candump" else int(match["count"], 16 if form == "asc" else 10)
-        data = bytes.fromhex(text) if base == 16 or form != "asc" else b""
+        count = len(text) // 2 if log_format == "candump" else int(match["count"], 16 if log_format == "asc" else 10)
+        data = bytes.fromhex(text) if base == 16 or log_format != "asc" else b""
         yield Frame(
-            time=time, identifier=int(digits, base if form == "asc" else 16), extended=extended, data=data[:count]
+            time=time, identifier=int(digits, base if log_format == "asc" else 16), extended=extended, data=data[:count]
         )

@@ -1,4 +1,4 @@
-"""What a measurement file holds: channels with their names, units, places and axes."""
+"""Contents of a measurement file: channels with names, units, measurement points and axes."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ Values = NDArray[np.float64] | NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Channel:
-    """One channel, as found.
+    """Channel of a measurement file, with name, unit and values unchanged.
 
     Attributes:
-        name: as found; it may be empty, and two channels may share one.
-        values: samples or spectral lines in the unit as found, (n,); NaN where the file tells none.
-        unit: as found; empty where the file tells none, or contradicts itself.
-        axis: times [s] or frequencies [Hz], (n,); None where the file tells none.
-        kind: what the axis is.
-        function: time history, frequency response, coherence, or what else the file calls it.
-        place: point of the measurement, as a node or a sensor; empty where the file tells none.
-        direction: signed axis, as +Z.
-        reference: place and direction of the input of a frequency response.
-        remark: what a reader must know of this channel.
+        name: name in the file; may be empty or shared with another channel.
+        values: samples or spectral lines in `unit`, (n,); NaN for missing values.
+        unit: unit in the file; empty if missing or contradictory.
+        axis: times [s] or frequencies [Hz], (n,); None if missing.
+        kind: quantity of the axis.
+        function: time history, frequency response, coherence, or another name from the file.
+        place: measurement point, such as a node or a sensor; empty if missing.
+        direction: signed axis, such as +Z.
+        reference: point and direction of the input of a frequency response.
+        remark: note on this channel for the reader.
     """
 
     name: str
@@ -48,26 +48,28 @@ class Channel:
 
     @property
     def quantity(self) -> str:
-        """What its unit measures; empty where that is open."""
+        """Physical quantity of the unit; empty if the unit is missing or unknown."""
         unit = find_ratio(self.unit)
         return unit.quantity if unit is not None else ""
 
     @property
     def si_unit(self) -> str:
-        """SI unit of `si_values`; empty where the unit is open."""
+        """SI unit of `si_values`; empty if the unit is missing or unknown."""
         unit = find_ratio(self.unit)
         return unit.si if unit is not None else ""
 
     @property
     def si_values(self) -> Values:
-        """Values in SI; as found where the unit is open."""
+        """Values converted to SI units; unchanged if the unit is missing or unknown."""
         unit = find_ratio(self.unit)
         return self.values if unit is None or unit.factor == 1.0 else self.values * unit.factor
 
     @property
     def rate(self) -> float | None:
-        """Samples a second [Hz]: of the clock, also a rounded one, between pauses; else of the median step; None "
-        "without times."""
+        """Sampling rate [Hz] of the longest part without a pause; None without times.
+
+        Rate of the uniform or rounded clock if there is one, else the inverse of the median step.
+        """
         if self.kind != "time" or self.axis is None or self.axis.size < 2:
             return None
         steps = np.diff(self.axis)
@@ -85,18 +87,18 @@ class Channel:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Measurement:
-    """A file.
+    """Contents of a measurement file.
 
     Attributes:
-        path: the file.
-        format: its name.
-        channels: in the order of the file; the number of a channel is its place in it, from 1.
-        sha256: hexadecimal digest of its bytes.
-        program: what wrote it; empty where the file does not tell.
-        start: date and time of the first sample, as the file tells it.
-        notices: what was accepted although it is unusual.
-        geometry: points and lines, where the file holds them.
-        shapes: mode shapes, where the file holds them.
+        path: measurement file.
+        format: name of the file format.
+        channels: channels in the order of the file, which numbers them from 1.
+        sha256: hexadecimal digest of the bytes of the file.
+        program: program that wrote the file; empty if unknown.
+        start: date and time of the first sample, as written in the file.
+        notices: messages on unusual content that was accepted.
+        geometry: points and lines; empty if the file has none.
+        shapes: mode shapes; empty if the file has none.
     """
 
     path: Path
@@ -111,36 +113,36 @@ class Measurement:
 
 
 def exact_rate(rate: float) -> float:
-    """A rate without what binary numbers leave of a whole one [Hz]."""
+    """Round a rate [Hz] to a whole number if it differs only by floating-point error."""
     whole = round(rate)
     return float(whole) if whole > 0 and abs(rate - whole) < 1e-9 * rate else rate
 
 
 def uniform_axis(count: int, step: float, start: float = 0.0) -> Vector:
-    """Times or frequencies start + i step, (count,)."""
+    """Return times or frequencies start + i * step, (count,)."""
     return start + np.arange(count, dtype=np.float64) * step
 
 
 def even_step(axis: Vector) -> float | None:
-    """Step of an axis, (n,), whose values lie within a hundredth of a step of even ones; None of any other."""
+    """Return the step of an axis, (n,), that is even within a hundredth of a step; None for an uneven axis."""
     step = float(axis[-1] - axis[0]) / max(axis.size - 1, 1)
     away = np.max(np.abs(axis - uniform_axis(axis.size, step, float(axis[0]))))
     return step if away <= 1e-2 * abs(step) else None
 
 
 def clock_step(step: float, digits: int = 6) -> tuple[float, str]:
-    """The step behind one that a program rounded to significant digits: 1.52588e-05 s is 1/65536 s.
+    """Recover the exact time step from a step rounded to significant digits: 1.52588e-05 s is 1/65536 s.
 
     Args:
-        step: as written [s].
-        digits: of the rounding.
+        step: time step written in the file [s].
+        digits: number of significant digits in the file.
 
     Returns:
-        The step 1/f of the whole rate f that is written alike, and a remark; else the step itself without one.
+        Step 1/f of the whole rate f that rounds to `step`, and a remark; without a whole f, `step` and "".
     """
     form = f".{digits - 1}e"
     rate = round(1.0 / step) if 0.0 < step < 1.0 else 0
-    rounded = abs(float(f"{step:{form}}") - step) <= 1e-7 * step  # also where single precision has written it
+    rounded = abs(float(f"{step:{form}}") - step) <= 1e-7 * step  # tolerance for values stored in single precision
     if rate < 1 or not rounded or f"{1.0 / rate:{form}}" != f"{step:{form}}":
         return step, ""
     if abs(step * rate - 1.0) < 1e-12:
@@ -148,20 +150,20 @@ def clock_step(step: float, digits: int = 6) -> tuple[float, str]:
     return 1.0 / rate, f"time step {step:.9g} s is rounded: taken as a clock of {rate} Hz"
 
 
-def check_length(path: Path, claimed: float, held: float, what: str) -> None:
-    """Refuse a file that claims more data than it holds, before memory is taken for them.
+def check_length(path: Path, claimed: float, available: float, part: str) -> None:
+    """Reject a file whose header claims more data than the file contains, before memory is allocated.
 
     Args:
-        path: the file.
-        claimed: bytes that its header promises.
-        held: bytes that are there.
-        what: the part that claims it.
+        path: measurement file, for the message.
+        claimed: number of bytes claimed by the header.
+        available: number of bytes in the file.
+        part: part of the file with that header, for the message.
 
     Raises:
-        DataError: it claims more, or a negative number.
+        DataError: `claimed` is negative or larger than `available`.
     """
-    if claimed < 0 or claimed > held:
+    if claimed < 0 or claimed > available:
         raise DataError(
-            f"{path}: {what} claims {claimed:.0f} bytes of data, the file holds {held:.0f}; it was cut off or damaged; "
-            "export it again"
+            f"{path}: {part} claims {claimed:.0f} bytes of data, the file contains {available:.0f}; it is truncated or "
+            "damaged; export it again"
         )

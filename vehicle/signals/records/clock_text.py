@@ -1,4 +1,4 @@
-"""Times of a logger that are no seconds: dates, clocks, and counts since 1970."""
+"""Convert dates, times of day, and counts since 1970 to seconds."""
 
 from __future__ import annotations
 
@@ -12,13 +12,16 @@ import numpy as np
 from vehicle.signals.records.table import Vector
 
 DAY = 86400.0
-"""[s]"""
+"""Length of a day [s]."""
+
 FIRST_YEAR, LAST_YEAR = 2001, 2040
-"""Range of dates in which a count since 1970 is taken for one."""
+"""Years in which a number is accepted as a count since 1970."""
+
 LONGEST_EPOCH_STEP = 0.5
-"""Longest median step of a count since 1970 [s]: a counter in other units since power-on may have the same size."""
+"""Maximum median step of a count since 1970 [s]: a counter since power-on may have the same magnitude."""
+
 EPOCHS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-"""Unit of a count since 1970 to seconds."""
+"""Unit of a count since 1970 to its value in seconds."""
 
 _MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 _YEAR_FIRST = re.compile(r"(?P<y>\d{4})(?P<s>[-/.])(?P<m>\d{1,2})(?P=s)(?P<d>\d{1,2})", re.ASCII)
@@ -38,10 +41,10 @@ LONGEST_CLOCK = 48
 
 
 def is_clock(cell: str) -> bool:
-    """True if a cell holds a date, a time of day, or both.
+    """Return True if a cell contains a date, a time of day, or both.
 
     Args:
-        cell: text without blanks around it.
+        cell: text of the cell, stripped.
     """
     if len(cell) > LONGEST_CLOCK:
         return False
@@ -52,22 +55,22 @@ def is_clock(cell: str) -> bool:
 
 
 def is_date(cell: str) -> bool:
-    """True if a cell holds a date alone."""
+    """Return True if a cell contains a date only."""
     return bool(_YEAR_FIRST.fullmatch(cell) or _YEAR_LAST.fullmatch(cell) or _month_name(cell))
 
 
 def clock_seconds(cells: Sequence[str], days: Sequence[str] | None = None) -> tuple[Vector, str, list[str]]:
-    """Return the times of a column of dates or clocks.
+    """Convert a column of times of day, with or without dates, to seconds.
 
     Args:
-        cells: texts, one a row: a time of day, or a date and a time of day.
-        days: dates of the same rows, where they are in a column of their own.
+        cells: text of each row: a time of day, or a date and a time of day.
+        days: date of each row if dates are in a separate column.
 
     Returns:
-        Times after the first row [s], (n,); date and time of the first row as found; notices.
+        Times after the first row [s], (n,); text of the first row; notices.
 
     Raises:
-        ValueError: a cell is no date and time; its argument is the index of the row.
+        ValueError: a cell is not a date and time; its argument is the index of the row.
     """
     dates, clocks = _same_form(cells) or _any_form(cells)
     if days is not None:
@@ -78,31 +81,31 @@ def clock_seconds(cells: Sequence[str], days: Sequence[str] | None = None) -> tu
             raise ValueError(next(row for row, cell in enumerate(cells) if not _BOTH.fullmatch(cell)))
         offsets, notices = _day_offsets(dates)
         return DAY * offsets + (clocks - clocks[0]), start, notices
-    back = np.flatnonzero(np.diff(clocks) < -0.5 * DAY)
-    notices = [] if not back.size else [f"the clock passes midnight {back.size} times: 24 h added behind each"]
-    later = np.zeros(clocks.size)
-    for at in back:
-        later[at + 1 :] += DAY
-    return clocks - clocks[0] + later, start, notices
+    backward = np.flatnonzero(np.diff(clocks) < -0.5 * DAY)
+    notices = [] if not backward.size else [f"the clock passes midnight {backward.size} times: 24 h added after each"]
+    offset = np.zeros(clocks.size)
+    for at in backward:
+        offset[at + 1 :] += DAY
+    return clocks - clocks[0] + offset, start, notices
 
 
 def _any_form(cells: Sequence[str]) -> tuple[list[str], Vector]:
-    """Dates, none where no cell has one, and seconds after midnight, of cells of any forms."""
+    """Return dates (empty without dates) and seconds after midnight of cells of mixed formats."""
     dates: list[str] = []
     clocks: Vector = np.empty(len(cells))
     for row, cell in enumerate(cells):
         both = _BOTH.fullmatch(cell)
-        found = _seconds_of_clock(both["clock"] if both else cell)
-        if found is None:
+        seconds = _seconds_of_clock(both["clock"] if both else cell)
+        if seconds is None:
             raise ValueError(row)
-        clocks[row] = found
+        clocks[row] = seconds
         if both:
             dates.append(both["date"])
     return dates, clocks
 
 
 def _same_form(cells: Sequence[str]) -> tuple[list[str], Vector] | None:
-    """Return what `_any_form` does, for cells that differ in their digits alone; None for others."""
+    """Return the result of `_any_form`, faster, for cells that differ in digits only; None for other cells."""
     first = cells[0]
     both = _BOTH.fullmatch(first)
     clock, offset = (both["clock"], both.start("clock")) if both else (first, 0)
@@ -122,28 +125,28 @@ def _same_form(cells: Sequence[str]) -> tuple[list[str], Vector] | None:
         return np.asarray((codes[:, begin:end] - float(ord("0"))) @ powers)
 
     part = "f" if match["f"] else "ms" if match["ms"] else ""
-    shares = number(part) / 10.0 ** len(match[part]) if part else 0.0
+    fraction = number(part) / 10.0 ** len(match[part]) if part else 0.0
     hours, minutes, seconds = number("h"), number("m"), number("s")
     if hours.max() > 24 or minutes.max() > 59 or seconds.max() > 60:
-        return None  # the other way names the row
+        return None  # `_any_form` reports the row
     dates: list[str] = []
     if both:
-        known, width = codes[:, : both.end("date")], both.end("date")
-        starts = np.flatnonzero((known[1:] != known[:-1]).any(axis=1)) + 1
+        date_codes, width = codes[:, : both.end("date")], both.end("date")
+        starts = np.flatnonzero((date_codes[1:] != date_codes[:-1]).any(axis=1)) + 1
         for begin, end in pairwise((0, *starts.tolist(), len(cells))):
             dates += [cells[begin][:width]] * (end - begin)
-    return dates, 3600.0 * hours + 60.0 * minutes + seconds + shares
+    return dates, 3600.0 * hours + 60.0 * minutes + seconds + fraction
 
 
 def epoch_seconds(values: Vector, unit: str) -> tuple[Vector, str, str] | None:
-    """Return the times of a count since 1970-01-01 UTC.
+    """Convert counts since 1970-01-01 UTC to seconds.
 
     Args:
-        values: counts, (n,), finite.
-        unit: "s", "ms", "us" or "ns" where the file tells it; empty where it does not.
+        values: counts, (n,).
+        unit: "s", "ms", "us" or "ns" as written in the file; empty if unknown.
 
     Returns:
-        Times after the first row [s], (n,); start in ISO 8601; unit of the count. None for other numbers.
+        Times after the first row [s], (n,); start in ISO 8601; unit of the count. None for other values.
     """
     if values.size < 2 or not np.isfinite(values).all():
         return None
@@ -160,10 +163,10 @@ def epoch_seconds(values: Vector, unit: str) -> tuple[Vector, str, str] | None:
 
 
 def clock_of_day(value: float) -> float:
-    """Return the seconds after midnight of a clock written as a number HHMMSS.sss.
+    """Return the seconds after midnight of a time of day written as a number HHMMSS.sss.
 
     Args:
-        value: as written.
+        value: number in the file.
 
     Raises:
         ValueError: hours, minutes or seconds out of range.
@@ -176,7 +179,7 @@ def clock_of_day(value: float) -> float:
 
 
 def _seconds_of_clock(cell: str) -> float | None:
-    """Seconds after midnight; None of any other text."""
+    """Return the seconds after midnight of a time of day; None for other text."""
     match = _CLOCK.fullmatch(cell)
     if match is None:
         short = _MINUTES.fullmatch(cell)
@@ -196,7 +199,7 @@ def _month_name(cell: str) -> re.Match[str] | None:
 
 
 def _day_offsets(dates: Sequence[str]) -> tuple[Vector, list[str]]:
-    """Days after the first row, (n,), and a notice where the order of day and month was open."""
+    """Return days after the first row, (n,), and a notice if the order of day and month is ambiguous."""
     different = list(dict.fromkeys(dates))
     if len(different) == 1:
         if not is_date(different[0]):
@@ -204,23 +207,23 @@ def _day_offsets(dates: Sequence[str]) -> tuple[Vector, list[str]]:
         return np.zeros(len(dates)), []
     readings = []
     for day_first in (True, False):
-        known = {text: _date(text, day_first) for text in different}
-        if all(one is not None for one in known.values()):
-            first = known[dates[0]]
-            readings.append({text: (one - first).days for text, one in known.items()})  # type: ignore[operator]
+        parsed = {text: _date(text, day_first) for text in different}
+        if all(day is not None for day in parsed.values()):
+            first = parsed[dates[0]]
+            readings.append({text: (day - first).days for text, day in parsed.items()})  # type: ignore[operator]
     if not readings:
         raise ValueError(next((row for row, text in enumerate(dates) if _date(text, True) is None), 0))
-    spans = [max(map(abs, one.values())) for one in readings]
+    spans = [max(map(abs, day.values())) for day in readings]
     best = readings[int(np.argmin(spans))]
     notices = []
     if len(readings) == 2 and readings[0] != readings[1]:
         order = "day first" if best is readings[0] else "month first"
-        notices.append(f"dates as {different[0]} are taken with the {order}: the shorter record of the two readings")
+        notices.append(f"dates such as {different[0]} are read {order}: this order gives the shorter record")
     return np.array([float(best[text]) for text in dates]), notices
 
 
 def _date(text: str, day_first: bool) -> date | None:
-    """A date; None where the text is none in that order."""
+    """Parse a date with the day or the month first; None if the text is not a date in that order."""
     try:
         if match := _YEAR_FIRST.fullmatch(text):
             return date(int(match["y"]), int(match["m"]), int(match["d"]))

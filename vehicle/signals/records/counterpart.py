@@ -1,4 +1,4 @@
-"""What is wrong with a measured channel, told from its simulated counterpart: clock, sign, unit."""
+"""Compare measured channels with their simulated counterparts: detect faults of clock, sign and unit."""
 
 from __future__ import annotations
 
@@ -17,13 +17,17 @@ from vehicle.signals.records.units import STANDARD_GRAVITY
 Complex = npt.NDArray[np.complex128]
 
 SAME_MOTION = 0.7
-"""Correlation of size from which on two records show one motion, so that sign, unit and clock can be judged [-]."""
+"""Minimum |correlation| of two records of the same motion, for which sign, unit and clock can be checked [-]."""
+
 FACTOR_RANGE = 1.5
-"""A ratio within this factor of 9.81 or 1000 is that of a unit: a model that moves alike is nearer."""
+"""Maximum ratio to 9.81 or 1000 of a wrong unit [-]: the level of a model with the same motion is closer than that."""
+
 SHARE_OF_STEP = 0.25
-"""Time shift over the sampling interval from which on it is worth a sentence [-]; it is found within a tenth."""
+"""Minimum time shift over the sampling interval for a message [-]; the estimate is accurate to 0.1."""
+
 SIGNIFICANT = 4.0
-"""Standard errors beyond which a shift or a drift is one."""
+"""Minimum ratio of a significant shift or drift to its standard error [-]."""
+
 PARTS = 1e6
 """Parts per million."""
 
@@ -39,91 +43,93 @@ UNITS: Mapping[tuple[str, float], str] = {
     ("N", 1e3): "N though the file says kN",
     ("N", 1e-3): "kN",
 }
-"""SI unit and the ratio of measured over true values to the unit that the values have."""
+"""SI unit and ratio of measured to true values -> actual unit of the measured values."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Counterpart:
-    """A measured time history against the simulated one.
+    """Comparison of a measured time history with the simulated one.
 
     Attributes:
-        channel: name in the model.
-        unit: SI unit of both.
-        found: time shift of the simulated record, positive where it is late; None where nothing moves.
+        channel: channel name in the model.
+        unit: SI unit of both time histories.
+        shift: time shift of the simulated record, positive for a late one; None for constant channels.
     """
 
     channel: str
     unit: str
-    found: TimeShift | None
+    shift: TimeShift | None
 
     @property
-    def known(self) -> TimeShift | None:
-        """The time shift, where both records show one motion."""
-        return self.found if self.found is not None and abs(self.found.correlation) >= SAME_MOTION else None
+    def reliable_shift(self) -> TimeShift | None:
+        """Time shift if |correlation| is at least `SAME_MOTION`, else None."""
+        return self.shift if self.shift is not None and abs(self.shift.correlation) >= SAME_MOTION else None
 
 
 def run_times(measured: Record, delay: float, drift: float, begin: float = 0.0) -> Vector:
     """Return the times of a measurement on the clock of the run: t = t_m (1 + drift) + delay [s], (n,).
 
     Args:
-        measured: the measurement.
-        delay: time of the run at which the measurement began [s].
-        drift: by which the clock of the measurement is slow [-].
-        begin: time at which the file begins, from which its times are counted [s].
+        measured: measured record.
+        delay: time of the run at the beginning of the measurement [s].
+        drift: relative slowness of the clock of the measurement [-].
+        begin: first time in the file, subtracted from all its times [s].
     """
     return np.asarray((measured.time - begin) * (1.0 + drift) + delay)
 
 
 def counterparts(measured: Record, simulated: Record, times: Vector) -> list[Counterpart]:
-    """Return the time shift of each channel that both have, at the lower rate of both.
+    """Estimate the time shift of each channel contained in both records, at the lower of their sampling rates.
 
     Args:
-        measured: its channels at other times than its own.
-        simulated: the run.
-        times: of the measured samples on the clock of the run [s], (n,).
+        measured: measured record; `times` replace its times.
+        simulated: record of the run.
+        times: times of the measured samples on the clock of the run [s], (n,).
     """
     step = max(float(times[-1] - times[0]) / (times.size - 1), simulated.step)
     start = simulated.time[0]
     first = math.ceil((times[0] - start) / step - 1e-6)
     grid = start + step * np.arange(first, math.floor((times[-1] - start) / step + 1e-6) + 1)
-    other = start + step * np.arange(math.floor((simulated.time[-1] - start) / step + 1e-6) + 1)
-    found: list[Counterpart] = []
+    simulated_grid = start + step * np.arange(math.floor((simulated.time[-1] - start) / step + 1e-6) + 1)
+    pairs: list[Counterpart] = []
     guess: TimeShift | None = None
     for name, values in measured.channels.items():
         if name not in simulated.channels:
             continue
-        truth = at_times(times, values, np.clip(grid, times[0], times[-1]), step)
-        curve = at_times(simulated.time, simulated.channels[name], np.clip(other, start, simulated.time[-1]), step)
-        one = time_shift(truth, curve, step, start - float(grid[0]), guess)
-        found.append(Counterpart(channel=name, unit=measured.units[name], found=one and one.later(float(grid[0]))))
-        if one is not None and abs(one.correlation) > abs(guess.correlation if guess else SAME_MOTION):
-            guess = one
-    return found
+        measured_curve = at_times(times, values, np.clip(grid, times[0], times[-1]), step)
+        simulated_curve = at_times(
+            simulated.time, simulated.channels[name], np.clip(simulated_grid, start, simulated.time[-1]), step
+        )
+        shift = time_shift(measured_curve, simulated_curve, step, start - float(grid[0]), guess)
+        pairs.append(Counterpart(channel=name, unit=measured.units[name], shift=shift and shift.later(float(grid[0]))))
+        if shift is not None and abs(shift.correlation) > abs(guess.correlation if guess else SAME_MOTION):
+            guess = shift
+    return pairs
 
 
 def clock_advice(parts: Sequence[Counterpart], step: float, delay: float, drift: float, command: str = "") -> list[str]:
-    """Return a sentence where most channels agree best at one and the same other delay and drift.
+    """Return a message if another delay and drift is the best fit of most channels; else [].
 
     Args:
-        parts: see `counterparts`.
+        parts: comparisons returned by `counterparts`.
         step: sampling interval of the comparison [s].
-        delay, drift: that the counterparts were found with [s], [-].
-        command: what has the options --delay and --drift, where it is another command.
+        delay, drift: current values, used for `parts` [s], [-].
+        command: command with the options --delay and --drift; empty for the running command.
     """
-    known = [part for part in parts if part.known]
-    if not known:
+    reliable = [part for part in parts if part.reliable_shift]
+    if not reliable:
         return []
-    middle = float(np.median([part.found.middle for part in known if part.found]))
-    lags = np.array([part.found.at(middle) for part in known if part.found])
-    errors = np.array([np.nan_to_num(part.found.shift_error, posinf=step) for part in known if part.found])
+    middle = float(np.median([part.shift.middle for part in reliable if part.shift]))
+    lags = np.array([part.shift.at(middle) for part in reliable if part.shift])
+    errors = np.array([np.nan_to_num(part.shift.shift_error, posinf=step) for part in reliable if part.shift])
     alike = np.abs(lags - np.median(lags)) <= np.maximum(step, SIGNIFICANT * errors)
-    if 2 * np.count_nonzero(alike) <= len(known):
+    if 2 * np.count_nonzero(alike) <= len(reliable):
         return []
     weight = 1.0 / (errors[alike] + 1e-3 * step) ** 2
     lag, error = float(np.average(lags[alike], weights=weight)), 1.0 / math.sqrt(float(weight.sum()))
-    shifts = [part.found for part, same in zip(known, alike, strict=True) if same and part.found]
+    shifts = [part.shift for part, agrees in zip(reliable, alike, strict=True) if agrees and part.shift]
     slope, spread = _common_drift(shifts)
-    span = max(one.span for one in shifts)
+    span = max(shift.span for shift in shifts)
     drifts = abs(slope) > SIGNIFICANT * spread and abs(slope) * span > 2.0 * SHARE_OF_STEP * step
     if not drifts:
         slope = 0.0
@@ -133,101 +139,104 @@ def clock_advice(parts: Sequence[Counterpart], step: float, delay: float, drift:
     # t' = t + lag(t) with t = t_m (1 + drift) + delay.
     ahead = lag - slope * middle
     new_delay, new_drift = (1.0 + slope) * delay + ahead, (1.0 + slope) * (1.0 + drift) - 1.0
-    who = "all alike" if alike.all() and len(alike) == len(parts) else f"{len(shifts)} of {len(parts)} alike"
+    agreement = (
+        "in all channels" if alike.all() and len(alike) == len(parts) else f"in {len(shifts)} of {len(parts)} channels"
+    )
     options = f"--delay {round(new_delay, 7):.10g}"
     if drifts or drift:
         options += f" --drift {new_drift * PARTS:.7g}"
     options = f"{options} to {command}" if command else options
     if drifts:
         low, high = middle - 0.5 * span, middle + 0.5 * span
-        said = (
-            f"the clock of the measurement is {100 * abs(slope):.4g} % {'slow' if slope > 0 else 'fast'} against the "
-            f"run: the simulated time histories are {1e3 * (lag + slope * (low - middle)):.5g} ms late at {low:.4g} s "
-            f"and {1e3 * (lag + slope * (high - middle)):.5g} ms at {high:.4g} s, {who}: give {options}"
+        message = (
+            f"the clock of the measurement is {100 * abs(slope):.4g} % {'slow' if slope > 0 else 'fast'} relative to "
+            f"the run: the simulated time histories are {1e3 * (lag + slope * (low - middle)):.5g} ms late at "
+            f"{low:.4g} s and {1e3 * (lag + slope * (high - middle)):.5g} ms at {high:.4g} s, {agreement}: "
+            f"set {options}"
         )
     else:
-        said = (
-            f"the simulated time histories are {lag:.6g} s late, {who}: if the records began at different times, give "
-            f"{options}"
+        message = (
+            f"the simulated time histories are {lag:.6g} s late, {agreement}: if the records began at different times, "
+            f"set {options}"
         )
-    periods = {round(one.period, 6) for one in shifts if one.period is not None}
-    if len(periods) and all(one.period is not None for one in shifts):
-        said += (
-            f"; the records repeat themselves every {min(periods):.4g} s, so that whole periods more or less fit as "
-            "well: begin at an event that happens once"
+    periods = {round(shift.period, 6) for shift in shifts if shift.period is not None}
+    if len(periods) and all(shift.period is not None for shift in shifts):
+        message += (
+            f"; the records have a period of {min(periods):.4g} s, so shifts by whole periods fit equally well: begin "
+            "at an event that occurs once"
         )
-    return [said]
+    return [message]
 
 
 def _common_drift(shifts: Sequence[TimeShift]) -> tuple[float, float]:
-    """Mean drift by the standard errors, and its standard error; infinite where no channel tells one."""
-    told = [one for one in shifts if math.isfinite(one.drift_error)]
-    if not told:
+    """Return the mean drift, weighted by the standard errors, and its standard error (infinite without drifts)."""
+    with_drift = [shift for shift in shifts if math.isfinite(shift.drift_error)]
+    if not with_drift:
         return 0.0, math.inf
-    errors = np.array([one.drift_error for one in told])
+    errors = np.array([shift.drift_error for shift in with_drift])
     weight = 1.0 / (errors + 1e-9) ** 2
-    values = np.array([one.drift for one in told])
+    values = np.array([shift.drift for shift in with_drift])
     mean = float(np.average(values, weights=weight))
     scatter = math.sqrt(float(np.average((values - mean) ** 2, weights=weight)))
     return mean, max(1.0 / math.sqrt(float(weight.sum())), scatter)
 
 
 def sign_and_unit(parts: Sequence[Counterpart]) -> list[str]:
-    """Return a sentence for each inverted channel, and for each one in another unit.
+    """Return one message for each inverted channel and each channel with a wrong unit.
 
     Args:
-        parts: see `counterparts`.
+        parts: comparisons returned by `counterparts`.
     """
-    said: list[str] = []
+    messages: list[str] = []
     for part in parts:
-        one = part.known
-        if one is None:
+        shift = part.reliable_shift
+        if shift is None:
             continue
-        if one.correlation < 0.0:
-            said.append(_inverted(part.channel, f"correlation {one.correlation:.3f}"))
-        said += _unit(part.channel, part.unit, abs(one.gain / one.correlation))
-    return said
+        if shift.correlation < 0.0:
+            messages.append(_inverted(part.channel, f"correlation {shift.correlation:.3f}"))
+        messages += _unit(part.channel, part.unit, abs(shift.gain / shift.correlation))
+    return messages
 
 
 def response_faults(channel: str, measured: Complex, simulated: Complex, weight: Vector) -> list[str]:
-    """Return a sentence where a measured response is inverted, or in another unit, at all frequencies alike.
+    """Return messages for a measured frequency response that is inverted or has a wrong unit at all frequencies.
 
     Args:
-        channel: name in the model.
-        measured, simulated: responses [m/s2 per m], (m,); NaN where undefined.
-        weight: of the lines [-], (m,).
+        channel: channel name in the model.
+        measured, simulated: frequency responses [m/s2 per m], (m,); NaN if undefined.
+        weight: weight of each line [-], (m,).
     """
     usable = np.isfinite(measured) & np.isfinite(simulated) & (weight > 0.0) & (np.abs(measured) > 0.0)
     usable &= np.abs(simulated) > 0.0
     if np.count_nonzero(usable) < 3:
         return []
     ratio, share = measured[usable] / simulated[usable], weight[usable] / weight[usable].sum()
-    said = []
+    messages = []
     if float(share @ (ratio / np.abs(ratio)).real) < -SAME_MOTION:
         phase = math.degrees(math.sqrt(float(share @ np.angle(-ratio) ** 2)))
-        said.append(_inverted(channel, f"phase 180 degrees, RMS deviation {phase:.2g} degrees"))
+        messages.append(_inverted(channel, f"phase 180 degrees, RMS deviation {phase:.2g} degrees"))
     level = np.log(np.abs(ratio))
     mean = float(share @ level)
     if math.sqrt(float(share @ (level - mean) ** 2)) < math.log(2.0):
-        said += _unit(channel, "m/s2", math.exp(mean))
-    return said
+        messages += _unit(channel, "m/s2", math.exp(mean))
+    return messages
 
 
 def _inverted(channel: str, why: str) -> str:
-    remedy = f"if it was measured in the other direction, give --turn {channel}"
-    return f"{channel} is inverted against the run ({why}): {remedy}"
+    remedy = f"if it was measured in the other direction, set --turn {channel}"
+    return f"{channel} is inverted relative to the run ({why}): {remedy}"
 
 
 def _unit(channel: str, unit: str, ratio: float) -> list[str]:
-    for (si, factor), true in UNITS.items():
+    for (si, factor), unit_text in UNITS.items():
         if si == unit and abs(math.log(ratio / factor)) < math.log(FACTOR_RANGE):
-            name, *doubt = true.split(" ", 1)
+            name, *remark = unit_text.split(" ", 1)
             size = (
                 f"{ratio:.4g} times the simulated one" if ratio > 1.0 else f"1/{1.0 / ratio:.4g} of the simulated one"
             )
-            doubted = f"{name} {doubt[0]}" if doubt else name
+            full_text = f"{name} {remark[0]}" if remark else name
             return [
-                f"{channel}: the measured level is {size}, near the factor {max(factor, 1.0 / factor):.4g} of a unit: "
-                f"if its values are in {doubted}, give --unit {channel}={name}"
+                f"{channel}: the measured level is {size}, close to the factor {max(factor, 1.0 / factor):.4g} of a "
+                f"unit: if its values are in {full_text}, set --unit {channel}={name}"
             ]
     return []

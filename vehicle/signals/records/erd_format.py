@@ -1,4 +1,4 @@
-"""ERD files of road profilers (UMTRI): a header of text lines, then one row of numbers for each sample."""
+"""Read ERD files of road profilers (UMTRI): a header of text lines, then one row of numbers per sample."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from vehicle.signals.records.text import read_text
 from vehicle.signals.records.units import find_unit
 
 TEXT = 5
-"""Key of numbers that are written as text."""
+"""KEYNUM of numbers written as text."""
 
 FIELD = 8
-"""Length of a name or a unit in the lines SHORTNAM and UNITSNAM, and of the keyword before it [characters]."""
+"""Length of a keyword, and of a name or unit in the lines SHORTNAM and UNITSNAM [characters]."""
 
 CONTINUED = "&1000"
-"""Begins a line that continues the one above."""
+"""First characters of a continuation line."""
 
 
 def read(path: Path) -> Measurement:
     """Read a road profile: channels over the distance.
 
-    The second line holds NCHAN, NSAMP, NRECS, NBYTES, KEYNUM and STEP: channels, samples (-1: open), layout of binary
-    data, kind of numbers, and the distance of the samples in XUNITS.
+    The second line contains NCHAN, NSAMP, NRECS, NBYTES, KEYNUM and STEP: channels, samples (-1: unknown), layout of
+    binary data, number format, and the spacing of the samples in XUNITS.
 
     Args:
-        path: the file, whose first line begins with ERDFILEV.
+        path: file whose first line begins with ERDFILEV.
 
     Raises:
-        DataError: a damaged header or table, binary numbers, or a unit of the distance that is not known.
+        DataError: a damaged header or table, binary numbers, or an unknown unit of the distance.
 
     Source: UMTRI, The ERD File Specification; headers of LTPP profiles.
     """
@@ -39,38 +39,42 @@ def read(path: Path) -> Measurement:
     lines = text.lines
     end = next((n for n, line in enumerate(lines[:400]) if line.strip().upper() == "END"), None)
     if end is None or end < 2:
-        raise DataError(f"{path}: no line END behind the header; needed is a complete ERD file")
+        raise DataError(f"{path}: no line END after the header; use a complete ERD file")
     cells = [cell.strip() for cell in lines[1].replace(",", " ").split()]
     try:
-        count, samples, kind, step = int(cells[0]), int(cells[1]), int(cells[4]), float(cells[5])
+        count, samples, number_format, step = int(cells[0]), int(cells[1]), int(cells[4]), float(cells[5])
     except (IndexError, ValueError):
-        raise DataError(f"{path}:2: needed are NCHAN, NSAMP, NRECS, NBYTES, KEYNUM, STEP; found {lines[1]!r}") from None
-    if kind != TEXT:
-        raise DataError(f"{path}:2: binary numbers (KEYNUM {kind}), which are not read; export the profile as text ERD")
+        raise DataError(
+            f"{path}:2: must contain NCHAN, NSAMP, NRECS, NBYTES, KEYNUM, STEP; found {lines[1]!r}"
+        ) from None
+    if number_format != TEXT:
+        raise DataError(
+            f"{path}:2: binary numbers (KEYNUM {number_format}) are not supported; export the profile as text ERD"
+        )
     if count < 1 or step <= 0.0:
         raise DataError(f"{path}:2: {count} channels every {step:g}; both must be above 0")
-    words = _keywords(lines[2:end])
-    names = _fields(words.get("SHORTNAM", ""), count)
-    units = [_unit(unit) for unit in _fields(words.get("UNITSNAM", ""), count)]
-    along = find_unit(_unit(words.get("XUNITS", "").strip()))
-    if along is None or along.quantity != "displacement":
+    keywords = _keywords(lines[2:end])
+    names = _fields(keywords.get("SHORTNAM", ""), count)
+    units = [_unit(unit) for unit in _fields(keywords.get("UNITSNAM", ""), count)]
+    distance_unit = find_unit(_unit(keywords.get("XUNITS", "").strip()))
+    if distance_unit is None or distance_unit.quantity != "displacement":
         raise DataError(
-            f"{path}: XUNITS {words.get('XUNITS', '').strip()!r}: no length; a profile over time is no road; write the "
-            "unit of the distance there"
+            f"{path}: XUNITS {keywords.get('XUNITS', '').strip()!r}: must be a unit of length; the profile must be "
+            "over distance, not time; write the unit of the distance"
         )
     rows = [line.replace(",", " ") for line in lines[end + 1 :] if line.strip()]
     try:
         values = np.array(" ".join(rows).split(), dtype=np.float64)
     except ValueError as error:
-        raise DataError(f"{path}: behind line {end + 1}: {error}; allowed are numbers alone") from None
+        raise DataError(f"{path}: after line {end + 1}: {error}; must be numbers only") from None
     if values.size % count or not values.size or (samples > 0 and values.size != samples * count):
-        told = f"{samples} samples of " if samples > 0 else ""
+        claim = f"{samples} samples of " if samples > 0 else ""
         raise DataError(
-            f"{path}: {values.size} numbers; the header tells {told}{count} channels; the file was cut off or damaged"
+            f"{path}: {values.size} numbers; {claim}{count} channels in the header; the file is truncated or damaged"
         )
     table = values.reshape(-1, count)
-    start = float(words["XSTART"]) if "XSTART" in words and _is_number(words["XSTART"]) else 0.0
-    distance = uniform_axis(table.shape[0], step, start) * along.factor
+    start = float(keywords["XSTART"]) if "XSTART" in keywords and _is_number(keywords["XSTART"]) else 0.0
+    distance = uniform_axis(table.shape[0], step, start) * distance_unit.factor
     channels = [Channel(name="distance", values=distance, unit="m", function="road profile")]
     channels += [
         Channel(
@@ -78,7 +82,7 @@ def read(path: Path) -> Measurement:
             values=np.ascontiguousarray(table[:, n]),
             unit=unit,
             function="road profile",
-            remark="" if unit else "the file tells no unit",
+            remark="" if unit else "no unit in the file",
         )
         for n, (name, unit) in enumerate(zip(names, units, strict=True))
     ]
@@ -87,35 +91,35 @@ def read(path: Path) -> Measurement:
         format="erd",
         channels=tuple(channels),
         sha256=text.sha256,
-        program=words.get("TITLE", "").strip()[:80],
-        start=words.get("DATE", "").strip(),
+        program=keywords.get("TITLE", "").strip()[:80],
+        start=keywords.get("DATE", "").strip(),
         notices=text.notices,
     )
 
 
 def _keywords(lines: list[str]) -> dict[str, str]:
-    """Return what follows each keyword of eight characters, with its continuation lines."""
-    found: dict[str, str] = {}
-    last = ""
+    """Return the text after each keyword of eight characters, including continuation lines."""
+    values: dict[str, str] = {}
+    keyword = ""
     for line in lines:
-        word, value = line[:FIELD].strip().upper(), line[FIELD:]
-        if line.startswith(CONTINUED) and last:
-            found[last] += value
-        elif word:
-            found[word], last = value, word
-    return found
+        name, value = line[:FIELD].strip().upper(), line[FIELD:]
+        if line.startswith(CONTINUED) and keyword:
+            values[keyword] += value
+        elif name:
+            values[name], keyword = value, name
+    return values
 
 
 def _fields(text: str, count: int) -> list[str]:
-    """Return the fields of eight characters, empty where the line ends before."""
+    """Split a line into fields of eight characters; fields beyond its end are empty."""
     return [text[n * FIELD : (n + 1) * FIELD].strip() for n in range(count)]
 
 
 def _unit(text: str) -> str:
-    """Return a unit as the table of units writes it."""
-    known = {"meters": "m", "meter": "m", "feet": "ft", "foot": "ft", "inches": "in", "inch": "in", "mils": "mil"}
-    plain = text.strip().rstrip(".")
-    return known.get(plain.lower(), plain if find_unit(plain) else plain.lower())
+    """Return a unit in the spelling of the unit table."""
+    names = {"meters": "m", "meter": "m", "feet": "ft", "foot": "ft", "inches": "in", "inch": "in", "mils": "mil"}
+    name = text.strip().rstrip(".")
+    return names.get(name.lower(), name if find_unit(name) else name.lower())
 
 
 def _is_number(text: str) -> bool:

@@ -1,4 +1,4 @@
-"""The registry of file formats: how each is recognised, and which modules read and write it."""
+"""Registry of file formats: recognition by content, and the modules that read and write each format."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Format:
-    """A file format. Its modules lie in this package and are imported on first use.
+    """File format; its modules are in this package and imported on first use.
 
     Attributes:
-        name: name in messages; ending of the files that are written.
-        recognise: returns True for the head of its files.
+        name: name in messages; extension of written files.
+        recognise: predicate of the first bytes of a file.
         reader: module with `read(path) -> Measurement`; with `databases`, `read(path, databases)`.
-        table: module with `read(path, wanted) -> Table` and `write(path, record, frame)`; empty where the format is
-            none of our own tables.
-        writer: module with `write(path, channels, about)`; empty where it is written as a table, or not at all.
-        databases: True where DBC files decode the CAN frames of the file.
+        table: module with `read(path, wanted) -> Table` and `write(path, record, frame)`; empty for foreign
+            formats.
+        writer: module with `write(path, channels, description)`; empty if written as a table or never.
+        databases: True if DBC files decode the CAN frames of the file.
     """
 
     name: str
@@ -67,21 +67,21 @@ FORMATS = (
     Format(name="uff", recognise=signatures.is_uff, reader="uff_format", writer="uff_writer"),
     Format(name="csv", recognise=lambda head: True, reader="logger_format", table="text_format"),
 )
-"""In the order of recognition: the first that recognises a file reads it. Text, the last, accepts all files that
-`vehicle.signals.records.refused_formats` does not refuse."""
+"""File formats in the order of recognition. Text is last and accepts every file that
+`vehicle.signals.records.refused_formats` does not reject."""
 
 BY_NAME = {entry.name: entry for entry in FORMATS}
 
 
 def recognised_format(path: Path) -> Format:
-    """Return the format of a file, by its content, whatever the file is called.
+    """Recognise the format of a file by its content, regardless of its name.
 
     Args:
-        path: the file.
+        path: measurement file.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: a format that is not read, or binary data.
+        ConfigurationError: the file does not exist.
+        DataError: an unsupported format, or binary data.
     """
     if not path.is_file():
         raise ConfigurationError(f"{path}: no such file; give the path of a measurement file")
@@ -91,8 +91,8 @@ def recognised_format(path: Path) -> Format:
         head = Head(path, data, path.stat().st_size)
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error.strerror}); check the file and its permissions") from error
-    *others, text = FORMATS
-    for entry in others:
+    *binary_formats, text = FORMATS
+    for entry in binary_formats:
         if entry.recognise(head):
             return entry
     refused_formats.refuse(head)
@@ -100,19 +100,19 @@ def recognised_format(path: Path) -> Format:
 
 
 TABLES = tuple(entry.name for entry in FORMATS if entry.table)
-"""Formats of our own tables, in which a run is always written."""
+"""Names of the table formats in which a run is always written."""
 
 WRITTEN = tuple(entry.name for entry in FORMATS if entry.table or entry.writer)
-"""Formats in which a run can be written."""
+"""Names of all formats in which a run can be written."""
 
 
 def write_record(path: Path, name: str, record: Record, frame: str) -> None:
     """Write a record as a table.
 
     Args:
-        path: the file.
-        name: format, one of `TABLES`.
+        path: file to write.
+        name: name of the format, one of `TABLES`.
         record: time, channels and units.
-        frame: axes of the vectors in words.
+        frame: description of the vector axes.
     """
     BY_NAME[name].function("table", "write")(path, record, frame)

@@ -1,4 +1,4 @@
-"""Where the points of a measurement are, what is drawn between them, and how they move in a mode."""
+"""Geometry of a measurement: points, lines between points, and mode shapes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Geometry:
-    """Points, and lines between them.
+    """Measurement points and the lines of their wireframe.
 
     Attributes:
-        points: name, or number in the file, to coordinates in the global axes [m].
-        lines: each a sequence of points that are drawn connected; of an element with three corners or more the first
-            stands at the end again.
+        points: name or number in the file -> coordinates in global axes [m].
+        lines: sequences of connected points; elements with at least three corners repeat the first point at the end.
     """
 
     points: Mapping[str, Sequence[float]] = field(default_factory=dict)
@@ -25,20 +24,20 @@ class Geometry:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ModeShape:
-    """A mode as a file holds it: u(t) = Re(shape exp(s t)).
+    """Mode shape of a file: u(t) = Re(shape exp(s t)).
 
     Attributes:
-        number: of the mode, from 1; 0 where the file tells none.
+        number: number of the mode, from 1; 0 if unknown.
         frequency: |s| / 2 pi [Hz].
-        damping_ratio: -Re(s) / |s| [-]; 0 where the file tells none.
-        modal_mass: of a normal mode with this shape [kg]; of a complex one 0, as where the file tells none.
-        modal_a: Modal A of a complex mode, in the units of the file; 0 where the file tells none.
-        points: names of the points, n of them, as of `Geometry`.
-        shape: translations along x, y, z [-] and rotations about them [1/m] in the global axes, (n, 6); real for a
+        damping_ratio: -Re(s) / |s| [-]; 0 if unknown.
+        modal_mass: modal mass of a normal mode with this shape [kg]; 0 for complex modes or if unknown.
+        modal_a: Modal A of a complex mode, in the units of the file; 0 if unknown.
+        points: names of the n points, see `Geometry`.
+        shape: translations along x, y, z [-] and rotations about x, y, z [1/m] in global axes, (n, 6); real for a
             normal mode.
-        name: what the file calls it.
-        is_complex: whether it is a complex mode.
-        quantity: displacement, velocity, acceleration, or empty where that is open.
+        name: name of the mode in the file.
+        is_complex: True for a complex mode.
+        quantity: displacement, velocity, acceleration, or empty if unknown.
     """
 
     number: int

@@ -1,7 +1,7 @@
-"""HDF5: MAT files of version 7.3, and arrays with their units as attributes.
+"""Read and write HDF5: MAT files of version 7.3, and arrays with units as attributes.
 
-Written are one array a channel, with the attributes name, unit, kind, start, step, function, place, direction, and
-under `axes` the frequencies that are not even.
+A written file has one array per channel with the attributes name, unit, kind, start, step, function, place, direction,
+and uneven frequencies in the group `axes`.
 """
 
 from __future__ import annotations
@@ -22,30 +22,32 @@ from vehicle.signals.records.units import find_unit
 PLAIN_CLASSES = frozenset(
     ("double", "single", "logical", "char", "struct", "cell", "function_handle", "canonical empty")
 ) | {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
-"""Classes of MATLAB that are no objects."""
+"""MATLAB classes other than objects."""
+
 LONG = 10
-"""An array of at least so many times more columns than rows holds a channel in each row."""
+"""Minimum ratio of columns to rows of an array with one channel per row."""
+
 AXES = "axes"
-"""Group of the axes that are not even, under the names of their channels."""
+"""Name of the group with the uneven axes, under the names of their channels."""
 
 
 def read(path: Path) -> Measurement:
-    """Read structures of MATLAB, or all arrays of numbers.
+    """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file.
 
     Raises:
         MissingPartError: h5py is not installed.
-        DataError: damaged, cut off, or without numbers.
+        DataError: the file is damaged, truncated, or without numbers.
     """
     h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
     start = ""
     try:
         with h5py.File(path, "r") as file:
-            if any("MATLAB_class" in one.attrs for one in file.values()):
-                objects = {name: kind for name, one in file.items() if (kind := _object_class(one))}
-                plain = [name for name in file if not name.startswith("#") and name not in objects]
-                held = {name: _matlab(file, file[name], h5py) for name in plain}
-                held = {name: one for name, one in held.items() if one is not None}
-                channels, notices = channels_of(held, path, objects)
+            if any("MATLAB_class" in item.attrs for item in file.values()):
+                objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
+                names = [name for name in file if not name.startswith("#") and name not in objects]
+                variables = {name: _matlab(file, file[name], h5py) for name in names}
+                variables = {name: item for name, item in variables.items() if item is not None}
+                channels, notices = channels_of(variables, path, objects)
                 program = "MATLAB 7.3"
             else:
                 notices = []
@@ -53,12 +55,10 @@ def read(path: Path) -> Measurement:
                 program = _attribute(file, "program")
     except DataError:
         raise
-    except Exception as error:  # damaged files raise what they like
-        raise DataError(
-            f"{path}: no HDF5 file that can be read ({error}); it may be cut off; export it again"
-        ) from None
+    except Exception as error:  # h5py raises errors of any type for damaged files
+        raise DataError(f"{path}: cannot be read as HDF5 ({error}); it may be truncated; export it again") from None
     if not channels:
-        raise DataError(f"{path}: no array of numbers")
+        raise DataError(f"{path}: no numeric array; export the channels as arrays")
     return Measurement(
         path=path,
         format="hdf5",
@@ -71,107 +71,113 @@ def read(path: Path) -> Measurement:
 
 
 def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[Channel, ...], str]:
-    """Channels of all arrays and of the frames of pandas below a group, in the order of the file; a start."""
-    found: list[Channel] = []
+    """Return the channels of all arrays and pandas frames, in the order of the file, and the first start time."""
+    all_channels: list[Channel] = []
     starts: list[str] = []
 
     def enter(group: Any, prefix: str) -> None:
-        for name, one in group.items():
+        for name, item in group.items():
             label = f"{prefix}{name}"
-            if isinstance(one, h5py.Dataset):
-                found.extend(_arrays(label, one, notices))
-            elif one.attrs.get("pandas_type") is not None:
-                channels, start = frame_channels(path, label, one)
-                found.extend(channels)
+            if isinstance(item, h5py.Dataset):
+                all_channels.extend(_arrays(label, item, notices))
+            elif item.attrs.get("pandas_type") is not None:
+                channels, start = frame_channels(path, label, item)
+                all_channels.extend(channels)
                 starts.append(start)
             else:
-                enter(one, f"{label}/")
+                enter(item, f"{label}/")
 
     enter(file, "")
-    return tuple(found), next(filter(None, starts), "")
+    return tuple(all_channels), next(filter(None, starts), "")
 
 
-def _object_class(one: Any) -> str:
-    """Class of a variable of MATLAB that is an object, as a table; empty for arrays, structures and cells."""
-    kind = one.attrs.get("MATLAB_class", b"")
-    kind = kind.decode("latin-1") if isinstance(kind, bytes) else str(kind)
-    return kind if "MATLAB_object_decode" in one.attrs or (kind and kind not in PLAIN_CLASSES) else ""
+def _object_class(variable: Any) -> str:
+    """Return the class of a MATLAB object, such as a table; empty for arrays, structures and cells."""
+    matlab_class = variable.attrs.get("MATLAB_class", b"")
+    matlab_class = matlab_class.decode("latin-1") if isinstance(matlab_class, bytes) else str(matlab_class)
+    return (
+        matlab_class
+        if "MATLAB_object_decode" in variable.attrs or (matlab_class and matlab_class not in PLAIN_CLASSES)
+        else ""
+    )
 
 
-def _matlab(file: Any, one: Any, h5py: Any) -> Any:
-    """A variable of MATLAB as `scipy.io.loadmat` gives it: structures as records, arrays with their axes turned."""
-    if isinstance(one, h5py.Group):
-        fields = {name: _matlab(file, inner, h5py) for name, inner in one.items()}
+def _matlab(file: Any, variable: Any, h5py: Any) -> Any:
+    """Read a MATLAB variable as `scipy.io.loadmat` does: structures as records, arrays transposed."""
+    if isinstance(variable, h5py.Group):
+        fields = {name: _matlab(file, inner, h5py) for name, inner in variable.items()}
         record = np.empty((1, 1), dtype=[(name, object) for name in fields])
         for name, value in fields.items():
             record[0, 0][name] = value
         return record
-    kind = one.attrs.get("MATLAB_class", b"")
-    if _object_class(one):
-        return np.empty((1, 1), dtype=[(name, object) for name in ("s0", "s1", "s2", "arr")])  # as scipy gives it
-    if one.attrs.get("MATLAB_empty", 0):
+    matlab_class = variable.attrs.get("MATLAB_class", b"")
+    if _object_class(variable):
+        return np.empty(
+            (1, 1), dtype=[(name, object) for name in ("s0", "s1", "s2", "arr")]
+        )  # as in `scipy.io.loadmat`
+    if variable.attrs.get("MATLAB_empty", 0):
         return np.array([])
-    values = one[()]
-    if kind == b"char":
+    values = variable[()]
+    if matlab_class == b"char":
         return np.array(["".join(chr(int(code)) for code in np.asarray(values).ravel())])
-    if one.dtype.kind == "O":
+    if variable.dtype.kind == "O":
         references = np.asarray(values).ravel()
         return _matlab(file, file[references[0]], h5py) if references.size == 1 else None
-    if one.dtype.names == ("real", "imag"):
+    if variable.dtype.names == ("real", "imag"):
         values = values["real"] + 1j * values["imag"]
     return np.asarray(values).T
 
 
-def _arrays(name: str, one: Any, notices: list[str]) -> list[Channel]:
-    """Channels of an array: its columns, where it has two axes; its rows where these are the longer ones."""
-    if name.startswith(f"{AXES}/") or one.size is None or one.size < 2:
+def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
+    """Return the channels of an array: its columns, or its rows if these are at least `LONG` times longer."""
+    if name.startswith(f"{AXES}/") or dataset.size is None or dataset.size < 2:
         return []
-    if one.dtype.names is not None:
-        return _fields(name, one, notices)
-    if one.dtype.kind not in "fiuc" or one.ndim not in (1, 2):
+    if dataset.dtype.names is not None:
+        return _fields(name, dataset, notices)
+    if dataset.dtype.kind not in "fiuc" or dataset.ndim not in (1, 2):
         return []
-    values = np.asarray(one[()])
+    values = np.asarray(dataset[()])
     values = values.astype(complex if values.dtype.kind == "c" else np.float64)
-    form = "(:,{})"
+    index_text = "(:,{})"
     if values.ndim == 2 and (len(values) == 1 or LONG * len(values) <= values.shape[1]):
         if len(values) > 1:
             notices.append(f"array {name!r} of {len(values)} x {values.shape[1]}: each row is a channel")
-        values, form = values.T, "({},:)"
+        values, index_text = values.T, "({},:)"
     values = values.reshape(len(values), -1)
-    step, start = one.attrs.get("step"), float(one.attrs.get("start", 0.0))
-    kind = _attribute(one, "kind")
-    axis = uniform_axis(len(values), float(step), start) if step is not None and step > 0.0 and kind else None
-    own = one.file.get(f"{AXES}/{name}")
-    if getattr(own, "shape", None) == (len(values),) and kind:
-        axis = np.asarray(own[()], dtype=np.float64)
-    label = _attribute(one, "name") or name
+    step, start = dataset.attrs.get("step"), float(dataset.attrs.get("start", 0.0))
+    axis_quantity = _attribute(dataset, "kind")
+    axis = uniform_axis(len(values), float(step), start) if step is not None and step > 0.0 and axis_quantity else None
+    stored_axis = dataset.file.get(f"{AXES}/{name}")
+    if getattr(stored_axis, "shape", None) == (len(values),) and axis_quantity:
+        axis = np.asarray(stored_axis[()], dtype=np.float64)
+    label = _attribute(dataset, "name") or name
     return [
         Channel(
-            name=label if values.shape[1] == 1 else label + form.format(n + 1),
+            name=label if values.shape[1] == 1 else label + index_text.format(n + 1),
             values=values[:, n].copy(),
-            unit=_attribute(one, "unit") or _attribute(one, "units"),
+            unit=_attribute(dataset, "unit") or _attribute(dataset, "units"),
             axis=axis,
-            kind="frequency" if kind == "frequency" else "time",
-            function=_attribute(one, "function") or "time history",
-            place=_attribute(one, "place"),
-            direction=_attribute(one, "direction"),
-            reference=_attribute(one, "reference"),
+            kind="frequency" if axis_quantity == "frequency" else "time",
+            function=_attribute(dataset, "function") or "time history",
+            place=_attribute(dataset, "place"),
+            direction=_attribute(dataset, "direction"),
+            reference=_attribute(dataset, "reference"),
         )
         for n in range(values.shape[1])
     ]
 
 
-def _fields(name: str, one: Any, notices: list[str]) -> list[Channel]:
-    """Channels of an array of records, under the names of its fields; a field of times is their axis."""
-    if one.ndim != 1:
-        notices.append(f"array {name!r} of records with {one.ndim} axes is left out")
+def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
+    """Return the fields of a record array as channels; a time field becomes their axis."""
+    if dataset.ndim != 1:
+        notices.append(f"array {name!r} of records with {dataset.ndim} axes is ignored")
         return []
-    table = one[()]
-    plain = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]
-    left = [field for field in table.dtype.names if field not in plain]
-    if left:
-        notices.append(f"fields of {name!r} that hold no numbers are left out: {', '.join(map(repr, left))}")
-    heads = {field: split_head(field) for field in plain}
+    table = dataset[()]
+    numeric = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]
+    others = [field for field in table.dtype.names if field not in numeric]
+    if others:
+        notices.append(f"fields of {name!r} without numbers are ignored: {', '.join(map(repr, others))}")
+    heads = {field: split_head(field) for field in numeric}
     key = next((field for field, (text, unit) in heads.items() if TIME_NAME.fullmatch(text) and _seconds(unit)), None)
     axis = None if key is None else table[key].astype(np.float64) * _seconds(heads[key][1])
     return [
@@ -182,41 +188,41 @@ def _fields(name: str, one: Any, notices: list[str]) -> list[Channel]:
 
 
 def _seconds(unit: str) -> float:
-    """Factor of a unit of time to seconds; 0 for any other unit."""
-    known = find_unit(unit)
-    return known.factor if known is not None and known.quantity == "time" else 0.0
+    """Return the factor from a unit of time to seconds; 0 for other units."""
+    entry = find_unit(unit)
+    return entry.factor if entry is not None and entry.quantity == "time" else 0.0
 
 
-def _attribute(one: Any, name: str) -> str:
-    value = one.attrs.get(name, "")
+def _attribute(item: Any, name: str) -> str:
+    value = item.attrs.get(name, "")
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
-def write(path: Path, channels: tuple[Channel, ...], about: str) -> None:
-    """Write one array a channel.
+def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
+    """Write channels to an HDF5 file, one array per channel.
 
     Args:
-        path: the file.
-        channels: any.
-        about: what the record is.
+        path: file to write.
+        channels: channels of any type.
+        description: description of the record.
 
     Raises:
         MissingPartError: h5py is not installed.
     """
     h5py = extra("h5py", "hdf5", "writing HDF5")
     with h5py.File(path, "w") as file:
-        file.attrs["program"] = about
-        for number, one in enumerate(channels, 1):
-            array = file.create_dataset(f"{number:04d}", data=one.values, compression="gzip", compression_opts=4)
+        file.attrs["program"] = description
+        for number, channel in enumerate(channels, 1):
+            array = file.create_dataset(f"{number:04d}", data=channel.values, compression="gzip", compression_opts=4)
             texts = {
-                name: getattr(one, name) for name in ("name", "unit", "function", "place", "direction", "reference")
+                name: getattr(channel, name) for name in ("name", "unit", "function", "place", "direction", "reference")
             }
             for name, text in texts.items():
                 array.attrs[name] = text
-            if one.axis is not None:
-                array.attrs["kind"] = one.kind
-                array.attrs["start"] = float(one.axis[0])
-                step = even_step(one.axis)
+            if channel.axis is not None:
+                array.attrs["kind"] = channel.kind
+                array.attrs["start"] = float(channel.axis[0])
+                step = even_step(channel.axis)
                 array.attrs["step"] = 0.0 if step is None else step
                 if step is None:
-                    file.create_dataset(f"{AXES}/{number:04d}", data=one.axis)
+                    file.create_dataset(f"{AXES}/{number:04d}", data=channel.axis)

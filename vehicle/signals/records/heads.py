@@ -1,4 +1,4 @@
-"""Heads of the columns of a logger: names, units and sources, in one line or in several, in any order."""
+"""Read column headers of logger files: names, units and sources in one or several lines, in any order."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from vehicle.errors import DataError
 from vehicle.signals.records.units import find_unit
 
 HEAD_LINES = 6
-"""Maximum number of lines of heads: device, name, kind, unit, sensor, axis."""
+"""Maximum number of header lines: device, name, type, unit, sensor, axis."""
+
 UNIT_SHARE = 0.6
-"""Minimum share of units among the filled cells of a line of units that stands beside a line of names [-]."""
+"""Minimum share of units among the filled cells of a unit line next to a name line [-]."""
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 NUMBER_WITH_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?", re.ASCII)
@@ -26,7 +27,8 @@ TIME_NAME = re.compile(
     r"recording)[ _]?time([ _]?stamp)?s?(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
     re.IGNORECASE,
 )
-"""Name of a column of times."""
+"""Name of a time column."""
+
 FREQUENCY_NAME = re.compile(r"(freq\w*|frequenz\w*|f|x-?values?)\b.*", re.IGNORECASE)
 
 _BRACKETS = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*(?:\([^()]*\)[^()]*)?)\))\s*")
@@ -45,14 +47,16 @@ _SUFFIXES = {
     "rad_s": "rad/s", "radps": "rad/s", "rads": "rad/s", "mm": "mm", "cm": "cm", "um": "um", "hz": "Hz", "kN": "kN",
     "Nm": "Nm", "bar": "bar", "kpa": "kPa", "kPa": "kPa", "psi": "psi", "degc": "degC", "degC": "degC", "mV": "mV",
 }  # fmt: skip
-"""Ends of names that are units whatever the name says."""
+"""Suffixes that are units after any name."""
+
 _SUFFIXES_OF = (
     (TIME_NAME, {"s": "s", "sec": "s", "seconds": "s", "ms": "ms", "us": "us", "micros": "us", "millis": "ms"}),
     (_ACCELERATION_NAME, {"g": "g", "G": "g", "mg": "mg"}),
     (_LENGTH_NAME, {"m": "m", "M": "m"}),
     (_FORCE_NAME, {"N": "N", "n": "N"}),
 )
-"""Ends that are units after a name of that quantity alone: `_g` after `acc_z`, `_s` after `time`."""
+"""Suffixes that are units only after a name of that quantity: `_g` after `acc_z`, `_s` after `time`."""
+
 _UNIT_WORDS = frozenset(
     (
         "%", "rpm", "1/min", "#", "-", "db", "dba", "count", "counts", "cnt", "bit", "bits", "no_units", "unitless",
@@ -62,19 +66,19 @@ _UNIT_WORDS = frozenset(
         "hh:mm:ss.sss", "unix", "unix_time", "local_flux", "ml", "mm3", "v/v", "mv/v", "unix time"
     )
 )  # fmt: skip
-"""Texts of a line of units that are none of `vehicle.signals.records.units`, in small letters."""
+"""Unit texts, in lower case, that `vehicle.signals.records.units` does not contain."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Heads:
-    """Heads of the columns of a table.
+    """Column headers of a table.
 
     Attributes:
-        names: as found; "column 3" where no line holds names.
-        units: as found; empty where no line and no name holds one.
-        sources: sensor, bus or device of each column; empty where no line tells it.
-        named: True if a line holds the names.
-        first: index of the first line of heads; that of the first row where there are none.
+        names: names in the file; "column 3" without a name line.
+        units: units in the file, from a unit line or the names; empty if missing.
+        sources: sensor, bus or device of each column; empty if missing.
+        named: True if the file has a name line.
+        first: index of the first header line; without headers, of the first row.
     """
 
     names: tuple[str, ...]
@@ -85,11 +89,11 @@ class Heads:
 
 
 def cells_of(row: str, delimiter: str) -> list[str]:
-    """Return the cells of a row without blanks and quotes around them; a delimiter within quotes belongs to its cell.
+    """Split a row into cells; strip blanks and quotes; keep delimiters within quotes.
 
     Args:
-        row: a line of text.
-        delimiter: between the cells; "" for blanks.
+        row: line of text.
+        delimiter: delimiter of the cells; "" for blanks.
     """
     if not delimiter:
         return row.split()
@@ -102,17 +106,17 @@ def cells_of(row: str, delimiter: str) -> list[str]:
 
 
 def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, count: int) -> Heads:
-    """Find names, units and sources in the lines above a table.
+    """Read names, units and sources from the lines above a table.
 
     Args:
-        path: the file, for messages.
-        lines: of the file.
+        path: measurement file, for messages.
+        lines: all lines of the file.
         start: index of the first row of numbers.
-        delimiter: between the cells; "" for blanks.
+        delimiter: delimiter of the cells; "" for blanks.
         count: number of columns.
 
     Raises:
-        DataError: a line of names with another number of cells, or one of names and numbers.
+        DataError: a name line with a wrong number of cells, or a line that mixes names and numbers.
     """
     above, first = _lines_of_heads(path, lines, start, delimiter, count)
     units = _take_units(above)
@@ -121,14 +125,14 @@ def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, cou
         " ".join(dict.fromkeys(cells[column] for cells in reversed(above) if cells is not names and cells[column]))
         for column in range(count)
     ]
-    own = [""] * count if units is None else [bare_unit(cell) for cell in units]
+    line_units = [""] * count if units is None else [bare_unit(cell) for cell in units]
     if names is None:
         numbered = tuple(f"column {n + 1}" for n in range(count))
-        return Heads(names=numbered, units=tuple(own), sources=("",) * count, named=False, first=first)
+        return Heads(names=numbered, units=tuple(line_units), sources=("",) * count, named=False, first=first)
     heads = [split_head(cell) if cell else (sources[n] or f"column {n + 1}", "") for n, cell in enumerate(names)]
     return Heads(
         names=tuple(name or f"column {n + 1}" for n, (name, _) in enumerate(heads)),
-        units=tuple(line or unit for line, (_, unit) in zip(own, heads, strict=True)),
+        units=tuple(line or unit for line, (_, unit) in zip(line_units, heads, strict=True)),
         sources=tuple(sources),
         named=True,
         first=first,
@@ -138,7 +142,7 @@ def read_heads(path: Path, lines: Sequence[str], start: int, delimiter: str, cou
 def _lines_of_heads(
     path: Path, lines: Sequence[str], start: int, delimiter: str, count: int
 ) -> tuple[list[list[str]], int]:
-    """Cells of the lines right above a table that have its number of cells, the nearest first; index of the last."""
+    """Return the cells of the header lines, the lowest line first, and the index of the highest header line."""
     above: list[list[str]] = []
     first = start
     for index in range(start - 1, -1, -1):
@@ -147,30 +151,37 @@ def _lines_of_heads(
             if any(not _is_unit_line(cells) for cells in above):
                 break
             continue
-        plain = line.strip("\r\n ").lstrip("#").strip(" ") if delimiter == "\t" else line.strip().lstrip("#").strip()
-        cells = cells_of(plain, delimiter)
+        content = line.strip("\r\n ").lstrip("#").strip(" ") if delimiter == "\t" else line.strip().lstrip("#").strip()
+        cells = cells_of(content, delimiter)
         if not delimiter and len(cells) != count:
-            cells = re.split(r"\t+| {2,}", plain)
+            cells = re.split(r"\t+| {2,}", content)
         while len(cells) > count and not cells[-1]:
             cells = cells[:-1]
-        if len(cells) != count and not above:  # names that are separated by another sign than the numbers
-            others = (cells_of(plain, sign) for sign in ",;\t" if sign != delimiter)
-            cells = next((one for one in others if len(one) == count and not any(map(_is_number, one))), cells)
+        if len(cells) != count and not above:  # names and numbers with different delimiters
+            candidates = (cells_of(content, sign) for sign in ",;\t" if sign != delimiter)
+            cells = next(
+                (
+                    candidate
+                    for candidate in candidates
+                    if len(candidate) == count and not any(map(_is_number, candidate))
+                ),
+                cells,
+            )
         if len(cells) != count:
-            near = len(cells) > 2 and abs(len(cells) - count) <= 2 and not any(map(_is_number, cells))
-            if near and not above and delimiter:
+            similar = len(cells) > 2 and abs(len(cells) - count) <= 2 and not any(map(_is_number, cells))
+            if similar and not above and delimiter:
                 raise DataError(
                     f"{path}:{index + 1}: {len(cells)} names for {count} columns: {', '.join(map(repr, cells[:4]))}; "
-                    "write one name for each column"
+                    "write one name per column"
                 )
             break
         if not any(cells):
             continue
-        if above and count > 2 and sum(map(bool, cells)) == 1:  # a title
+        if above and count > 2 and sum(map(bool, cells)) == 1:  # a title line
             break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))
-            raise DataError(f"{path}:{index + 1}: neither names nor numbers: {shown}; repair or remove the line")
+            raise DataError(f"{path}:{index + 1}: a mixture of names and numbers: {shown}; repair or remove the line")
         if above and any(_is_number(cell) for cell in cells) and not all(_is_number(cell) for cell in cells if cell):
             break
         above.append(cells)
@@ -185,10 +196,10 @@ def _is_number(cell: str) -> bool:
 
 
 def bare_unit(cell: str) -> str:
-    """Return a unit without blanks and brackets around all of it; empty for a dash.
+    """Strip enclosing blanks and brackets from a unit; return "" for a dash.
 
     Args:
-        cell: as found, as "[m/s2]", "(g)", "m/(s^2)" or "-".
+        cell: text of the unit, such as "[m/s2]", "(g)", "m/(s^2)" or "-".
     """
     text = cell.strip(" -")
     while len(text) > 1 and text[0] + text[-1] in ("[]", "()"):
@@ -200,7 +211,7 @@ def bare_unit(cell: str) -> str:
 
 
 def _is_unit(cell: str) -> bool:
-    """True if a text is a unit, known or not to `vehicle.signals.records.units`."""
+    """Return True if a text is a unit, including units that `vehicle.signals.records.units` does not contain."""
     text = bare_unit(cell)
     return find_unit(text) is not None or text.lower() in _UNIT_WORDS
 
@@ -211,12 +222,12 @@ def _is_unit_line(cells: Sequence[str]) -> bool:
 
 
 def _take_units(above: list[list[str]]) -> list[str] | None:
-    """Remove the line of units from lines of heads, and return it; None where there is none."""
+    """Remove the unit line from the header lines and return it; None without a unit line."""
     scores = []
     for cells in above:
         filled = [cell for cell in cells if bare_unit(cell)]
-        known = any(find_unit(bare_unit(cell)) for cell in filled)
-        scores.append(sum(map(_is_unit, filled)) / len(filled) if filled and known else 0.0)
+        has_unit = any(find_unit(bare_unit(cell)) for cell in filled)
+        scores.append(sum(map(_is_unit, filled)) / len(filled) if filled and has_unit else 0.0)
     if not scores:
         return None
     best = max(range(len(scores)), key=lambda index: (scores[index], -index))
@@ -226,13 +237,13 @@ def _take_units(above: list[list[str]]) -> list[str] | None:
 
 
 def split_head(cell: str) -> tuple[str, str]:
-    """Return name and unit of the head of a column.
+    """Split a column header into name and unit.
 
-    A unit in brackets, or behind " / ", leaves the name. A unit that ends the name, as in `AccelX_g`, stays in it too:
-    it may belong to the name.
+    A unit in brackets or after " / " is removed from the name. A unit suffix, as in `AccelX_g`, stays in the name,
+    because it may be a part of the name.
 
     Args:
-        cell: as found: 'Weg [mm]', 'a (g)', 'Weg / mm', 'acc_z_m_s2', 'Time_ms', 'Time since start in ms'.
+        cell: text of the header: 'Weg [mm]', 'a (g)', 'Weg / mm', 'acc_z_m_s2', 'Time_ms', 'Time since start in ms'.
     """
     match = _BRACKETS.fullmatch(cell)
     if match and match["square"] is not None:
@@ -246,12 +257,12 @@ def split_head(cell: str) -> tuple[str, str]:
 
 
 def _unit_of_name(name: str) -> str:
-    """Unit at the end of a name; empty where there is none, or where it may be another word."""
+    """Return the unit at the end of a name; empty without a unit or if the suffix may be another word."""
     if re.fullmatch(r"seconds([_ ]?elapsed)?", name, re.IGNORECASE):
         return "s"
     parts = re.split(r"(_| in |, ?| )", name)
-    for at in range(1, len(parts), 2):
-        head, sign, end = "".join(parts[:at]), parts[at], "".join(parts[at + 1 :])
+    for split in range(1, len(parts), 2):
+        head, sign, end = "".join(parts[:split]), parts[split], "".join(parts[split + 1 :])
         if not head or not end:
             continue
         if end in _SUFFIXES and (sign == "_" or "/" in _SUFFIXES[end]):

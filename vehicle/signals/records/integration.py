@@ -1,75 +1,78 @@
-"""From velocity or acceleration to displacement: in the frequency domain, with a corner that the user chose."""
+"""Integrate velocities and accelerations to displacements in the frequency domain, with a high-pass filter."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from vehicle.errors import DataError
 from vehicle.signals.records.choice import Choice, Chosen
 from vehicle.signals.records.table import Vector
 
 ORDER = 4
-"""Order of the Butterworth high-pass, whose squared magnitude acts: forwards and backwards."""
+"""Order of the Butterworth high-pass, applied forwards and backwards (squared magnitude)."""
+
 PERIODS = 5.0
-"""Zeros behind a record that is filtered, in periods of the corner frequency: the filter rings so long."""
+"""Length of the zeros appended before filtering, in periods of the corner frequency: decay time of the filter."""
 
 
 def displacement(chosen: Chosen, choice: Choice, where: str) -> tuple[dict[str, Vector], tuple[str, ...]]:
-    """Displacements [m] of chosen channels, integrated where they are velocities or accelerations.
+    """Return the displacements [m] of the selected channels; integrate velocities and accelerations.
 
     Args:
-        chosen: as of `choose`.
-        choice: the corner frequency.
+        chosen: selected channels, see `choose`.
+        choice: selection with the corner frequency of the high-pass.
         where: file, for messages.
 
     Returns:
         Role to displacement, and notices.
 
     Raises:
-        DataError: another quantity, or one to be integrated without a corner frequency.
+        DataError: another quantity, or integration without a corner frequency.
     """
     orders = {"displacement": 0, "velocity": 1, "acceleration": 2}
-    found, notices = {}, []
+    displacements, notices = {}, []
     step = float(chosen.time[-1] - chosen.time[0]) / (chosen.time.size - 1)
     for role, values in chosen.values.items():
         quantity = chosen.quantities[role]
         if quantity not in orders:
             raise DataError(
-                f"{where}: {role}: a {quantity} drives no plate; needed is a displacement, a velocity or an "
-                "acceleration"
+                f"{where}: {role} is a {quantity}, must be a displacement, a velocity or an acceleration of the plate"
             )
         if choice.highpass is None:
             if orders[quantity]:
                 raise DataError(
                     f"{where}: {role} is {'an' if quantity[0] == 'a' else 'a'} {quantity}: the plate needs a "
-                    "displacement; give --highpass HZ with the corner below the band of interest, and it is integrated"
+                    "displacement; set --highpass HZ below the band of interest to integrate the channel"
                 )
-            found[role] = values
+            displacements[role] = values
             continue
         chosen.require_uniform(where)
-        found[role] = integrate(values, step, orders[quantity], choice.highpass)
-        how = f"{quantity} integrated in the frequency domain, " if orders[quantity] else ""
+        displacements[role] = integrate(values, step, orders[quantity], choice.highpass)
+        process = f"{quantity} integrated in the frequency domain, " if orders[quantity] else ""
         notices.append(
-            f"{role}: {how}high-pass {choice.highpass:g} Hz on request (Butterworth, order {ORDER}, forwards and "
+            f"{role}: {process}high-pass {choice.highpass:g} Hz on request (Butterworth, order {ORDER}, forwards and "
             "backwards)"
         )
-    return found, tuple(notices)
+    return displacements, tuple(notices)
 
 
 def filtered(chosen: Chosen, corner: float) -> tuple[dict[str, Vector], tuple[str, ...]]:
-    """Chosen channels behind the high-pass alone, and the notices with it.
+    """Return the selected channels after the high-pass filter, without integration, and the notices.
 
     Args:
-        chosen: as of `choose`.
-        corner: fc [Hz].
+        chosen: selected channels, see `choose`.
+        corner: corner frequency fc [Hz].
 
     Raises:
-        DataError: as of `integrate`.
+        DataError: see `integrate`.
     """
     step = float(chosen.time[-1] - chosen.time[0]) / (chosen.time.size - 1)
-    said = f"high-pass {corner:g} Hz on request (Butterworth, order {ORDER}, forwards and backwards)"
-    return {role: integrate(one, step, 0, corner) for role, one in chosen.values.items()}, (*chosen.notices, said)
+    notice = f"high-pass {corner:g} Hz on request (Butterworth, order {ORDER}, forwards and backwards)"
+    return {role: integrate(values, step, 0, corner) for role, values in chosen.values.items()}, (
+        *chosen.notices,
+        notice,
+    )
 
 
 def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
@@ -77,12 +80,12 @@ def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
 
     Args:
         values: samples, (n,).
-        step: of the time [s].
-        order: k, integrations.
-        corner: fc [Hz].
+        step: sampling interval [s].
+        order: number k of integrations.
+        corner: corner frequency fc [Hz].
 
     Returns:
-        (n,), without its straight line before and with zeros around it, so that its ends do not meet.
+        Filtered samples, (n,). Trend removal and zero padding before the transform avoid wrap-around.
 
     Raises:
         DataError: the corner is not between 2 / duration and 0.4 / step.
@@ -90,14 +93,14 @@ def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
     count, duration = np.arange(values.size), step * values.size
     if not 2.0 / duration <= corner <= 0.4 / step:
         raise DataError(
-            f"--highpass {corner:g} Hz: allowed is {2.0 / duration:.3g} to {0.4 / step:.4g} Hz for this record"
+            f"--highpass {corner:g} Hz: must be {2.0 / duration:.3g} to {0.4 / step:.4g} Hz for this record"
         )
-    plain = values - np.polynomial.Polynomial.fit(count, values, 1)(count)
-    size = fft.next_fast_len(values.size + int(np.ceil(PERIODS / (corner * step))), real=True)
-    frequency = fft.rfftfreq(size, step)
+    detrended = values - np.polynomial.Polynomial.fit(count, values, 1)(count)
+    size = scipy.fft.next_fast_len(values.size + int(np.ceil(PERIODS / (corner * step))), real=True)
+    frequency = scipy.fft.rfftfreq(size, step)
     ratio = (frequency / corner) ** (2 * ORDER)
     gain = (ratio / (1.0 + ratio)).astype(complex)
     gain[1:] /= (2j * np.pi * frequency[1:]) ** order
     gain[0] = 0.0
-    found: Vector = fft.irfft(fft.rfft(plain, size) * gain, size)[: values.size]
-    return found
+    result: Vector = scipy.fft.irfft(scipy.fft.rfft(detrended, size) * gain, size)[: values.size]
+    return result

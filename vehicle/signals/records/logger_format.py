@@ -1,4 +1,4 @@
-"""Text files of loggers: lines of text, lines of names, units and sources, then rows of numbers, dates and clocks."""
+"""Read text files of loggers: free text, header lines, then rows of numbers, dates and times of day."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement
 from vehicle.signals.records.clock_text import clock_seconds, epoch_seconds, is_date
-from vehicle.signals.records.frf import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
+from vehicle.signals.records.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.records.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
 from vehicle.signals.records.spectrum_columns import joined
 from vehicle.signals.records.table import Header, Vector, Wanted
@@ -29,7 +29,7 @@ _EPOCH_UNITS = {"unix time": "s", "unix": "s", "unix_time": "s"}
 
 
 class _Axis(NamedTuple):
-    """Times or frequencies of a table: values, the columns that hold them, and what is said about them."""
+    """Times or frequencies of a table: values, source columns, quantity, start and messages."""
 
     values: Vector | None
     columns: tuple[int, ...]
@@ -40,11 +40,11 @@ class _Axis(NamedTuple):
 
 
 def read(path: Path) -> Measurement:
-    """Read a table of numbers with what stands above it.
+    """Read the table of a text file with the headers above the table.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: no numbers in columns, a row of another length, a cell that is no number, a comma in doubt.
+        ConfigurationError: the file does not exist.
+        DataError: no numeric columns, a row of another length, a non-numeric cell, or an ambiguous comma.
     """
     text = read_text(path, western=True)
     if any(line.startswith(FREQUENCY) and SUFFIXES[0] in line for line in text.lines[:20]):
@@ -52,13 +52,13 @@ def read(path: Path) -> Measurement:
     return read_lines(path, text, "csv")
 
 
-def read_lines(path: Path, text: Text, form: str) -> Measurement:
-    """Read a table of numbers in lines of text.
+def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
+    """Read a table of numbers from lines of text.
 
     Args:
-        path: the file, for messages.
-        text: its lines.
-        form: name of its format.
+        path: measurement file, for messages.
+        text: text of the file.
+        format_name: name of the file format.
 
     Raises:
         DataError: see `read`.
@@ -71,7 +71,7 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
     if not heads.named and delimiter == "," and not any("." in line for line in lines[start : start + AGREEING]):
         raise DataError(
             f"{path}:{start + 1}: rows of {len(table.kinds)} numbers without a decimal point, and no line of as many "
-            "names above them; with decimal commas the columns must be separated by ';' or tabs; 1,5 is never guessed"
+            "names above: 1,5 is ambiguous; with decimal commas, separate the columns by ';' or tabs"
         )
     numbers = [n + 1 for n in range(start, len(lines)) if lines[n].strip()]
     rows = [lines[n - 1] for n in numbers]
@@ -94,10 +94,10 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
         values = careful(numbers, rows, header, key, Wanted(needed="", key=lambda _: key, missing="mark"))
     axis = _axis(path, heads, kinds, values, texts, numbers)
     notices += axis.notices
-    left = [name for name, kind, n in zip(heads.names, kinds, range(len(kinds)), strict=True)
-            if kind != "number" and n not in axis.columns]  # fmt: skip
-    if left:
-        notices.append(f"columns of text are left out: {', '.join(map(repr, left[:12]))}")
+    text_columns = [name for name, column_type, n in zip(heads.names, kinds, range(len(kinds)), strict=True)
+            if column_type != "number" and n not in axis.columns]  # fmt: skip
+    if text_columns:
+        notices.append(f"columns of text are ignored: {', '.join(map(repr, text_columns[:12]))}")
     channels = tuple(
         Channel(
             name=name,
@@ -118,7 +118,7 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
         notices += _rates_above(lines[:start])
     return Measurement(
         path=path,
-        format=form,
+        format=format_name,
         channels=channels,
         sha256=text.sha256,
         program=_program(lines[: heads.first]),
@@ -128,7 +128,7 @@ def read_lines(path: Path, text: Text, form: str) -> Measurement:
 
 
 def _without_last_delimiter(lines: list[str], table: TextTable) -> tuple[list[str], TextTable]:
-    """Lines without a delimiter at the end that no cell follows: the line above the table has it too, or no other."""
+    """Remove a trailing delimiter from all lines if it is not followed by a column."""
     delimiter, start = table.delimiter, table.start
     above = next((line for line in reversed(lines[:start]) if line.strip()), "")
     if not delimiter or table.kinds[-1] != "missing" or not lines[start].rstrip("\r ").endswith(delimiter):
@@ -144,16 +144,16 @@ def _without_last_delimiter(lines: list[str], table: TextTable) -> tuple[list[st
 def _texts(
     path: Path, numbers: Sequence[int], rows: list[str], delimiter: str, kinds: Sequence[Kind]
 ) -> tuple[dict[int, list[str]], list[str], str]:
-    """Cells of the columns of dates and clocks; rows with zeros in place of all texts and without quotes; delimiter."""
+    """Return the cells of clock columns, the rows with texts replaced by 0 and quotes removed, and the delimiter."""
     quoted = any('"' in row for row in rows[:AGREEING])
-    columns = [column for column, kind in enumerate(kinds) if kind != "number"]
+    columns = [column for column, column_type in enumerate(kinds) if column_type != "number"]
     if not columns and not quoted:
         return {}, rows, delimiter
     texts: dict[int, list[str]] = {column: [] for column in columns if kinds[column] == "clock"}
-    found: list[str] = []
-    sign, plain = delimiter, not any('"' in row for row in rows)
+    numeric_rows: list[str] = []
+    sign, unquoted = delimiter, not any('"' in row for row in rows)
     for line, row in zip(numbers, rows, strict=True):
-        cells = row.split(delimiter or None) if plain else cells_of(row, delimiter)
+        cells = row.split(delimiter or None) if unquoted else cells_of(row, delimiter)
         if len(cells) != len(kinds):
             raise DataError(
                 f"{path}:{line}: row has {len(cells)} cells, the header {len(kinds)}; repair or remove the row"
@@ -162,62 +162,64 @@ def _texts(
             if column in texts:
                 texts[column].append(cells[column].strip())
             cells[column] = "0"
-        if not plain and sign == "," and any("," in cell for cell in cells):  # decimal commas within quotes
+        if not unquoted and sign == "," and any("," in cell for cell in cells):  # quoted decimal commas
             sign = ";"
-            found = [one.replace(",", ";") for one in found]
-        found.append((sign or " ").join(cells))
-    return texts, found, sign
+            numeric_rows = [numeric_row.replace(",", ";") for numeric_row in numeric_rows]
+        numeric_rows.append((sign or " ").join(cells))
+    return texts, numeric_rows, sign
 
 
 def _key(heads: Heads, kinds: Sequence[Kind]) -> int:
-    """Column of numbers that holds the times; -1 for none. A known unit of time comes first."""
+    """Return the index of the numeric time column, preferably with a known unit; -1 if there is none."""
     named = [
         index
         for index, name in enumerate(heads.names)
         if kinds[index] == "number" and _is_axis(name, heads.units[index], "time")
     ]
-    known = [index for index in named if find_unit(heads.units[index]) is not None]
-    return next(iter((*known, *named)), -1)
+    with_unit = [index for index in named if find_unit(heads.units[index]) is not None]
+    return next(iter((*with_unit, *named)), -1)
 
 
 def _axis(
     path: Path, heads: Heads, kinds: Sequence[Kind], values: Vector, texts: dict[int, list[str]], numbers: Sequence[int]
 ) -> _Axis:
-    """Times of a table: of a column with a unit of time, of a count since 1970, of dates and clocks; or frequencies."""
+    """Return the axis of a table: times from a time column, a count since 1970, or dates and clocks; or frequencies."""
     clock = _clock_axis(path, heads, texts, numbers) if texts else None
     start = clock.start if clock is not None else ""
     key = _key(heads, kinds)
     if key >= 0:
         name, unit = heads.names[key], heads.units[key]
-        known = find_unit(unit)
-        if known is None or known.factor < 1.0:
-            told = next((text for text, one in (("ms", 1e-3), ("us", 1e-6)) if known and known.factor == one), "")
-            epoch = epoch_seconds(values[:, key], told or _EPOCH_UNITS.get(unit.lower(), ""))
+        time_unit = find_unit(unit)
+        if time_unit is None or time_unit.factor < 1.0:
+            prefix = next(
+                (text for text, scale in (("ms", 1e-3), ("us", 1e-6)) if time_unit and time_unit.factor == scale), ""
+            )
+            epoch = epoch_seconds(values[:, key], prefix or _EPOCH_UNITS.get(unit.lower(), ""))
         else:
             epoch = epoch_seconds(values[:, key], "s") if unit else None
         if epoch is not None:
-            said = f"column {name!r} counts {epoch[2]} since 1970: the time begins at {epoch[1]}"
-            return _Axis(epoch[0], (key,), "time", epoch[1], (said,))
-        if known is not None:
-            return _Axis(values[:, key] * known.factor, (key,), "time", start or _start_of(heads, kinds, values))
+            notice = f"column {name!r} counts {epoch[2]} since 1970: the time begins at {epoch[1]}"
+            return _Axis(epoch[0], (key,), "time", epoch[1], (notice,))
+        if time_unit is not None:
+            return _Axis(values[:, key] * time_unit.factor, (key,), "time", start or _start_of(heads, kinds, values))
     if clock is not None:
         return clock
     if key >= 0:
-        remark = f"the time, without a known unit: give --rate HZ, or --channel time={heads.names[key]} --unit time=s"
+        remark = f"time column without a known unit: set --rate HZ, or --channel time={heads.names[key]} --unit time=s"
         return _Axis(None, (key,), "time", remark=remark)
     if kinds[0] == "number" and _is_axis(heads.names[0], heads.units[0], "frequency"):
         unit_of_first = find_unit(heads.units[0])
         if unit_of_first is not None:
             return _Axis(values[:, 0] * unit_of_first.factor, (0,), "frequency")
         remark = (
-            f"the frequency, without a known unit: give --rate HZ, or --channel time={heads.names[0]} --unit time=s"
+            f"frequency column without a known unit: set --rate HZ, or --channel time={heads.names[0]} --unit time=s"
         )
         return _Axis(None, (0,), "frequency", remark=remark)
     return _Axis(None, (), "time")
 
 
 def _start_of(heads: Heads, kinds: Sequence[Kind], values: Vector) -> str:
-    """Date and time of the first row, of a column that counts the time since 1970; empty where there is none."""
+    """Return date and time of the first row from a column that counts time since 1970; empty without one."""
     for column, name in enumerate(heads.names):
         unit = heads.units[column].lower()
         if kinds[column] == "number" and TIME_NAME.fullmatch(name) and (not unit or unit in _EPOCH_UNITS):
@@ -228,68 +230,74 @@ def _start_of(heads: Heads, kinds: Sequence[Kind], values: Vector) -> str:
 
 
 def _clock_axis(path: Path, heads: Heads, texts: dict[int, list[str]], numbers: Sequence[int]) -> _Axis | None:
-    """Times of the column of clocks that rises, with the dates of another column; None where there are dates alone."""
+    """Return the times of the first increasing clock column, with dates of another column; None without clocks."""
     days = [column for column, cells in texts.items() if is_date(cells[0])]
-    found: list[_Axis] = []
+    clocks: list[_Axis] = []
     for column, cells in texts.items():
         if column in days:
             continue
-        day = next((one for one in days if not is_date(cells[0].split(" ")[0].split("T")[0])), None)
+        day = next((day_column for day_column in days if not is_date(cells[0].split(" ")[0].split("T")[0])), None)
         try:
             seconds, start, notices = clock_seconds(cells, texts[day] if day is not None else None)
         except ValueError as error:
             row = int(error.args[0])
             raise DataError(
-                f"{path}:{numbers[row]}:{column + 1}: column {heads.names[column]!r} holds {cells[row]!r}; needed is a "
-                f"date or clock as {cells[0]!r}; repair or remove the row"
+                f"{path}:{numbers[row]}:{column + 1}: column {heads.names[column]!r} has the cell {cells[row]!r}, must "
+                f"be a date or clock such as {cells[0]!r}; repair or remove the row"
             ) from None
         columns = (column,) if day is None else (day, column)
-        shown = " and ".join(repr(heads.names[one]) for one in columns)
-        said = f"dates and clocks of column {shown}: the time begins at {start}"
-        found.append(_Axis(seconds, columns, "time", start, (said, *notices)))
-    rising = [one for one in found if one.values is not None and (np.diff(one.values) > 0.0).all()]
-    return next(iter((*rising, *found)), None)
+        shown = " and ".join(repr(heads.names[day_column]) for day_column in columns)
+        notice = f"dates and clocks of column {shown}: the time begins at {start}"
+        clocks.append(_Axis(seconds, columns, "time", start, (notice, *notices)))
+    rising = [
+        day_column
+        for day_column in clocks
+        if day_column.values is not None and (np.diff(day_column.values) > 0.0).all()
+    ]
+    return next(iter((*rising, *clocks)), None)
 
 
 def _program(above: Sequence[str]) -> str:
-    """First line of text that is no head of a column."""
-    plain = [line.strip(' \t#;,"') for line in above if not line.strip('" ').lower().startswith("sep=")]
-    return next((line for line in plain if line), "")[:80]
+    """Return the first non-empty line above the column headers."""
+    texts = [line.strip(' \t#;,"') for line in above if not line.strip('" ').lower().startswith("sep=")]
+    return next((line for line in texts if line), "")[:80]
 
 
 def _rates_above(above: Sequence[str]) -> list[str]:
-    """Notice of a rate in the text above a table that has no times."""
+    """Return a notice on a sampling rate in the text above a table without times."""
     for line in above:
         if match := _RATE.search(line):
-            said = match.group().strip()
-            return [f"the text above the table says {said!r}: give --rate {match['rate']} if it is the rate"]
+            text = match.group().strip()
+            return [
+                f"the text above the table contains {text!r}: set --rate {match['rate']} if this is the sampling rate"
+            ]
     return []
 
 
 def _responses(path: Path, sha256: str) -> Measurement:
-    """The `frf.csv` of a run: frequency responses and their coherences."""
-    found = read_frf(path)
-    about: dict[str, Any] = {"axis": found.frequency, "kind": "frequency"}
+    """Read the `frf.csv` of a run as channels: frequency responses, coherences and random errors."""
+    frfs = read_frf(path)
+    axis: dict[str, Any] = {"axis": frfs.frequency, "kind": "frequency"}
     channels = []
-    for row, name in enumerate(found.channels):
+    for row, name in enumerate(frfs.channels):
         channels.append(
             Channel(
                 name=name,
-                values=found.response[row],
+                values=frfs.response[row],
                 unit="(m/s2)/m",
                 function="frequency response",
-                **about,
+                **axis,
             )
         )
-        channels.append(Channel(name=f"{name}_coherence", values=found.coherence[row], function="coherence", **about))
-        if np.isfinite(found.random_error[row]).any():
-            error = Channel(name=name + RANDOM_ERROR, values=found.random_error[row], unit="(m/s2)/m", **about)
+        channels.append(Channel(name=f"{name}_coherence", values=frfs.coherence[row], function="coherence", **axis))
+        if np.isfinite(frfs.random_error[row]).any():
+            error = Channel(name=name + RANDOM_ERROR, values=frfs.random_error[row], unit="(m/s2)/m", **axis)
             channels.append(replace(error, function="random error"))
     return Measurement(path=path, format="csv", channels=tuple(channels), sha256=sha256)
 
 
-def _is_axis(name: str, unit: str, kind: str) -> bool:
-    """Whether a column is the time, or the frequency: by its name, and a unit that does not speak against it."""
-    pattern = TIME_NAME if kind == "time" else FREQUENCY_NAME
-    known = find_unit(unit)
-    return bool(pattern.fullmatch(name.strip())) and (known is None or known.quantity == kind)
+def _is_axis(name: str, unit: str, quantity: str) -> bool:
+    """Return True if name and unit of a column are those of the time or the frequency."""
+    pattern = TIME_NAME if quantity == "time" else FREQUENCY_NAME
+    unit_entry = find_unit(unit)
+    return bool(pattern.fullmatch(name.strip())) and (unit_entry is None or unit_entry.quantity == quantity)

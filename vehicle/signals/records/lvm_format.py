@@ -1,7 +1,7 @@
-"""Measurement files of LabVIEW (.lvm): text, a header of the file, then segments, each with a header and rows.
+"""Read LabVIEW measurement files (.lvm): text with a file header, then segments, each with a header and rows.
 
-A line of a header is a key and one value for each column: attribute j of a line belongs to column j of the line of
-names. `X_Columns` tells where the times are: in no column, in one for all channels, or in one before each channel.
+A header line is a key and one value per column: value j belongs to column j of the line of names. `X_Columns` is the
+number of time columns: none, one for all channels, or one before each channel.
 
 Source: NI, Specification for the LabVIEW Measurement File.
 """
@@ -27,37 +27,37 @@ from vehicle.signals.records.text_format import careful, fast, fast_with_gaps
 END = "***End_of_Header***"
 SPECIAL = ("***Start_Special***", "***End_Special***")
 JOINED = 1e-3
-"""Largest deviation of the first time of a segment from the continued times of the one before, in steps [-]."""
+"""Maximum deviation of the first time of a segment from the continued times of the previous segment, in steps [-]."""
 
 
 @dataclass(kw_only=True, slots=True)
 class _Segment:
-    """Rows below one header.
+    """Segment of a file: header and rows.
 
     Attributes:
-        about: key of the header to its values, one a column.
-        names: heads of the columns.
-        line: of the names, from 1.
-        rows: lines of numbers, with their numbers.
+        attributes: key of the header -> values of the columns.
+        names: column headers.
+        line: line number of the names, from 1.
+        rows: line numbers and text of the rows.
     """
 
-    about: dict[str, list[str]] = field(default_factory=dict)
+    attributes: dict[str, list[str]] = field(default_factory=dict)
     names: list[str] = field(default_factory=list)
     line: int = 0
     rows: list[tuple[int, str]] = field(default_factory=list)
 
     def value(self, key: str, column: int) -> str:
-        """Attribute of a column; empty where the header does not tell it."""
-        cells = self.about.get(key, [])
+        """Return an attribute of a column; empty if the header has no value."""
+        cells = self.attributes.get(key, [])
         return cells[column].strip() if column < len(cells) else ""
 
 
 def read(path: Path) -> Measurement:
-    """Read the channels of all segments, each over its times.
+    """Read the channels of all segments; concatenate segments with equal channels.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: another form than that of the specification, damaged, or segments that overlap in time.
+        ConfigurationError: the file does not exist.
+        DataError: not according to the specification, damaged, or segments that overlap in time.
     """
     text = read_text(path, western=True)
     lines = text.lines
@@ -66,13 +66,13 @@ def read(path: Path) -> Measurement:
     layout = head.get("X_Columns", "One").lower()
     if separator is None or layout not in ("no", "one", "multi"):
         raise DataError(
-            f"{path}: Separator {head.get('Separator')!r}, X_Columns {head.get('X_Columns')!r}; allowed are Tab or "
+            f"{path}: Separator {head.get('Separator')!r}, X_Columns {head.get('X_Columns')!r}; must be Tab or "
             "Comma, and No, One or Multi; export it again"
         )
     segments = _segments(path, lines, first, separator)
     sign = {",": ",", ".": "."}.get(head.get("Decimal_Separator", ""), "")
     notices = list(text.notices)
-    columns = [_channels(path, one, layout, separator, sign, notices) for one in segments]
+    columns = [_channels(path, segment, layout, separator, sign, notices) for segment in segments]
     start = " ".join(filter(None, (segments[0].value("Date", 1), segments[0].value("Time", 1))))
     return Measurement(
         path=path,
@@ -86,19 +86,19 @@ def read(path: Path) -> Measurement:
 
 
 def _file_header(path: Path, lines: Sequence[str]) -> tuple[dict[str, str], int]:
-    """Keys and values of the header of the file; index of the line behind it."""
-    found: dict[str, str] = {}
+    """Return keys and values of the file header, and the index of the line after the header."""
+    header: dict[str, str] = {}
     for index, line in enumerate(lines[:200]):
         if line.strip().strip(",").strip() == END:
-            return found, index + 1
+            return header, index + 1
         key, _, value = line.partition("\t") if "\t" in line else line.partition(",")
-        found[key.strip()] = value.strip("\t ")
-    raise DataError(f"{path}: no line {END} behind the header of the file; it was cut off; export it again")
+        header[key.strip()] = value.strip("\t ")
+    raise DataError(f"{path}: no line {END} after the file header; the file is truncated; export it again")
 
 
 def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> list[_Segment]:
-    """Segments of a file: a header with `Channels` up to its end, a line of names, and rows."""
-    found: list[_Segment] = []
+    """Split the lines after the file header into segments: header, line of names, rows."""
+    segments: list[_Segment] = []
     inside = special = False
     for index in range(first, len(lines)):
         line = lines[index].rstrip("\r")
@@ -110,82 +110,82 @@ def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> l
         elif inside and word == END:
             inside = False
         elif inside:
-            found[-1].about[word] = line.split(separator)
+            segments[-1].attributes[word] = line.split(separator)
         elif word in ("Channels", "Notes"):
             inside = True
-            found.append(_Segment(about={word: line.split(separator)}))
-        elif not found:
+            segments.append(_Segment(attributes={word: line.split(separator)}))
+        elif not segments:
             raise DataError(
-                f"{path}:{index + 1}: {line[:40]!r} stands before a segment with its Channels; export again"
+                f"{path}:{index + 1}: {line[:40]!r} before the header of a segment (Channels); export it again"
             )
-        elif not found[-1].names:
-            found[-1].names, found[-1].line = [cell.strip() for cell in line.split(separator)], index + 1
+        elif not segments[-1].names:
+            segments[-1].names, segments[-1].line = [cell.strip() for cell in line.split(separator)], index + 1
         else:
-            found[-1].rows.append((index + 1, line))
-    if inside or not found or not found[-1].rows:
-        raise DataError(f"{path}: no rows of numbers in the last segment; the file was cut off; export it again")
-    return found
+            segments[-1].rows.append((index + 1, line))
+    if inside or not segments or not segments[-1].rows:
+        raise DataError(f"{path}: no rows of numbers in the last segment; the file is truncated; export it again")
+    return segments
 
 
 def _channels(
     path: Path, segment: _Segment, layout: str, separator: str, sign: str, notices: list[str]
 ) -> list[Channel]:
-    """Channels of a segment over times that begin with its own X0."""
+    """Return the channels of a segment; their times begin at X0 of the segment."""
     names = [name for name in segment.names if name]
     if names[-1:] == ["Comment"]:
         names = names[:-1]
-    told = segment.value("Channels", 1)
-    places = [n for n in range(len(names)) if not (names[n] == "X_Value" and (n == 0 or layout == "multi"))]
-    if told.isdecimal() and int(told) != len(places):
+    channel_count = segment.value("Channels", 1)
+    columns = [n for n in range(len(names)) if not (names[n] == "X_Value" and (n == 0 or layout == "multi"))]
+    if channel_count.isdecimal() and int(channel_count) != len(columns):
         raise DataError(
-            f"{path}:{segment.line}: {len(places)} names for {told} channels: {', '.join(map(repr, names[:6]))}; "
-            "export it again"
+            f"{path}:{segment.line}: {len(columns)} names for {channel_count} channels: "
+            f"{', '.join(map(repr, names[:6]))}; export it again"
         )
     values = _numbers(path, segment, names, separator, sign, notices)
-    found = []
-    for column in places:
+    channels = []
+    for column in columns:
         samples = values[:, column]
         last = np.flatnonzero(np.isfinite(samples))
         if not last.size:
-            notices.append(f"channel {names[column]!r} holds no samples")
+            notices.append(f"channel {names[column]!r} has no samples")
             continue
         samples = samples[: int(last[-1]) + 1]
         count = segment.value("Samples", column)
         packet = int(count) if count.isdecimal() else 0
         if packet > samples.size:
-            notices.append(f"{packet} samples of {names[column]!r} are told, {samples.size} are held")
-        at = column - 1 if layout == "multi" else 0
-        times = None if layout == "no" or at < 0 else values[: samples.size, at]
-        if layout == "one" and segment.value("Delta_X", column) != segment.value("Delta_X", places[0]):
-            times = None  # the one column of times is that of the first channel
+            notices.append(f"{names[column]!r} has {samples.size} samples, {packet} according to its header")
+        time_column = column - 1 if layout == "multi" else 0
+        times = None if layout == "no" or time_column < 0 else values[: samples.size, time_column]
+        if layout == "one" and segment.value("Delta_X", column) != segment.value("Delta_X", columns[0]):
+            times = None  # the time column is valid for the first channel only
         axis, remark = _times(path, segment, column, times, samples.size, packet, sign)
         name, unit = split_head(names[column])
-        over = segment.value("X_Dimension", column).lower()
-        found.append(
+        x_dimension = segment.value("X_Dimension", column).lower()
+        channels.append(
             Channel(
                 name=name,
                 values=samples.copy(),
                 unit=segment.value("Y_Unit_Label", column) or unit,
                 axis=axis,
-                kind="frequency" if over == "frequency" else "time",
-                function="spectrum" if over == "frequency" else "time history",
+                kind="frequency" if x_dimension == "frequency" else "time",
+                function="spectrum" if x_dimension == "frequency" else "time history",
                 remark=remark,
             )
         )
-    return found
+    return channels
 
 
 def _numbers(path: Path, segment: _Segment, names: list[str], separator: str, sign: str, notices: list[str]) -> Vector:
-    """Numbers of a segment, (rows, columns), NaN in empty cells; comments are left out."""
+    """Return the numbers of a segment, (rows, columns), NaN for empty cells; ignore comments."""
     width, rows = len(names), []
     for line, row in segment.rows:
         cells = row.split(separator)
         if len(cells) < width:
             raise DataError(
-                f"{path}:{line}: row has {len(cells)} cells for {width} columns; the file was cut off; remove the row"
+                f"{path}:{line}: row has {len(cells)} cells for {width} columns; the file is truncated; remove the row"
             )
         if any(cell.strip() for cell in cells[width:]):
-            notices.append("comments of rows are left out")
+            notices.append("comments of rows are ignored")
         rows.append("\t".join(cells[:width]))
     commas = any("," in row for row in rows)
     if commas and any("." in row for row in rows):
@@ -205,7 +205,7 @@ def _numbers(path: Path, segment: _Segment, names: list[str], separator: str, si
 def _times(
     path: Path, segment: _Segment, column: int, times: Vector | None, count: int, packet: int, sign: str
 ) -> tuple[Vector | None, str]:
-    """Times of a channel and a remark: of its column, else X0 + i Delta_X."""
+    """Return the times of a channel, from its time column or X0 + i * Delta_X, and a remark."""
     if times is not None:
         if np.isfinite(times).all():
             return times.copy(), ""
@@ -215,19 +215,19 @@ def _times(
         start, text = (segment.value(key, column).replace(",", ".") for key in ("X0", "Delta_X"))
         origin, (step, remark) = float(start or "0"), _step(text)
     except ValueError:
-        return None, "no times: X0 or Delta_X is no number; give --rate HZ"
+        return None, "no times: X0 or Delta_X is not a number; set --rate HZ"
     if not (step > 0.0 and math.isfinite(origin) and math.isfinite(step)):
-        return None, "no times: Delta_X is not positive; give --rate HZ"
+        return None, "no times: Delta_X is not positive; set --rate HZ"
     if 0 < packet < count:
         return None, (
-            f"packets of {packet} samples under one header, without the times between them: give --rate "
-            f"{1.0 / step:.9g} if they follow each other without a pause"
+            f"packets of {packet} samples under one header, with unknown times between packets: set --rate "
+            f"{1.0 / step:.9g} if there are no pauses between packets"
         )
     return uniform_axis(count, step, origin), remark
 
 
 def _step(text: str) -> tuple[float, str]:
-    """Step of a clock [s]: with fixed decimals, as 0.000977, the whole rate that alone is written so."""
+    """Parse a time step [s]; for fixed decimals, such as 0.000977, recover the only matching whole rate."""
     step = float(text)
     _, point, decimals = text.partition(".")
     if not point or not decimals.isdecimal() or step <= 0.0:
@@ -239,7 +239,7 @@ def _step(text: str) -> tuple[float, str]:
     if low != high and half / step > 1e-5:
         return (
             step,
-            f"time step {text} s is rounded: the rate {1.0 / step:.9g} Hz is known to {100 * half / step:.2g} %",
+            f"time step {text} s is rounded: uncertainty of the rate {1.0 / step:.9g} Hz {100 * half / step:.2g} %",
         )
     return step, ""
 
@@ -247,55 +247,61 @@ def _step(text: str) -> tuple[float, str]:
 def _joined(
     path: Path, segments: Sequence[_Segment], columns: Sequence[list[Channel]], notices: list[str]
 ) -> tuple[Channel, ...]:
-    """Channels of all segments: put behind each other where all have the same names, else with their segment."""
+    """Concatenate the channels of all segments if their names are equal; else return all with their segment."""
     if len(segments) == 1:
         return tuple(columns[0])
-    names = [(one.name, one.unit, one.axis is None) for one in columns[0]]
-    if any([(one.name, one.unit, one.axis is None) for one in other] != names for other in columns):
-        notices.append(f"{len(segments)} segments with different channels: each is listed with its segment")
+    names = [(channel.name, channel.unit, channel.axis is None) for channel in columns[0]]
+    if any(
+        [(channel.name, channel.unit, channel.axis is None) for channel in other_columns] != names
+        for other_columns in columns
+    ):
+        notices.append(f"{len(segments)} segments with different channels: channels are listed by segment")
         return tuple(
-            Channel(name=one.name, values=one.values, unit=one.unit, axis=one.axis, kind=one.kind,
-                    function=one.function, place=f"segment {number}", remark=one.remark)
-            for number, held in enumerate(columns, 1) for one in held
+            Channel(name=channel.name, values=channel.values, unit=channel.unit, axis=channel.axis, kind=channel.kind,
+                    function=channel.function, place=f"segment {number}", remark=channel.remark)
+            for number, segment_channels in enumerate(columns, 1) for channel in segment_channels
         )  # fmt: skip
-    later = _starts(path, segments, columns)
-    notices.append(f"{len(segments)} segments put behind each other by their times")
-    found = []
-    for index, one in enumerate(columns[0]):
-        parts = [held[index] for held in columns]
-        axes = [part.axis + shift for part, shift in zip(parts, later, strict=True) if part.axis is not None]
-        found.append(
+    offsets = _starts(path, segments, columns)
+    notices.append(f"{len(segments)} segments concatenated by their times")
+    joined = []
+    for index, channel in enumerate(columns[0]):
+        parts = [segment_channels[index] for segment_channels in columns]
+        axes = [part.axis + shift for part, shift in zip(parts, offsets, strict=True) if part.axis is not None]
+        joined.append(
             Channel(
-                name=one.name,
+                name=channel.name,
                 values=np.concatenate([part.values for part in parts]),
-                unit=one.unit,
+                unit=channel.unit,
                 axis=np.concatenate(axes) if axes else None,
-                kind=one.kind,
-                function=one.function,
-                remark=one.remark,
+                kind=channel.kind,
+                function=channel.function,
+                remark=channel.remark,
             )
         )
-    return tuple(found)
+    return tuple(joined)
 
 
 def _starts(path: Path, segments: Sequence[_Segment], columns: Sequence[list[Channel]]) -> list[float]:
-    """What is added to the times of each segment [s]: nothing where they go on, else the clock of its header."""
-    axes = [next((one.axis for one in held if one.axis is not None), None) for held in columns]
-    own = [axis for axis in axes if axis is not None]
-    if len(own) != len(axes) or all(after[0] > before[-1] for before, after in pairwise(own)):
+    """Return the time offset of each segment [s]: 0 if times continue, else from the clocks in the headers."""
+    axes = [
+        next((channel.axis for channel in segment_channels if channel.axis is not None), None)
+        for segment_channels in columns
+    ]
+    known_axes = [axis for axis in axes if axis is not None]
+    if len(known_axes) != len(axes) or all(after[0] > before[-1] for before, after in pairwise(known_axes)):
         return [0.0] * len(segments)
     try:
-        days = [one.value("Date", 1) for one in segments]
-        clocks = [one.value("Time", 1) for one in segments]
+        days = [segment.value("Date", 1) for segment in segments]
+        clocks = [segment.value("Time", 1) for segment in segments]
         shifts, _, _ = clock_seconds(clocks, days)
     except ValueError:
         shifts = np.zeros(len(segments))
-    for number, (before, after) in enumerate(pairwise(own), 1):
+    for number, (before, after) in enumerate(pairwise(known_axes), 1):
         step = float(before[-1] - before[0]) / max(before.size - 1, 1)
         gap = shifts[number] + after[0] - shifts[number - 1] - before[-1]
         if gap <= 0.0 or gap < (1.0 - JOINED) * step * 0.5:
             raise DataError(
                 f"{path}:{segments[number].line}: segment {number + 1} begins {-gap:.6g} s before the end of segment "
-                f"{number}; the times of the segments overlap; export each of them into a file"
+                f"{number}; segments must not overlap; export each segment to a separate file"
             )
-    return [float(one) for one in shifts]
+    return [float(shift) for shift in shifts]

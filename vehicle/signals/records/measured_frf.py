@@ -1,4 +1,4 @@
-"""Measured frequency responses of any file as acceleration over plate displacement."""
+"""Convert measured frequency responses of any file to acceleration over plate displacement."""
 
 from __future__ import annotations
 
@@ -12,136 +12,136 @@ from numpy.typing import NDArray
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement
 from vehicle.signals.records.choice import Choice, pick
-from vehicle.signals.records.frf import RANDOM_ERROR, FrfData
+from vehicle.signals.records.frf_file import RANDOM_ERROR, FrfData
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_ratio
 
 ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""Derivatives of a displacement."""
+"""Order of the time derivative of the displacement."""
 
 RESPONSES = ("frequency response", "transmissibility")
 SAME_LINE = 0.05
-"""Lines of two responses that lie nearer than this share of a step are one line."""
+"""Maximum distance of lines of two responses that are merged, over the frequency step [-]."""
 
 
 def is_response(channel: Channel) -> bool:
-    """Whether a channel is one over frequency that is no coherence and no error."""
+    """Return True for a channel over frequency other than a coherence or a random error."""
     return channel.kind == "frequency" and channel.function not in ("coherence", "random error")
 
 
 def measured_frfs(
-    measurement: Measurement, channels: Mapping[str, str], choice: Choice, turned: Collection[str] = ()
+    measurement: Measurement, channels: Mapping[str, str], choice: Choice, inverted: Collection[str] = ()
 ) -> tuple[FrfData, list[str]]:
-    """The chosen responses over the union of their lines.
+    """Return the selected frequency responses on the union of their lines, in m/s2 per m.
 
-    Responses of a motion to a motion become accelerations over displacements by powers of j w: those in m/s2 per m, g
-    per m, m/s per m, m/m, also those to an acceleration of the plate. Responses to a force do not: the plates of the
-    model are driven by displacements.
+    Powers of j w convert responses of a motion to a motion (m/s2 per m, g per m, m/s per m, m/m, also per acceleration
+    of the plate). Responses to a force are rejected: the inputs of the model are plate displacements.
 
     Args:
-        measurement: the file.
-        channels: name in the model, as knuckle_fr_acc_z, to number, name, pattern or place in the file.
-        choice: units, where the file tells none or a wrong one.
-        turned: names whose sign is turned.
+        measurement: contents of the file.
+        channels: model channel name, such as knuckle_fr_acc_z, to number, name, pattern or point in the file.
+        choice: selection with units that override those of the file.
+        inverted: names of channels whose sign is inverted.
 
     Returns:
-        The data, and a sentence for each channel.
+        Frequency responses, and one message per channel or fault.
 
     Raises:
-        DataError: a channel that is none, without a unit, real, or per force.
+        DataError: a channel that is not a response, without a unit, real, or per force.
     """
-    found: dict[str, tuple[Channel, NDArray[np.complex128]]] = {}
+    responses: dict[str, tuple[Channel, NDArray[np.complex128]]] = {}
     notices = []
     for name, wanted in channels.items():
         index = pick(measurement, wanted, option=f"--map {name}=", allowed=is_response)
-        one = measurement.channels[index]
+        channel = measurement.channels[index]
         unit = choice.units.get(name, choice.units.get("", ""))
         if unit:
-            one = replace(one, unit=unit)
-        where = f"{measurement.path}: channel {index + 1} {one.name!r}"
-        values, said = _acceleration_per_displacement(one, where, name)
-        sign, words = _sign(one, name, name in turned)
-        found[name] = (one, sign * values)
+            channel = replace(channel, unit=unit)
+        where = f"{measurement.path}: channel {index + 1} {channel.name!r}"
+        values, conversion = _acceleration_per_displacement(channel, where, name)
+        sign, sign_notes = _sign(channel, name, name in inverted)
+        responses[name] = (channel, sign * values)
         notices.append(
-            f"{name}: channel {index + 1} {one.name!r}" + "".join(f"; {text}" for text in (said, *words) if text)
+            f"{name}: channel {index + 1} {channel.name!r}"
+            + "".join(f"; {text}" for text in (conversion, *sign_notes) if text)
         )
-    frequency = _union([one.axis for one, _ in found.values() if one.axis is not None])
-    shape = (len(found), frequency.size)
+    frequency = _union([channel.axis for channel, _ in responses.values() if channel.axis is not None])
+    shape = (len(responses), frequency.size)
     response = np.full(shape, complex(np.nan, np.nan))
     coherence, random_error = np.full(shape, np.nan), np.full(shape, np.nan)
-    for row, (name, (one, values)) in enumerate(found.items()):
-        assert one.axis is not None
-        place = _places(frequency, one.axis)
-        response[row, place] = values
-        beside = coherence_of(measurement, one)
-        if beside is None:
-            notices.append(f"{name}: no coherence beside it; all lines count alike")
-        elif beside.axis is not None:
-            inside = (beside.axis >= frequency[0]) & (beside.axis <= frequency[-1])
-            told = np.clip(np.asarray(beside.values, dtype=np.float64)[inside], 0.0, 1.0)
-            coherence[row, _places(frequency, beside.axis[inside])] = told
-        error = next((c for c in measurement.channels if c.name == one.name + RANDOM_ERROR), None)
+    for row, (name, (channel, values)) in enumerate(responses.items()):
+        assert channel.axis is not None
+        columns = _places(frequency, channel.axis)
+        response[row, columns] = values
+        coherence_channel = coherence_of(measurement, channel)
+        if coherence_channel is None:
+            notices.append(f"{name}: no coherence in the file; all lines have equal weight")
+        elif coherence_channel.axis is not None:
+            inside = (coherence_channel.axis >= frequency[0]) & (coherence_channel.axis <= frequency[-1])
+            values_coherence = np.clip(np.asarray(coherence_channel.values, dtype=np.float64)[inside], 0.0, 1.0)
+            coherence[row, _places(frequency, coherence_channel.axis[inside])] = values_coherence
+        error = next((c for c in measurement.channels if c.name == channel.name + RANDOM_ERROR), None)
         if error is not None and error.values.size == values.size:
-            random_error[row, place] = np.asarray(error.si_values, dtype=np.float64)
-    rises = frequency > 0.0
+            random_error[row, columns] = np.asarray(error.si_values, dtype=np.float64)
+    positive = frequency > 0.0
     data = FrfData(
-        frequency=frequency[rises],
-        channels=tuple(found),
-        response=response[:, rises],
-        coherence=coherence[:, rises],
-        random_error=random_error[:, rises],
+        frequency=frequency[positive],
+        channels=tuple(responses),
+        response=response[:, positive],
+        coherence=coherence[:, positive],
+        random_error=random_error[:, positive],
     )
     return data, notices
 
 
-def _acceleration_per_displacement(one: Channel, where: str, name: str) -> tuple[NDArray[np.complex128], str]:
-    """A response in m/s2 per m, and what was done to it."""
-    if one.axis is None:
-        raise DataError(f"{where} has no frequencies; export it with them")
-    if one.function not in RESPONSES and not np.iscomplexobj(one.values):
+def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> tuple[NDArray[np.complex128], str]:
+    """Convert a response to m/s2 per m; return the values and a message on the conversion."""
+    if channel.axis is None:
+        raise DataError(f"{where} has no frequencies; export it with frequencies")
+    if channel.function not in RESPONSES and not np.iscomplexobj(channel.values):
         raise DataError(
-            f"{where} is a {one.function} without a phase; needed is a frequency response: complex, or two columns "
+            f"{where} is a {channel.function} without a phase, must be a frequency response: complex, or two columns "
             "named real and imag, or magnitude and phase"
         )
-    unit = find_ratio(one.unit)
+    unit = find_ratio(channel.unit)
     upper, _, lower = (unit.quantity if unit is not None else "").partition("/")
     if unit is None:
         raise DataError(
-            f"{where} has {f'the unit {one.unit!r}, which is not known' if one.unit else one.remark or 'no unit'}; "
-            f"give --unit {name}=UNIT, as m/s2/m, g/m, m/m or g/g"
+            f"{where} has {f'the unknown unit {channel.unit!r}' if channel.unit else channel.remark or 'no unit'}; "
+            f"set --unit {name}=UNIT, such as m/s2/m, g/m, m/m or g/g"
         )
     if lower == "force" or "force" in upper:
         raise DataError(
-            f"{where} is in {one.unit}: a response to a force; the plates of the model are driven by displacements, so "
-            "the force that goes with one is needed: give the response over the plate's displacement or acceleration, "
-            "or the time histories of response and plate"
+            f"{where} is in {channel.unit}: a response to a force, but the inputs of the model are plate "
+            "displacements; use the response to the displacement or acceleration of the plate, or the time "
+            "histories of response and plate"
         )
     if upper not in ORDERS or lower not in ORDERS:
         raise DataError(
-            f"{where} is in {one.unit}; needed is a displacement, velocity or acceleration over one of the plate, as "
-            f"m/s2/m, g/m or m/m; if the file is wrong, give --unit {name}=UNIT"
+            f"{where} is in {channel.unit}, must be a motion of a point over a motion of the plate, such as m/s2/m, "
+            f"g/m or m/m; if the unit in the file is wrong, set --unit {name}=UNIT"
         )
-    values = np.asarray(one.si_values, dtype=np.complex128)
+    values = np.asarray(channel.si_values, dtype=np.complex128)
     power = ORDERS["acceleration"] - ORDERS[upper] + ORDERS[lower]
-    said = "" if not power and unit.factor == 1.0 else f"{one.unit} made m/s2 per m"
-    return values * (2j * np.pi * one.axis) ** power if power else values, said
+    conversion = "" if not power and unit.factor == 1.0 else f"{channel.unit} converted to m/s2 per m"
+    return values * (2j * np.pi * channel.axis) ** power if power else values, conversion
 
 
-def _sign(one: Channel, name: str, turn: bool) -> tuple[float, list[str]]:
-    """Sign of the measured against the modelled direction, and what is to be said of it."""
-    sign, said = (-1.0 if turn else 1.0), ["sign turned on request"] if turn else []
-    backwards = one.direction.startswith("-") != one.reference[-2:-1].startswith("-")
+def _sign(channel: Channel, name: str, invert: bool) -> tuple[float, list[str]]:
+    """Return the sign of the measured relative to the modelled direction, and messages on it."""
+    sign, notes = (-1.0 if invert else 1.0), ["sign inverted on request"] if invert else []
+    backwards = channel.direction.startswith("-") != channel.reference[-2:-1].startswith("-")
     if backwards:
         sign = -sign
-        said.append(f"measured along {one.direction or '?'} to {one.reference or '?'}: sign turned")
-    axis = one.direction[-1:].lower()
+        notes.append(f"measured along {channel.direction or '?'} to {channel.reference or '?'}: sign inverted")
+    axis = channel.direction[-1:].lower()
     if re.fullmatch(r"[xyz]", axis) and not name.endswith(f"_{axis}"):
-        said.append(f"measured along {axis} of its own frame")
-    return sign, said
+        notes.append(f"measured along {axis} of the sensor axes")
+    return sign, notes
 
 
 def _union(axes: list[Vector]) -> Vector:
-    """All lines of several axes, those of one place once."""
+    """Return the union of the lines of several frequency axes; merge lines closer than `SAME_LINE` steps."""
     lines = np.sort(np.concatenate(axes))
     step = (
         min(float(np.median(np.diff(axis))) for axis in axes if axis.size > 1) if any(a.size > 1 for a in axes) else 0.0
@@ -150,7 +150,7 @@ def _union(axes: list[Vector]) -> Vector:
 
 
 def _places(frequency: Vector, axis: Vector) -> NDArray[np.int64]:
-    """Index of the nearest line of the union for each line of an axis."""
+    """Return the index of the nearest line of the union for each line of an axis."""
     right = np.clip(np.searchsorted(frequency, axis), 1, max(frequency.size - 1, 1))
     left = right - 1
     if frequency.size < 2:
@@ -158,23 +158,23 @@ def _places(frequency: Vector, axis: Vector) -> NDArray[np.int64]:
     return np.asarray(np.where(axis - frequency[left] < frequency[right] - axis, left, right), dtype=np.int64)
 
 
-def coherence_of(measurement: Measurement, one: Channel) -> Channel | None:
-    """The coherence that belongs to a response: at the same place to the same reference, or of the same name.
+def coherence_of(measurement: Measurement, response: Channel) -> Channel | None:
+    """Find the coherence of a response: same point, direction and reference, or same name; None if ambiguous.
 
     Args:
-        measurement: the file.
-        one: the response.
+        measurement: contents of the file.
+        response: channel of the frequency response.
     """
-    those = [c for c in measurement.channels if c.function == "coherence" and not np.iscomplexobj(c.values)]
-    point = (one.place, one.direction, one.reference)
+    coherences = [c for c in measurement.channels if c.function == "coherence" and not np.iscomplexobj(c.values)]
+    point = (response.place, response.direction, response.reference)
     if any(point[:2]):
-        same = [c for c in those if (c.place, c.direction, c.reference) == point]
-        if len(same) == 1:
-            return same[0]
-    named = [c for c in those if _plain(c.name) == _plain(one.name)]
+        matches = [c for c in coherences if (c.place, c.direction, c.reference) == point]
+        if len(matches) == 1:
+            return matches[0]
+    named = [c for c in coherences if _plain(c.name) == _plain(response.name)]
     return named[0] if len(named) == 1 else None
 
 
 def _plain(name: str) -> str:
-    """A name without the words that tell a response from its coherence."""
+    """Remove the words that distinguish the names of a response and its coherence."""
     return re.sub(r"coherence|coh\b|gamma2|frf\b|[^a-z0-9+-]", "", name.lower())

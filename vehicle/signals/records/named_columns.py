@@ -1,4 +1,4 @@
-"""Columns of any measurement file by their names, in SI: profiles of roads, curves of springs and dampers."""
+"""Read columns of any measurement file by name, in SI units: road profiles, spring and damper curves."""
 
 from __future__ import annotations
 
@@ -14,35 +14,35 @@ from vehicle.signals.records.units import allowed_units, find_unit
 
 
 def named_columns(path: Path, wanted: Mapping[str, str]) -> dict[str, Vector]:
-    """Read columns of numbers.
+    """Read named columns of a measurement file in SI units.
 
     Args:
-        path: the file, of any format.
-        wanted: name of a column, in small letters, to the SI unit of what it measures.
+        path: measurement file of any format.
+        wanted: column name in lower case to SI unit of its quantity.
 
     Returns:
-        Name to values in SI, all of one length.
+        Column name to values in SI units, all of equal length.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: a column is missing or there twice, measures something else, or lacks a value.
+        ConfigurationError: the file does not exist.
+        DataError: a missing or repeated column, another quantity, or a missing value.
     """
-    measurement, found = read_record(path), {}
+    measurement, columns = read_record(path), {}
     for name, si in wanted.items():
-        those = [one for one in measurement.channels if one.name.strip().lower() == name]
-        if len(those) != 1:
-            shown = ", ".join(f"{one.name!r} [{one.unit}]" for one in measurement.channels[:12]) or "none"
-            raise DataError(f"{path}: {len(those)} columns are called {name!r}; needed is one [{si}]; found {shown}")
-        known, needed = find_unit(those[0].unit), find_unit(si)
-        if known is None or needed is None or known.quantity != needed.quantity:
+        matches = [channel for channel in measurement.channels if channel.name.strip().lower() == name]
+        if len(matches) != 1:
+            shown = ", ".join(f"{channel.name!r} [{channel.unit}]" for channel in measurement.channels[:12]) or "none"
+            raise DataError(f"{path}: {len(matches)} columns are named {name!r}, must be one [{si}]; found {shown}")
+        unit_entry, needed = find_unit(matches[0].unit), find_unit(si)
+        if unit_entry is None or needed is None or unit_entry.quantity != needed.quantity:
             units = allowed_units(needed.quantity if needed is not None else None)
-            raise DataError(f"{path}: column {name!r} has the unit {those[0].unit!r}; allowed are {units}")
-        values = np.asarray(those[0].si_values, dtype=np.float64)
+            raise DataError(f"{path}: column {name!r} has the unit {matches[0].unit!r}, must be one of {units}")
+        values = np.asarray(matches[0].si_values, dtype=np.float64)
         if not np.isfinite(values).all():
             row = int(np.flatnonzero(~np.isfinite(values))[0]) + 1
-            raise DataError(f"{path}: column {name!r}: row {row} holds no number; repair or remove the row")
-        found[name] = values
-    if len({one.size for one in found.values()}) > 1:
-        sizes = ", ".join(f"{name} {one.size}" for name, one in found.items())
-        raise DataError(f"{path}: columns of different length ({sizes}); they must be equal")
-    return found
+            raise DataError(f"{path}: column {name!r}: row {row} is not a number; repair or remove the row")
+        columns[name] = values
+    if len({channel.size for channel in columns.values()}) > 1:
+        sizes = ", ".join(f"{name} {channel.size}" for name, channel in columns.items())
+        raise DataError(f"{path}: columns of different length ({sizes}), must be equal")
+    return columns

@@ -1,4 +1,4 @@
-"""Tables as arrays: an `.npz` with `time`, one array for each channel, and their units as texts "name [unit]"."""
+"""Read and write tables as `.npz`: the array `time`, one array per channel, and units as texts "name [unit]"."""
 
 from __future__ import annotations
 
@@ -16,22 +16,23 @@ from vehicle.signals.records.table import Header, Record, Table, Wanted, name_an
 from vehicle.signals.records.text import MEMORY_LIMIT
 
 FREELY = 100_000_000
-"""Arrays up to this size are read however they are packed [byte]: a channel at rest for an hour is a constant."""
+"""Maximum size of arrays that are read at any compression ratio [byte]: a constant channel of one hour is smaller."""
+
 DENSEST = 200
-"""Largest ratio of the size of larger arrays to that of their file; noise of a sensor gives up to 20, zeros 1000."""
+"""Maximum compression ratio of larger arrays [-]: sensor noise gives up to 20, zeros 1000."""
 
 
 def read(path: Path, wanted: Wanted) -> Table:
-    """Read all arrays of numbers that are as long as the time.
+    """Read the array `time` and all numeric arrays of its length as a table.
 
     Raises:
-        DataError: no archive of arrays, one too large, no time, or arrays of other lengths or with values that are not
-            finite; or of `wanted`.
+        DataError: not an archive of arrays, too large, no array `time`, another length, values that are not finite, or
+            a violated requirement of `wanted`.
     """
     try:
         names = _wanted_arrays(path)
         with np.load(path, allow_pickle=False) as arrays:
-            found = {name: arrays[name] for name in names}
+            loaded = {name: arrays[name] for name in names}
     except (
         OSError,
         ValueError,
@@ -44,27 +45,28 @@ def read(path: Path, wanted: Wanted) -> Table:
         TokenError,
         zlib.error,
     ) as error:
-        raise DataError(f"{path}: no file of arrays ({error}); give a time.npz of a run, or a CSV file") from None
-    texts = [str(text) for text in np.atleast_1d(found.pop("units", np.array([], dtype=str)))]
+        raise DataError(f"{path}: cannot be read as npz ({error}); use the time.npz of a run, or a CSV file") from None
+    texts = [str(text) for text in np.atleast_1d(loaded.pop("units", np.array([], dtype=str)))]
     units = {"time": "s"} | dict(name_and_unit(text) for text in texts)
-    numbers = {name: values for name, values in found.items() if values.ndim == 1 and values.dtype.kind in "fiu"}
+    numbers = {name: values for name, values in loaded.items() if values.ndim == 1 and values.dtype.kind in "fiu"}
     if "time" not in numbers:
         raise DataError(
-            f"{path}: no array 'time'; found {', '.join(found) or 'none of one dimension'}; needed are {wanted.needed}"
+            f"{path}: no array 'time'; found {', '.join(loaded) or 'no array of one dimension'}; needed are "
+            f"{wanted.needed}"
         )
     count = numbers["time"].size
     for name, values in numbers.items():
         if values.size != count or not np.isfinite(values).all():
             raise DataError(
-                f"{path}: array {name!r} has {values.size} samples for {count} times, or one that is not finite; "
+                f"{path}: array {name!r} has {values.size} samples for {count} times, or a value that is not finite; "
                 "repair or cut the record"
             )
     header = Header(path=path, line=0, cells=tuple(f"{name} [{units.get(name) or ''}]" for name in numbers))
     key = wanted.key(header)
-    found.clear()
+    loaded.clear()
     table = np.empty((count, len(numbers)), order="F")
     for column, name in enumerate(tuple(numbers)):
-        table[:, column] = numbers.pop(name)  # a long record stands in memory once
+        table[:, column] = numbers.pop(name)  # keep only one copy of a long record in memory
     return Table(
         header=header,
         key=key,
@@ -76,42 +78,41 @@ def read(path: Path, wanted: Wanted) -> Table:
 
 
 def _wanted_arrays(path: Path) -> list[str]:
-    """Names of the arrays of one dimension, from their headers alone; the others are no channels and stay unread.
+    """Return the names of the arrays of one dimension, from their headers; other arrays are not channels.
 
     Raises:
-        DataError: the arrays would not fit into memory, or are packed as no measurement is.
+        DataError: the arrays exceed the memory limit or the maximum compression ratio.
     """
     names, size, packed = [], 0, 0
     with zipfile.ZipFile(path) as archive:
-        for one in archive.infolist():
-            with archive.open(one) as member:
+        for entry in archive.infolist():
+            with archive.open(entry) as member:
                 version = np.lib.format.read_magic(member)
                 header = (
                     np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
                 )
-                shape, _, kind = header(member)
-            if len(shape) == 1 or kind.kind in "US":
-                names.append(one.filename.removesuffix(".npy"))
-                size += max(math.prod(shape) * kind.itemsize, one.file_size)
-                packed += one.compress_size
+                shape, _, dtype = header(member)
+            if len(shape) == 1 or dtype.kind in "US":
+                names.append(entry.filename.removesuffix(".npy"))
+                size += max(math.prod(shape) * dtype.itemsize, entry.file_size)
+                packed += entry.compress_size
     if size > MEMORY_LIMIT:
         raise DataError(
-            f"{path}: its arrays need {size / 1024**3:.3g} GiB of memory; allowed {MEMORY_LIMIT / 1024**3:.3g} GiB; "
-            "cut the record into parts"
+            f"{path}: its arrays need {size / 1024**3:.3g} GiB of memory, must be at most "
+            f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
         )
     if size > FREELY and size > DENSEST * packed:
         raise DataError(
-            f"{path}: {size / 1e6:.3g} MB are packed into {packed / 1e6:.3g} MB, {size / packed:.0f} to 1; allowed is "
-            f"{DENSEST} to 1: its arrays hold hardly more than one value, which no sensor gives; record again"
+            f"{path}: {size / 1e6:.3g} MB are compressed to {packed / 1e6:.3g} MB, {size / packed:.0f} to 1, must be "
+            f"at most {DENSEST} to 1: its arrays are almost constant, unlike those of a sensor; record again"
         )
     return names
 
 
 def write(path: Path, record: Record, frame: str) -> None:
-    """Write a record, with its units and its frame as texts; arguments of
-    `vehicle.signals.records.formats.write_record`.
+    """Write a record with its units and its frame as texts; see `vehicle.signals.records.formats.write_record`.
 
-    Not compressed: that takes more time than the run, and spares a sixth of the file.
+    Without compression, which takes longer than the run and reduces the file by a sixth only.
     """
     with path.open("wb") as file:
         np.savez(

@@ -1,4 +1,4 @@
-"""Parquet files: columns of numbers, and a column of dates or times as their axis."""
+"""Read Parquet files: numeric columns, with a column of dates or times as their axis."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from vehicle.signals.records.units import find_unit
 
 
 def read(path: Path) -> Measurement:
-    """Read all columns of numbers of a flat table.
+    """Read all numeric columns of a flat table.
 
     Raises:
         MissingPartError: pyarrow is not installed.
-        DataError: damaged, cut off, encrypted, too large, or without numbers.
+        DataError: the file is damaged, truncated, encrypted, too large, or without numbers.
     """
     extra("pyarrow", "parquet", "a Parquet file")
     parquet = import_module("pyarrow.parquet")
@@ -31,24 +31,24 @@ def read(path: Path) -> Measurement:
     try:
         with parquet.ParquetFile(path) as file:
             rows, fields = file.metadata.num_rows, file.schema_arrow
-            wanted = [n for n, one in enumerate(fields) if _is_number(one.type) or _is_date(one.type)]
+            wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
             needed = 2 * 8 * rows * len(wanted)
             if needed > MEMORY_LIMIT:
                 raise DataError(
-                    f"{path}: {len(wanted)} columns of {rows} rows need {needed / 1024**3:.3g} GiB of memory; allowed "
-                    f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
+                    f"{path}: {len(wanted)} columns of {rows} rows need {needed / 1024**3:.3g} GiB of memory, must be "
+                    f"at most {MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
                 )
-            left = [one.name for n, one in enumerate(fields) if n not in wanted]
+            skipped = [field.name for n, field in enumerate(fields) if n not in wanted]
             table = file.read(columns=[fields[n].name for n in wanted])
             program = str(file.metadata.created_by or "")
         columns = [(name, *_column(table.column(n))) for n, name in enumerate(table.column_names)]
     except DataError:
         raise
-    except Exception as error:  # damaged files raise what they like
-        told = " ".join(str(error).split())
-        raise DataError(f"{path}: no Parquet file that can be read ({told}); export it again, or as CSV") from None
-    if left:
-        notices.append(f"columns that hold no numbers are left out: {', '.join(map(repr, left[:12]))}")
+    except Exception as error:  # pyarrow raises errors of any type for damaged files
+        reason = " ".join(str(error).split())
+        raise DataError(f"{path}: cannot be read as Parquet ({reason}); export it again, or as CSV") from None
+    if skipped:
+        notices.append(f"columns without numbers are ignored: {', '.join(map(repr, skipped[:12]))}")
     axis, key, start = _axis(columns, notices)
     channels = []
     for index, (name, values, _) in enumerate(columns):
@@ -57,7 +57,7 @@ def read(path: Path) -> Measurement:
             channels.append(Channel(name=text, values=np.asarray(values, dtype=np.float64), unit=unit, axis=axis))
     if not channels or not rows:
         raise DataError(
-            f"{path}: no column of numbers; it holds {', '.join(map(repr, fields.names[:12])) or 'nothing'}"
+            f"{path}: no numeric column; it contains {', '.join(map(repr, fields.names[:12])) or 'nothing'}"
         )
     return Measurement(
         path=path,
@@ -70,17 +70,22 @@ def read(path: Path) -> Measurement:
     )
 
 
-def _is_number(kind: Any) -> bool:
+def _is_number(data_type: Any) -> bool:
     types = import_module("pyarrow.types")
-    return bool(types.is_integer(kind) or types.is_floating(kind) or types.is_decimal(kind) or types.is_duration(kind))
+    return bool(
+        types.is_integer(data_type)
+        or types.is_floating(data_type)
+        or types.is_decimal(data_type)
+        or types.is_duration(data_type)
+    )
 
 
-def _is_date(kind: Any) -> bool:
-    return bool(import_module("pyarrow.types").is_timestamp(kind))
+def _is_date(data_type: Any) -> bool:
+    return bool(import_module("pyarrow.types").is_timestamp(data_type))
 
 
 def _column(column: Any) -> tuple[Any, str]:
-    """Numbers of a column, NaN where there is none, and the unit of a date or a duration; whole counts stay whole."""
+    """Return the numbers of a column, NaN if missing, and the unit of a date or duration; keep integer counts."""
     unit = getattr(column.type, "unit", "") if hasattr(column.type, "unit") else ""
     if unit:
         column = column.cast("int64")
@@ -91,17 +96,17 @@ def _column(column: Any) -> tuple[Any, str]:
 
 
 def _axis(columns: list[tuple[str, Any, str]], notices: list[str]) -> tuple[Vector | None, int, str]:
-    """Times [s], their column, and their start: a column of dates, of durations, or one called time with a unit."""
+    """Return times [s], index of their column, and start, from dates, durations, or a column named time with a unit."""
     for index, (name, values, unit) in enumerate(columns):
         epoch = epoch_seconds(values, unit) if unit else None
         if epoch is not None:
             notices.append(f"dates of column {name!r}: the time begins at {epoch[1]}")
             return epoch[0], index, epoch[1]
     for index, (name, values, unit) in enumerate(columns):
-        text, told = split_head(name)
-        known = find_unit(unit or told)
-        if (unit or TIME_NAME.fullmatch(text)) and known is not None and known.quantity == "time":
-            return values * known.factor, index, ""
+        text, unit_in_name = split_head(name)
+        time_unit = find_unit(unit or unit_in_name)
+        if (unit or TIME_NAME.fullmatch(text)) and time_unit is not None and time_unit.quantity == "time":
+            return values * time_unit.factor, index, ""
     for index, (name, values, _) in enumerate(columns):
         epoch = epoch_seconds(values, "") if TIME_NAME.fullmatch(split_head(name)[0]) else None
         if epoch is not None:

@@ -1,4 +1,4 @@
-"""The way into files: measurements, tables and time histories of any registered format."""
+"""Read measurements, tables and time histories from files of any registered format."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from vehicle.signals.records.formats import BY_NAME, recognised_format
 from vehicle.signals.records.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
 
 MINIMUM_SAMPLES = 3
-"""Of a record: two samples give the step, the third shows that it is uniform."""
+"""Minimum number of samples of a record: two give the step, the third shows that the step is uniform."""
 
 
 def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement:
     """Read all channels of a measurement file.
 
     Args:
-        path: the file, of any format of `vehicle.signals.records.formats`.
-        databases: DBC files, which decode the log of a CAN bus.
+        path: measurement file of any format of `vehicle.signals.records.formats`.
+        databases: DBC files that decode the log of a CAN bus.
 
     Returns:
         Channels with names, units and times, mode shapes and geometry, in the units of the file.
 
     Raises:
-        ConfigurationError: there is no such file, or databases are given for another kind of file.
-        DataError: a format that is not read, or a damaged file.
-        MissingPartError: the format needs a library that is not installed; the message names the extra.
+        ConfigurationError: the file does not exist, or databases are passed for a file other than a bus log.
+        DataError: an unsupported format, or a damaged file.
+        MissingPartError: a library of the format is not installed; the message names the extra.
     """
     file = Path(path)
     recognised = recognised_format(file)
@@ -45,40 +45,40 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
 
 
 def is_table(path: Path) -> bool:
-    """Return True for a file with a table of our own format, or none at all: the reader of text reports that."""
+    """Return True for a file in a table format; also for a missing file, which `read_table` reports."""
     return not path.is_file() or bool(recognised_format(path).table)
 
 
 def read_table(path: Path, wanted: Wanted) -> Table:
-    """Read a table: an archive of arrays, or text.
+    """Read a table from an archive of arrays or a text file.
 
     Args:
-        path: the file.
-        wanted: requirements on its columns.
+        path: table file.
+        wanted: requirements on the columns.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: bad data; the message names the place.
+        ConfigurationError: the file does not exist.
+        DataError: bad data; the message names line and column.
     """
     try:
         with path.open("rb") as file:
             archive = file.read(2) == b"PK"
     except OSError:
-        archive = False  # the reader of text reports the error
+        archive = False  # the text reader reports the error
     table: Table = BY_NAME["npz" if archive else "csv"].function("table", "read")(path, wanted)
     return table
 
 
 def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
-    """Read a record: a table with a column `time [s]` that is uniform.
+    """Read a record: a table with a uniform column `time [s]`.
 
     Args:
-        path: the file.
-        needed: the columns in words, for messages.
+        path: table file.
+        needed: description of the required columns, for messages.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: it holds no record; the message names the place.
+        ConfigurationError: the file does not exist.
+        DataError: the file is not a record; the message names line and column.
     """
     table = read_table(path, Wanted(needed=needed, key=key_column(TIME, needed)))
     channels: dict[str, Vector] = {}
@@ -90,20 +90,20 @@ def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'"
         channels[name], units[name] = table.values[:, index], unit or ""
     time, _ = channels.pop("time"), units.pop("time")
     if time.size < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: {time.size} samples, at least {MINIMUM_SAMPLES} are needed")
+        raise DataError(f"{path}: {time.size} samples, must be at least {MINIMUM_SAMPLES}")
     check_increasing(table, time)
     uniform, notices = without_rounding(time)
     check_uniform(table, uniform)
     return Record(time=uniform, channels=channels, units=units, notices=(*table.notices, *notices))
 
 
-def extra(package: str, name: str, what: str) -> Any:
-    """Import a library of an extra.
+def extra(package: str, name: str, purpose: str) -> Any:
+    """Import an optional library.
 
     Args:
-        package: to be imported.
-        name: of the extra.
-        what: the format, for the message.
+        package: package to import.
+        name: name of the extra that installs the package.
+        purpose: use of the package, for the message.
 
     Raises:
         MissingPartError: the library is not installed.
@@ -112,11 +112,12 @@ def extra(package: str, name: str, what: str) -> Any:
         return import_module(package)
     except ImportError:
         raise MissingPartError(
-            f"{what} needs {package}, which is not installed; install it with: pip install 'vehicle-on-shaker[{name}]'"
+            f"{purpose} needs {package}, which is not installed; install it with: pip install "
+            f"'vehicle-on-shaker[{name}]'"
         ) from None
 
 
 def digest(path: Path) -> str:
-    """SHA-256 of a file, hexadecimal."""
+    """Return the SHA-256 digest of a file, hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,4 +1,4 @@
-"""Comfort of a record of acceleration after ISO 2631-1 or BS 6841, with the offset of its sensor and its SEAT value."""
+"""Evaluate the comfort of an acceleration record after ISO 2631-1 or BS 6841: sensor offset, SEAT value."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.table import Record
 
 OFFSETS = ("refuse", "remove", "keep")
-"""Treatments of the mean and drift of an axis."""
+"""Treatments of mean and drift of an axis."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordComfort:
-    """Comfort values of a record of acceleration.
+    """Comfort values of an acceleration record.
 
     Attributes:
         summary: all values, see `vehicle.signals.analysis.evaluation.evaluate`, with the treatment of the offset,
-            notices, and the SEAT value where the rail was given.
+            notices, and the SEAT value if a rail was specified.
     """
 
     summary: Mapping[str, Any]
@@ -49,7 +49,7 @@ class RecordComfort:
 
     @property
     def overall(self) -> float | None:
-        """Vector sum of the weighted RMS accelerations for comfort [m/s2]; None where an axis is missing."""
+        """Vector sum of the weighted RMS accelerations for comfort [m/s2]; None if an axis is missing."""
         sums = self.summary["vector_sum"]
         return None if sums is None else float(sums["weighted_rms"])
 
@@ -61,7 +61,7 @@ class RecordComfort:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Messages on the record, and reasons for values that do not exist."""
+        """Messages on the record, and reasons for missing values."""
         return (*self.summary["notices"], *self.summary["reasons"])
 
     def __repr__(self) -> str:
@@ -90,7 +90,7 @@ class RecordComfort:
         if "seat_value" in result:
             ratio = result["seat_value"]
             lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
-        lines.append("values of this record; no statistical error is given (repeat the ride to see the spread)")
+        lines.append("values of this record, without statistical error (repeat the ride for the spread)")
         return "\n".join(lines)
 
 
@@ -122,21 +122,22 @@ def evaluate_comfort(
 
     Args:
         file: table with the columns time [s], x, y, z [m/s2] or [g], or a measurement file of any format.
-        point: point of a run, as "seat_rail" in its time.csv or time.npz; columns x, y, z by default.
-        choice: channels of a measurement file for x, y and z, their units, rate and excerpt.
-        rail: point below the seat, as "seat_rail", for the SEAT value.
-        rail_choice: the same in a measurement file, with a channel for z.
+        point: point of a run, such as "seat_rail" in its time.csv or time.npz; columns x, y, z by default.
+        choice: channels of a measurement file for x, y and z, units, rate and excerpt.
+        rail: point below the seat, such as "seat_rail", for the SEAT value.
+        rail_choice: channel of a measurement file for z below the seat, for the SEAT value.
         place: point of contact, which selects weightings and factors: seat, backrest, feet, standing, ...
-        offset: mean and drift of an axis: "refuse" where they matter, "remove", or "keep" for a record from rest.
+        offset: treatment of mean and drift: "refuse" (error if they change the result), "remove", or "keep" for a
+            record that begins at rest.
         average: running average of the MTVV, "linear" or "exponential".
-        skip: time left out at the beginning of the weighted records [s].
+        skip: time skipped at the beginning of the weighted records [s].
 
     Returns:
-        All values; `print` shows them as a table.
+        Comfort values; `print` shows a table.
 
     Raises:
-        ConfigurationError: no such file or place, or a SEAT value of a place that is no seat.
-        DataError: bad data, or a mean or drift that matters.
+        ConfigurationError: unknown file or place, or a SEAT value of a place other than a seat.
+        DataError: bad data, or a mean or drift that changes the result.
 
     Source: ISO 2631-1:1997; BS 6841:1987; ISO 10326-1 (SEAT).
     """
@@ -145,13 +146,13 @@ def evaluate_comfort(
         raise ConfigurationError(f"offset: found {offset!r}, must be one of {', '.join(OFFSETS)}")
     seated = rail is not None or rail_choice is not None
     if seated and place not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(f"--place {place}: --rail asks for the value of a seat; leave one of them out")
+        raise ConfigurationError(f"--place {place}: --rail is for the SEAT value of a seat; omit --place or --rail")
     record = _read(file, point, choice, place, offset)
     axes, xyz = list(record.channels), np.array(list(record.channels.values()))
-    twice = [
-        f"{one} and {other} hold the same samples, which the vector sum counts twice: was a channel copied, or chosen "
-        f"twice? Choose another: --channel {other}=NAME"
-        for one, other in copies(record.channels)
+    copied = [
+        f"{first} and {second} have identical samples, which the vector sum counts twice: was a channel copied, or "
+        f"chosen twice? Choose another channel: --channel {second}=NAME"
+        for first, second in copies(record.channels)
     ]
     removed = offset == "remove"
     result = evaluate(
@@ -165,26 +166,28 @@ def evaluate_comfort(
         highest=record.usable,
     )
     line = offset_line(xyz)
-    about = {
+    offset_summary = {
         "treatment": "removed" if removed else "kept",
         "mean": dict(zip(axes, (float(value) for value in xyz.mean(axis=1)), strict=True)),
         "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
-    summary = {"input": str(file), "offset": about, **result, "notices": [*record.notices, *twice]}
+    summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*record.notices, *copied]}
     if seated:
-        below = _read(file, rail, rail_choice, place, offset, judged="z")
+        below = _read(file, rail, rail_choice, place, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
-            raise ConfigurationError("--rail: the value of a seat is that of z, which was not measured at both places")
-        both = np.array([record.channels["z"], below.channels["z"]])
-        both = without_offset(both) if removed else both
-        summary["seat_value"] = asdict(seat_value(record.step, both[0], both[1], place=place, skip=skip))
+            raise ConfigurationError("--rail: the SEAT value needs z at the seat and at the rail; z is missing")
+        seat_and_rail = np.array([record.channels["z"], below.channels["z"]])
+        seat_and_rail = without_offset(seat_and_rail) if removed else seat_and_rail
+        summary["seat_value"] = asdict(
+            seat_value(record.step, seat_and_rail[0], seat_and_rail[1], place=place, skip=skip)
+        )
     return RecordComfort(summary)
 
 
 def _read(
-    file: Path | str, point: str | None, choice: Choice | None, place: str, offset: str, judged: str = "xyz"
+    file: Path | str, point: str | None, choice: Choice | None, place: str, offset: str, checked: str = "xyz"
 ) -> Record:
-    """Read the acceleration of a point; refuse a mean and drift of the judged axes that matter."""
+    """Read the acceleration of a point; reject mean and drift of the checked axes that change the comfort values."""
     record = read_acceleration(file, point, choice)
     if offset != "refuse":
         return record
@@ -194,11 +197,11 @@ def _read(
     for axis, effect, mean, drift in zip(
         record.channels, effects, xyz.mean(axis=1), line[:, -1] - line[:, 0], strict=True
     ):
-        if axis in judged and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
+        if axis in checked and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
             raise DataError(
                 f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, its drift {drift:.2g} m/s2; "
-                f"they change its weighted RMS or VDV by {100 * effect:.3g} %, allowed are "
-                f"{100 * OFFSET_EFFECT:g} % and a mean of {LARGEST_MEAN:g} m/s2; give --offset remove if it is a "
-                "sensor's offset or gravity, --offset keep if the record starts at rest and the mean is real"
+                f"they change its weighted RMS or VDV by {100 * effect:.3g} %, must be at most "
+                f"{100 * OFFSET_EFFECT:g} %, with a mean of at most {LARGEST_MEAN:g} m/s2; set --offset remove for a "
+                "sensor offset or gravity, --offset keep if the record begins at rest and the mean is real"
             )
     return record

@@ -1,4 +1,4 @@
-"""Formats that are recognised and not read: the error names the format and what to export instead."""
+"""Reject recognised but unsupported formats: the error names the format and an alternative for the export."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SIGNATURES = {
     ),
     b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, as `ulog2csv FILE` of pyulog does"),
 }
-"""First bytes: name of the format, and what to export instead."""
+"""First bytes of a file -> name of the format, and alternative for the export."""
 
 ENDINGS = {
     ".tdm": SIGNATURES[b"<usi:tdm"],
@@ -34,37 +34,37 @@ ENDINGS = {
     ".mp3": ("compressed sound", "WAV"),
     ".flac": ("compressed sound", "WAV"),
 }
-"""Ending of the name: the same, for binary files without a known signature."""
+"""File extension -> name of the format, and alternative, for binary files without a known signature."""
 
 EBML_SIGNATURE = b"\x1aE\xdf\xa3"
 TEXT_ENDINGS = (".csv", ".txt", ".asc")
 
 
 def refuse(head: Head) -> None:
-    """Raise the error of a file that no reader accepts; return for a file that may be text.
+    """Raise the error for an unsupported format or binary data; return for a possible text file.
 
     Args:
         head: beginning of a file that no format of `vehicle.signals.records.formats` recognises.
 
     Raises:
-        DataError: a known format that is not read, or binary data.
+        DataError: a known but unsupported format, or binary data.
     """
     path, data, ending = head.path, head.data, head.path.suffix.lower()
     if data.startswith(EBML_SIGNATURE):
         if b"mide" in data[:64]:
             raise DataError(
-                f"{path}: is an enDAQ IDE recording, which is not read; export CSV from enDAQ Lab, or with Python: "
+                f"{path}: enDAQ IDE recording, not supported; export CSV from enDAQ Lab, or with Python: "
                 f"endaq.ide.to_pandas(endaq.ide.get_doc({path.name!r}).channels[8]).to_csv('{path.stem}.csv')"
             )
-        raise DataError(f"{path}: is a film or another EBML file, which is not read; give a record of measurements")
+        raise DataError(f"{path}: film or another EBML file, not supported; use a measurement file")
     for signature, (name, instead) in SIGNATURES.items():
         if data.startswith(signature) or (signature == b"<usi:tdm" and signature in data):
-            raise DataError(f"{path}: is {name}, which is not read; export {instead}")
+            raise DataError(f"{path}: {name}, not supported; export {instead}")
     if ending in TEXT_ENDINGS:
-        return  # the reader of text names the byte that is not text
+        return  # the text reader reports the position of the invalid byte
     if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
         name, instead = ENDINGS.get(ending, ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
-        raise DataError(f"{path}: binary file, {name}, which is not read; export {instead}")
+        raise DataError(f"{path}: binary file, {name}, not supported; export {instead}")
     if ending in ENDINGS and not data.isascii():
         name, instead = ENDINGS[ending]
-        raise DataError(f"{path}: is {name}, which is not read; export {instead}")
+        raise DataError(f"{path}: {name}, not supported; export {instead}")

@@ -1,4 +1,4 @@
-"""A record at other times: jittered clocks made uniform, rates lowered without aliasing."""
+"""Resample records: make jittered times uniform, change the rate without aliasing."""
 
 from __future__ import annotations
 
@@ -12,37 +12,37 @@ from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
 from vehicle.signals.records.table import Vector
 
 KEPT = 0.4
-"""Corner of the low-pass before a record is brought to a lower rate, as a share of that rate."""
+"""Corner frequency of the low-pass before downsampling, over the lower rate [-]."""
 
 DEGREE = 7
-"""Degree of the spline through the samples. A sine of frequency f keeps sinc^8(f T) / sum over k of sinc^8(f T - k) of
-its amplitude at the sampling interval T: 99.98 % at 0.25 / T, 99.9 % at 0.3 / T and 96 % at 0.4 / T. A cubic spline
-keeps 98.8, 95.7 and 83 %."""
+"""Degree of the spline through the samples. It retains sinc^8(f T) / sum over k of sinc^8(f T - k) of the amplitude of
+a sine of frequency f at the sampling interval T: 99.98 % at 0.25 / T, 99.9 % at 0.3 / T and 96 % at 0.4 / T. A cubic
+spline retains 98.8, 95.7 and 83 %."""
 
 LARGEST_GRID = 20_000_000
-"""Maximum number of samples that resampling may make."""
+"""Maximum number of samples after resampling."""
 
 
 def resampled(
-    time: Vector, columns: Mapping[str, Vector], rate: float, place: Callable[[int], str], uniform: bool
+    time: Vector, columns: Mapping[str, Vector], rate: float, sample_name: Callable[[int], str], uniform: bool
 ) -> tuple[dict[str, Vector], str]:
-    """Bring columns to uniform times `time[0] + k / rate`: first the clock, then the anti-alias filter.
+    """Resample columns to uniform times `time[0] + k / rate`: first spline interpolation, then anti-alias filter.
 
-    The samples x_j stand at their true times t_j = j T + e_j, with jitter e_j. A spline of degree `DEGREE` through
+    The samples x_j have the true times t_j = j T + e_j, with jitter e_j. A spline of degree `DEGREE` through
     (t_j, x_j) is evaluated at the uniform times t_0 + k / (m rate), m the smallest integer with m rate >= 1 / T. These
-    samples are uniform, so that a linear-phase filter may act on them. To a lower rate, `decimate` closes from half the
-    new rate on and returns every m-th sample. To a higher rate, the images of the record above half its own rate are
-    taken away by the same filter at its own rate.
+    samples are uniform, as required by a linear-phase filter. For a lower rate, `decimate` removes frequencies above
+    half the new rate and returns every m-th sample. For a higher rate, the same filter at the original rate removes
+    the images above half the original rate.
 
     Args:
         time: increasing times [s], shape (n,).
         columns: name -> samples, shape (n,).
-        rate: wanted sampling rate [Hz].
-        place: name of a sample by its index, for messages.
+        rate: new sampling rate [Hz].
+        sample_name: function from the index of a sample to its name, for messages.
         uniform: True if the times are uniform within `UNIFORM_TOLERANCE`, for the notice.
 
     Returns:
-        The columns at the new times, shape (m,), and a notice with the deviation of the clock.
+        Columns at the new times, shape (m,), and a notice with the deviation of the original times.
 
     Raises:
         DataError: a gap longer than `longest_gap`, or more samples than `LARGEST_GRID`.
@@ -53,29 +53,30 @@ def resampled(
     gap = int(np.argmax(steps))
     if steps[gap] > limit * (1.0 + UNIFORM_TOLERANCE):
         raise DataError(
-            f"{place(gap + 1)}: gap of {steps[gap]:.6g} s behind {time[gap]:.9g} s; --resample bridges at most "
+            f"{sample_name(gap + 1)}: gap of {steps[gap]:.6g} s after {time[gap]:.9g} s; --resample bridges at most "
             f"{limit:.6g} s; use the part before it (--to {time[gap]:.9g}) or after it (--from {time[gap + 1]:.9g})"
         )
     factor = max(1, int(np.ceil((1.0 - UNIFORM_TOLERANCE) / (median * rate))))
     samples = int(np.floor((time[-1] - time[0]) * rate * factor * (1.0 + 1e-12))) + 1
     if samples > LARGEST_GRID:
         raise DataError(
-            f"{place(0)}: --resample {rate:g} Hz makes {samples} samples; allowed {LARGEST_GRID}; set a lower rate"
+            f"{sample_name(0)}: --resample {rate:g} Hz gives {samples} samples, must be at most {LARGEST_GRID}; set a "
+            "lower rate"
         )
     fine = np.minimum(time[0] + np.arange(samples) / (rate * factor), time[-1])
-    found = {}
+    result = {}
     for name, values in columns.items():
         even = scipy.interpolate.make_interp_spline(time - time[0], values, k=DEGREE)(fine - time[0])
-        found[name] = decimate(even, factor) if factor > 1 else _without_images(even, median * rate)
-    return found, _notice(steps, median, rate, factor, uniform)
+        result[name] = decimate(even, factor) if factor > 1 else _without_images(even, median * rate)
+    return result, _notice(steps, median, rate, factor, uniform)
 
 
 def _without_images(values: Vector, ratio: float) -> Vector:
-    """Return samples, shape (m,), without what lies above half a lower rate.
+    """Remove frequencies above half of a lower rate from samples, shape (m,).
 
     Args:
         values: uniform samples, shape (m,).
-        ratio: their rate over the lower one; unchanged samples where it is 1 within `UNIFORM_TOLERANCE`.
+        ratio: rate of the samples over the lower rate; a ratio of 1 within `UNIFORM_TOLERANCE` has no effect.
     """
     if ratio <= 1.0 + UNIFORM_TOLERANCE:
         return values
@@ -86,7 +87,7 @@ def _without_images(values: Vector, ratio: float) -> Vector:
 
 
 def _taps(ratio: float) -> Vector:
-    """Return a low-pass of odd length: flat to 0.8 of the Nyquist frequency of a rate that is `ratio` times lower.
+    """Return the taps of a low-pass of odd length, flat to 0.8 of the Nyquist frequency of a `ratio` times lower rate.
 
     Kaiser's formula: 80 dB over a transition of 0.2 / ratio need (80 - 7.95) / (2.285 pi 0.2) = 50.2 ratio taps.
     """
@@ -95,56 +96,56 @@ def _taps(ratio: float) -> Vector:
 
 
 def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: bool) -> str:
-    """Return a sentence on a resampled record: its clock, its gaps, the filter."""
-    words = "uniform times"
+    """Describe the resampling of a record: original times, gaps, filter, accuracy."""
+    clock = "uniform times"
     if not uniform:
         missing = int(np.count_nonzero(steps > 1.5 * median))
         jitter = np.abs(steps[steps <= 1.5 * median] / median - 1.0)
-        words = f"jittered times (steps up to {100.0 * float(jitter.max()):.2g} % off the median)"
+        clock = f"jittered times (steps up to {100.0 * float(jitter.max()):.2g} % off the median)"
         if missing:
             plural = "s" if missing > 1 else ""
-            words = f"{words} with {missing} gap{plural} of up to {1e3 * float(steps.max()):.3g} ms"
-    how = f" and a linear-phase anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
+            clock = f"{clock} with {missing} gap{plural} of up to {1e3 * float(steps.max()):.3g} ms"
+    filtering = f" and a linear-phase anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
     return (
-        f"resampled from {words} at {1.0 / median:.6g} Hz to {rate:g} Hz by a spline of degree {DEGREE} through the "
-        f"samples at their own times{how}; amplitudes hold within 0.1 % up to {0.3 / median:.3g} Hz, 4 % up to "
-        f"{KEPT / median:.3g} Hz"
+        f"resampled from {clock} at {1.0 / median:.6g} Hz to {rate:g} Hz by a spline of degree {DEGREE} through the "
+        f"samples at their true times{filtering}; amplitudes hold within 0.1 % up to {0.3 / median:.3g} Hz, 4 % up "
+        f"to {KEPT / median:.3g} Hz"
     )
 
 
 def decimate(values: Vector, factor: int) -> Vector:
-    """Return each `factor`-th sample after an anti-alias filter: shape (m,) -> (ceil(m / factor),).
+    """Return every `factor`-th sample after an anti-alias filter: shape (m,) -> (ceil(m / factor),).
 
-    Linear-phase FIR (Kaiser, 80 dB): flat up to 0.8 of the new Nyquist frequency, closed from it on; no delay. Beyond
-    both ends the record is continued along the straight line between its ends.
+    Linear-phase FIR (Kaiser, 80 dB): flat up to 0.8 of the new Nyquist frequency, 80 dB from it on; no delay. Beyond
+    both ends the record is extrapolated along the straight line between its ends.
 
     Args:
         values: uniform samples, shape (m,).
-        factor: ratio of the rates, at least 1.
+        factor: old rate over new rate, at least 1.
     """
     if factor == 1:
         return values
-    kept: Vector = scipy.signal.resample_poly(values, 1, factor, window=_taps(factor), padtype="line")
-    return kept
+    decimated: Vector = scipy.signal.resample_poly(values, 1, factor, window=_taps(factor), padtype="line")
+    return decimated
 
 
 def at_times(time: Vector, values: Vector, grid: Vector, step: float) -> Vector:
-    """A record at other times within its own, low-passed without phase shift where they are fewer.
+    """Interpolate a record to a uniform grid within its times; downsampling includes a zero-phase low-pass.
 
     Args:
         time: uniform times of the samples [s], (n,).
-        values: (n,).
-        grid: uniform times [s], (m,).
-        step: of the grid [s].
+        values: samples, (n,).
+        grid: uniform new times [s], (m,).
+        step: step of the grid [s].
 
     Returns:
-        (m,); the samples themselves where both have the same times.
+        Samples at the new times, (m,); unchanged samples if the times coincide.
     """
-    own = float(time[-1] - time[0]) / (time.size - 1)
-    first = (grid[0] - time[0]) / own
-    if abs(own / step - 1.0) < 1e-9 and abs(first - round(first)) < 1e-6:
+    interval = float(time[-1] - time[0]) / (time.size - 1)
+    first = (grid[0] - time[0]) / interval
+    if abs(interval / step - 1.0) < 1e-9 and abs(first - round(first)) < 1e-6:
         return values[round(first) : round(first) + grid.size]
-    if step > 1.05 * own:
-        sections = scipy.signal.butter(8, 2.0 * own * KEPT / step, output="sos")
+    if step > 1.05 * interval:
+        sections = scipy.signal.butter(8, 2.0 * interval * KEPT / step, output="sos")
         values = scipy.signal.sosfiltfilt(sections, values)
     return np.asarray(scipy.interpolate.CubicSpline(time, values)(grid))

@@ -1,4 +1,4 @@
-"""Sheets of XLSX files: read as the table of a logger."""
+"""Read sheets of XLSX files as tables of a logger."""
 
 from __future__ import annotations
 
@@ -12,41 +12,41 @@ from vehicle.signals.records.text import Text
 
 
 def read(path: Path) -> Measurement:
-    """Read the first sheet that holds a table of numbers.
+    """Read the first sheet with a table of numbers.
 
     Raises:
         MissingPartError: openpyxl is not installed.
-        DataError: damaged, or without such a table.
+        DataError: the file is damaged or has no table of numbers.
     """
     sheets = _sheets(path)
-    told: DataError | None = None
+    first_error: DataError | None = None
     for title, cells in sheets.items():
         body = "\n".join(_row(row) for row in cells)
         notice = () if len(sheets) == 1 else (f"sheet {title!r} of {len(sheets)}",)
         try:
             return read_lines(path, Text(body=body, notices=notice, sha256=digest(path)), "xlsx")
         except DataError as error:
-            told = told or error
-    raise told or DataError(f"{path}: no sheet; save it again")
+            first_error = first_error or error
+    raise first_error or DataError(f"{path}: no sheet; save it again")
 
 
 def _sheets(path: Path) -> dict[str, list[tuple[object, ...]]]:
-    """Title of each sheet to its rows."""
+    """Return the rows of each sheet by sheet title."""
     openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
     try:
-        with path.open("rb") as file:  # the library refuses other endings of a name
+        with path.open("rb") as file:  # openpyxl rejects other file extensions
             book = openpyxl.load_workbook(file, read_only=True, data_only=True)
-            return {one.title: list(one.iter_rows(values_only=True)) for one in book.worksheets}
-    except Exception as error:  # damaged archives raise what they like
-        raise DataError(f"{path}: no XLSX file that can be read ({error}); save it again, or as CSV") from None
+            return {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in book.worksheets}
+    except Exception as error:  # openpyxl raises errors of any type for damaged archives
+        raise DataError(f"{path}: cannot be read as XLSX ({error}); save it again, or as CSV") from None
 
 
 def read_sheet_texts(path: Path) -> list[list[str]]:
-    """Cells of the first sheet as texts, rows without any left out; numbers with all their digits.
+    """Read the cells of the first sheet as texts, numbers with all digits; skip empty rows.
 
     Raises:
         MissingPartError: openpyxl is not installed.
-        DataError: damaged, or without a sheet.
+        DataError: the file is damaged or has no sheet.
     """
     rows = next(iter(_sheets(path).values()), [])
     texts = [["" if cell is None else str(cell).strip() for cell in row] for row in rows]
@@ -54,7 +54,7 @@ def read_sheet_texts(path: Path) -> list[list[str]]:
 
 
 def _row(cells: tuple[object, ...]) -> str:
-    """A row as text; a number with all its digits, so that nothing but a number looks like one."""
+    """Join a row to text: numbers with all digits, other cells in quotes."""
     return ";".join(
         repr(float(cell))
         if isinstance(cell, (int, float)) and not isinstance(cell, bool)

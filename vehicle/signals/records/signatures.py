@@ -1,4 +1,4 @@
-"""Recognise the format of a file by its first bytes: predicates over the head of the file."""
+"""Recognise the format of a file by its first bytes."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class Head:
     """Beginning of a file.
 
     Attributes:
-        path: the file.
-        data: at most `HEAD_BYTES` bytes.
-        size: of the whole file [byte].
+        path: path of the file.
+        data: first bytes, at most `HEAD_BYTES`.
+        size: size of the whole file [byte].
     """
 
     path: Path
@@ -57,7 +57,7 @@ def is_mdf(head: Head) -> bool:
 
 
 def is_hdf5(head: Head) -> bool:
-    """Return True for HDF5, also behind the 512 bytes of text that MATLAB 7.3 writes."""
+    """Return True for HDF5, also after the 512 bytes of text in files of MATLAB 7.3."""
     return head.data.startswith((HDF5_SIGNATURE, b"MATLAB 7.3")) or head.data[512:520] == HDF5_SIGNATURE
 
 
@@ -114,7 +114,7 @@ def is_uff(head: Head) -> bool:
 
 
 def can_log_type(text: str) -> str:
-    """Return the name of the text format of a CAN log: asc, trc, candump; empty for any other text.
+    """Return the name of the text format of a CAN log: asc, trc, candump; empty for other text.
 
     Args:
         text: first characters of the file.
@@ -127,7 +127,7 @@ def can_log_type(text: str) -> str:
 
 
 def _is_matlab_4(head: Head) -> bool:
-    """Return True where the file begins with a matrix of MATLAB 4, of either byte order, that fits into the file."""
+    """Return True for a file that begins with a complete matrix of MATLAB 4, in either byte order."""
     data = head.data
     if len(data) < 24:
         return False

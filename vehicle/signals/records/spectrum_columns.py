@@ -1,4 +1,4 @@
-"""Columns over frequency that belong together: real and imaginary part, magnitude and phase, coherence."""
+"""Combine columns over frequency: real and imaginary part, magnitude and phase, coherence."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ _PART = re.compile(
 
 
 def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
-    """Channels with real and imaginary parts, or magnitudes and phases, made one frequency response each.
+    """Combine real and imaginary parts, or magnitudes and phases, to frequency responses.
 
     Args:
         channels: columns over one frequency axis: `H real`, `H imag`; `H_magnitude`, `H_phase [deg]`; `H coherence`.
 
     Returns:
-        The responses in the places of their first parts; columns without a partner stay as they are.
+        Channels with responses in place of their first parts; other columns unchanged.
     """
     parts: dict[str, dict[str, int]] = {}
-    for index, one in enumerate(channels):
-        match = _PART.fullmatch(one.name.strip())
+    for index, channel in enumerate(channels):
+        match = _PART.fullmatch(channel.name.strip())
         if match:
-            kind = next(name for name, text in match.groupdict().items() if text and name != "head")
-            parts.setdefault(match["head"].strip().lower(), {}).setdefault(kind, index)
-    found: dict[int, Channel | None] = dict(enumerate(channels))
-    for held in parts.values():
-        if "coherence" in held:
-            found[held["coherence"]] = replace(channels[held["coherence"]], function="coherence")
-        first, second = ("real", "imaginary") if "real" in held else ("magnitude", "phase")
-        if first not in held or second not in held:
+            part = next(name for name, text in match.groupdict().items() if text and name != "head")
+            parts.setdefault(match["head"].strip().lower(), {}).setdefault(part, index)
+    result: dict[int, Channel | None] = dict(enumerate(channels))
+    for indices in parts.values():
+        if "coherence" in indices:
+            result[indices["coherence"]] = replace(channels[indices["coherence"]], function="coherence")
+        first, second = ("real", "imaginary") if "real" in indices else ("magnitude", "phase")
+        if first not in indices or second not in indices:
             continue
-        upper, lower = channels[held[first]], channels[held[second]]
+        upper, lower = channels[indices[first]], channels[indices[second]]
         if first == "real":
             if lower.unit not in ("", upper.unit):
                 continue
@@ -56,6 +56,6 @@ def joined(channels: Sequence[Channel]) -> tuple[Channel, ...]:
         remark = f"of the columns {upper.name!r} and {lower.name!r}" + (
             "; phase taken in degrees" if first == "magnitude" and not lower.unit else ""
         )
-        found[held[first]] = replace(upper, name=name, values=values, function="frequency response", remark=remark)
-        found[held[second]] = None
-    return tuple(one for one in found.values() if one is not None)
+        result[indices[first]] = replace(upper, name=name, values=values, function="frequency response", remark=remark)
+        result[indices[second]] = None
+    return tuple(channel for channel in result.values() if channel is not None)

@@ -1,4 +1,4 @@
-"""What every format hands over: a table with named columns and the places of its rows; and a record made of it."""
+"""Tables with named columns, as returned by the readers of table formats, and records over uniform time."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from vehicle.signals.analysis import samples
 Vector = NDArray[np.float64]
 
 TIME = "time [s]"
-"""Head of the column of sample times."""
+"""Header of the column of sample times."""
 
 USABLE = samples.USABLE
-"""Highest frequency that a record holds, as a share of its sampling rate [-]."""
+"""Maximum usable frequency of a record over its sampling rate [-]."""
 
 _HEAD = re.compile(r"(?P<name>[^\[\]]*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Header:
-    """The heads of the columns.
+    """Column headers of a table.
 
     Attributes:
-        path: the file.
-        line: of the header, from 1; 0 in a file without lines.
-        cells: heads as written, units included.
-        delimiter: between the cells of a row.
+        path: table file.
+        line: line number of the header, from 1; 0 in a file without lines.
+        cells: column headers in the file, including units.
+        delimiter: delimiter of the cells of a row.
     """
 
     path: Path
@@ -43,26 +43,26 @@ class Header:
 
     @property
     def where(self) -> str:
-        """Its place, for messages."""
+        """File and line of the header, for messages."""
         return f"{self.path}:{self.line}" if self.line else str(self.path)
 
     @property
     def found(self) -> str:
-        """The heads, for messages."""
+        """List of the column headers, for messages."""
         return ", ".join(map(repr, self.cells))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Wanted:
-    """What the reader of a table asks for.
+    """Requirements on a table.
 
     Attributes:
-        needed: the columns in words, for messages.
-        key: looks at the header before any row is read; returns the index of the column that no row may leave empty.
-        missing: what to do about a missing value: "refuse" it; "fill": NaN, for those that will be filled in, so that
-            no column may end before the others; "empty": NaN for an empty cell, the form of an undefined value;
-            "mark": NaN for every missing value.
-        remedy: for a missing value, for messages.
+        needed: description of the required columns, for messages.
+        key: function that checks the header and returns the index of the column without missing values.
+        missing: treatment of a missing value: "refuse": error; "fill": NaN, for later interpolation, but all columns
+            must have equal length; "empty": NaN for an empty cell (undefined value), error for other texts; "mark":
+            NaN for all missing values.
+        remedy: remedy for a missing value, for messages.
     """
 
     needed: str
@@ -73,14 +73,14 @@ class Wanted:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Table:
-    """The columns.
+    """Table of numbers.
 
     Attributes:
-        header: their heads.
-        key: index of the time or frequency.
-        values: as written, without conversion of units, (rows, columns); NaN where `Wanted.missing` allows it.
-        lines: line of the file of each row, (rows,); its number from 1 in a file without lines.
-        notices: what was accepted although it is unusual.
+        header: column headers.
+        key: index of the column of times or frequencies.
+        values: numbers in the units of the file, (rows, columns); NaN for missing values if `Wanted.missing` allows.
+        lines: line number of each row, (rows,); row number from 1 in a file without lines.
+        notices: messages on unusual content that was accepted.
         sha256: hexadecimal digest of the bytes of the file.
     """
 
@@ -92,11 +92,11 @@ class Table:
     sha256: str
 
     def row(self, row: int) -> str:
-        """A row in words."""
+        """Return the name of a row, such as "line 7", for messages."""
         return f"{'line' if self.header.line else 'sample'} {self.lines[row]}"
 
     def place(self, row: int) -> str:
-        """Where a row stands, for messages."""
+        """Return file and line of a row, for messages."""
         return f"{self.header.path}:" + (f"{self.lines[row]}" if self.header.line else f" {self.row(row)}")
 
 
@@ -105,14 +105,14 @@ class Record:
     """Channels over uniform time.
 
     Attributes:
-        time: of the samples [s], (n,).
-        channels: name to samples, (n,) each, in the order of the file and in the units as found.
-        units: name to unit; empty where the file tells none.
-        notices: what was accepted although it is unusual.
-        highest: highest frequency that a resampled record holds [Hz]; None for 0.4 of its rate.
+        time: sample times [s], (n,).
+        channels: channel name to samples, (n,), in the order and units of the file.
+        units: channel name to unit; empty if unknown.
+        notices: messages on unusual content that was accepted.
+        highest: maximum usable frequency of a resampled record [Hz]; None for 0.4 times its rate.
 
     Raises:
-        DataError: a channel of another length, or with a value that is not finite.
+        DataError: a channel of another length, or a value that is not finite.
     """
 
     time: Vector
@@ -125,8 +125,8 @@ class Record:
         for name, values in self.channels.items():
             if values.shape != self.time.shape or not np.isfinite(values).all():
                 raise DataError(
-                    f"record: {name} has {values.size} samples for {self.time.size} times, or one that is not finite; "
-                    "repair or cut the record"
+                    f"record: {name} has {values.size} samples for {self.time.size} times, or a value that is not "
+                    "finite; repair or cut the record"
                 )
 
     @property
@@ -141,26 +141,26 @@ class Record:
 
     @property
     def usable(self) -> float:
-        """Highest frequency that the samples hold [Hz]."""
-        own = USABLE / self.step
-        return own if self.highest is None else min(self.highest, own)
+        """Maximum usable frequency [Hz]."""
+        limit = USABLE / self.step
+        return limit if self.highest is None else min(self.highest, limit)
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Name and unit of the head of a column; None where it has no brackets, the whole text where they make no sense."""
+    """Split a column header into name and unit; unit None without brackets or with unbalanced brackets."""
     match = _HEAD.fullmatch(cell)
     return (match["name"], None if match["unit"] is None else match["unit"].strip()) if match else (cell, None)
 
 
 def key_column(cell: str, needed: str) -> Callable[[Header], int]:
-    """The check of a header whose heads are all different and hold a given one.
+    """Return a function for `Wanted.key`: it checks for unique headers and finds the key column.
 
     Args:
-        cell: head of the key column.
-        needed: the columns in words, for messages.
+        cell: header of the key column.
+        needed: description of the required columns, for messages.
 
     Returns:
-        For `Wanted.key`; it raises DataError.
+        Function from a header to the index of the key column; it raises DataError for other headers.
     """
 
     def check(header: Header) -> int:

@@ -1,4 +1,4 @@
-"""TDMS files of LabVIEW."""
+"""Read TDMS files of LabVIEW."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ from vehicle.signals.records.channel import Channel, Measurement, clock_step, un
 from vehicle.signals.records.reader import digest, extra
 
 NO_DATE = 1904
-"""Year of the start time of a waveform that has none."""
+"""Year that stands for a missing start time of a waveform."""
 
 
 @contextmanager
 def _remarks() -> Iterator[list[str]]:
-    """What the library would only log: an incomplete segment, a text that is none. The file lacks data then."""
-    found: list[str] = []
+    """Collect log messages of npTDMS, such as on an incomplete segment, that indicate missing data."""
+    messages: list[str] = []
     handler = logging.Handler()
-    handler.emit = lambda record: found.append(record.getMessage())  # type: ignore[method-assign]
+    handler.emit = lambda record: messages.append(record.getMessage())  # type: ignore[method-assign]
     loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.split(".")[0] == "nptdms"]
-    before = [(one, one.handlers[:], one.propagate) for one in loggers]
-    for one in loggers:
-        one.handlers[:], one.propagate = [handler], False
+    before = [(logger, logger.handlers[:], logger.propagate) for logger in loggers]
+    for logger in loggers:
+        logger.handlers[:], logger.propagate = [handler], False
     try:
-        yield found
+        yield messages
     finally:
-        for one, handlers, propagate in before:
-            one.handlers[:], one.propagate = handlers, propagate
+        for logger, handlers, propagate in before:
+            logger.handlers[:], logger.propagate = handlers, propagate
 
 
 def read(path: Path) -> Measurement:
-    """Read all channels of numbers; the length is that of the data, never `wf_samples`.
+    """Read all numeric channels; the length is that of the data, not `wf_samples`.
 
     Raises:
         MissingPartError: npTDMS is not installed.
-        DataError: damaged, cut off, or without numbers.
+        DataError: the file is damaged, truncated, or without numbers.
     """
     nptdms = extra("nptdms", "tdms", "a TDMS file")
-    found: list[Channel] = []
-    left, start = 0, ""
+    channels: list[Channel] = []
+    skipped, start = 0, ""
     try:
         with warnings.catch_warnings(), _remarks() as remarks:
             warnings.simplefilter("error")
@@ -52,23 +52,23 @@ def read(path: Path) -> Measurement:
         if remarks:
             raise ValueError(remarks[0][:120])
         for group in file.groups():
-            for one in group.channels():
-                values = np.asarray(one[:])
+            for channel in group.channels():
+                values = np.asarray(channel[:])
                 if values.dtype.kind not in "fiuc" or values.ndim != 1 or not values.size:
-                    left += 1
+                    skipped += 1
                     continue
-                step = one.properties.get("wf_increment")
+                step = channel.properties.get("wf_increment")
                 axis, remark = None, ""
                 if isinstance(step, float) and step > 0.0:
                     step, remark = clock_step(step)
-                    axis = uniform_axis(values.size, step, float(one.properties.get("wf_start_offset") or 0.0))
-                date = one.properties.get("wf_start_time")
+                    axis = uniform_axis(values.size, step, float(channel.properties.get("wf_start_offset") or 0.0))
+                date = channel.properties.get("wf_start_time")
                 if not start and date is not None and not str(date).startswith(str(NO_DATE)):
                     start = str(date)
-                unit = one.properties.get("unit_string") or one.properties.get("NI_UnitDescription") or ""
-                found.append(
+                unit = channel.properties.get("unit_string") or channel.properties.get("NI_UnitDescription") or ""
+                channels.append(
                     Channel(
-                        name=one.name,
+                        name=channel.name,
                         values=values.astype(complex if values.dtype.kind == "c" else np.float64),
                         unit=str(unit),
                         axis=axis,
@@ -76,18 +76,16 @@ def read(path: Path) -> Measurement:
                         remark=remark,
                     )
                 )
-    except Exception as error:  # damaged files raise what they like
-        raise DataError(
-            f"{path}: no TDMS file that can be read ({error}); it may be cut off; export it again"
-        ) from None
-    if not found:
-        raise DataError(f"{path}: no channel of numbers; {left} of other kinds")
+    except Exception as error:  # npTDMS raises errors of any type for damaged files
+        raise DataError(f"{path}: cannot be read as TDMS ({error}); it may be truncated; export it again") from None
+    if not channels:
+        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types")
     return Measurement(
         path=path,
         format="tdms",
-        channels=tuple(found),
+        channels=tuple(channels),
         sha256=digest(path),
         program=str(file.properties.get("name") or ""),
         start=start,
-        notices=(f"{left} channels hold no numbers",) if left else (),
+        notices=(f"{skipped} channels without numbers are ignored",) if skipped else (),
     )

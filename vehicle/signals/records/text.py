@@ -1,4 +1,4 @@
-"""From a file to lines of text: size, encoding and line ends, checked before anything is parsed."""
+"""Read text files: check size, encoding and line ends before parsing."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ from typing import NamedTuple
 from vehicle.errors import ConfigurationError, DataError
 
 MEMORY_LIMIT = 2 * 1024**3
-"""Refuse a file whose reading would need more than this [byte]."""
+"""Maximum memory for reading a file [byte]."""
 
 LARGEST = 1e30
-"""Largest value of a measurement in any unit: beyond it a number is that of a damaged file or of another byte order."""
+"""Maximum value of a measurement in any unit; larger numbers indicate a damaged file or another byte order."""
 
 BYTES_PER_ROW = 200
-"""Memory for each row beside its text [byte]: line and number objects, cells, and the arrays computed from them."""
+"""Memory per row in addition to its text [byte]: line and number objects, cells, and arrays."""
 
 TEXT_COPIES = 4
 """Copies of the text that exist at the same time: bytes, string, lines, and lines with another decimal sign."""
 
 LONGEST_LINE = 1_000_000
-"""Longest line that is read [byte]."""
+"""Maximum length of a line [byte]."""
 
 BOM = b"\xef\xbb\xbf"
 
 
 PIECE = 1_000_000
-"""Characters of a long text that are cut into lines at once: lines take four times the memory of their text."""
+"""Number of characters split into lines at once: lines need four times the memory of their text."""
 
 
 class Text(NamedTuple):
-    """A text file."""
+    """Content of a text file."""
 
     body: str
-    """All of it; lines end with a line feed alone."""
+    """Whole text; lines end with a line feed only."""
     notices: tuple[str, ...]
-    """What was accepted although it is unusual."""
+    """Messages on unusual content that was accepted."""
     sha256: str
     """Hexadecimal digest of the bytes."""
 
     @property
     def lines(self) -> list[str]:
-        """All lines without their ends; line number = index + 1."""
+        """All lines without line ends; line number = index + 1."""
         return self.body.split("\n")
 
     def pieces(self) -> Iterator[tuple[int, list[str]]]:
-        """The same lines, some at once, with the number of the first of them."""
+        """Yield the lines in batches, each with the number of its first line."""
         begin, number = 0, 1
         while begin <= len(self.body):
             end = self.body.find("\n", begin + PIECE)
@@ -57,16 +57,16 @@ class Text(NamedTuple):
 
 
 def read_text(path: Path, *, western: bool = False) -> Text:
-    """Read a UTF-8 file into lines, refusing early what would be slow, large or not text.
+    """Read a UTF-8 file; reject files that are too large, binary, or with very long lines, before parsing.
 
     Args:
-        path: the file.
-        western: read what is not UTF-8 as Windows text (cp1252), with a notice.
+        path: text file.
+        western: read text other than UTF-8 as Windows text (cp1252), with a notice.
 
     Memory needed = TEXT_COPIES * size + BYTES_PER_ROW * size / (mean length of the first rows).
 
     Raises:
-        ConfigurationError: there is no such file.
+        ConfigurationError: the file does not exist.
         DataError: empty, too large, NUL byte, not UTF-8, a line above 1 MB, not readable.
     """
     if not path.is_file():
@@ -109,7 +109,7 @@ def read_text(path: Path, *, western: bool = False) -> Text:
 
 
 def _check_bytes(path: Path, data: bytes) -> None:
-    """Refuse what is visible without decoding; called on the first megabyte and again on the whole."""
+    """Reject UTF-16, NUL bytes and a too long first line; for the first megabyte and then the whole file."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise DataError(f"{path}:1:1: the file is UTF-16; allowed is UTF-8; save it as UTF-8 text")
     nul = data.find(b"\0")
@@ -124,8 +124,8 @@ def _check_memory(path: Path, size: int, head: bytes) -> None:
     needed = TEXT_COPIES * size + BYTES_PER_ROW * rows
     if needed > MEMORY_LIMIT:
         raise DataError(
-            f"{path}: about {rows:.3g} rows in {size / 1e9:.3g} GB need {needed / 1024**3:.3g} GiB of memory; allowed "
-            f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts or lower its sampling rate"
+            f"{path}: about {rows:.3g} rows in {size / 1e9:.3g} GB need {needed / 1024**3:.3g} GiB of memory, must be "
+            f"at most {MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts or lower its sampling rate"
         )
 
 

@@ -1,4 +1,4 @@
-"""Tables as text: UTF-8, `#` comments, one header line, one row below it for each time or frequency."""
+"""Read and write tables as text: UTF-8, `#` comments, one header line, one row per time or frequency."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vehicle.signals.records.table import TIME, Header, Record, Table, Vector, W
 from vehicle.signals.records.text import LARGEST, Text, read_text
 
 ROWS_AT_ONCE = 4096
-"""Rows of a table that are written at once, so that a long one does not stand in memory as text."""
+"""Number of rows written at once, to limit the memory for the text of a long table."""
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?", re.ASCII)
@@ -24,15 +24,15 @@ _MISSING = re.compile(r"|nan|#?na|n/a|null|none|-|[+-]?inf(inity)?", re.IGNORECA
 
 
 def read(path: Path, wanted: Wanted) -> Table:
-    """Read a table; cells are separated by commas, semicolons or tabs, and may be quoted.
+    """Read a table with cells separated by commas, semicolons or tabs, with or without quotes.
 
-    The fast way hands many rows to numpy at once. Whatever it does not take as finite numbers in the right shape goes
-    through a slow pass cell by cell, which either understands it or names line and column.
+    NumPy parses many rows at once. If the result is not finite or has a wrong shape, the table is parsed cell by cell,
+    and errors name line and column.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: no text, no rows, a row with another number of cells, a cell that is no number, a decimal comma in
-            doubt; or of `wanted`.
+        ConfigurationError: the file does not exist.
+        DataError: not text, no rows, a row with another number of cells, a non-numeric cell, an ambiguous decimal
+            comma, or a violated requirement of `wanted`.
     """
     text = read_text(path)
     head, first = _first_line(text)
@@ -67,7 +67,7 @@ def read(path: Path, wanted: Wanted) -> Table:
 
 
 def _first_line(text: Text) -> tuple[int, str]:
-    """Number and content of the first line that is no comment; 0 where there is none."""
+    """Return number and content of the first line other than a comment; number 0 if there is none."""
     for start, lines in text.pieces():
         for number, line in enumerate(lines, start):
             if not _is_comment(line):
@@ -76,8 +76,8 @@ def _first_line(text: Text) -> tuple[int, str]:
 
 
 def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | None:
-    """All numbers below the header, and their lines, piece by piece; None unless `fast` takes them as they stand."""
-    values, places = [], []
+    """Return the numbers below the header and their line numbers; None unless `fast` parses all rows."""
+    values, line_numbers = [], []
     for start, lines in text.pieces():
         numbers = [n for n, line in enumerate(lines, start) if n > header.line and not _is_comment(line)]
         rows = [lines[n - start] for n in numbers]
@@ -85,20 +85,20 @@ def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | Non
             continue
         if header.delimiter != "," and any("," in row for row in rows):
             return None
-        found = fast(rows, header)
-        if found is None:
+        block = fast(rows, header)
+        if block is None:
             return None
-        values.append(found)
-        places.append(np.array(numbers))
-    return (np.concatenate(values), np.concatenate(places)) if values else None
+        values.append(block)
+        line_numbers.append(np.array(numbers))
+    return (np.concatenate(values), np.concatenate(line_numbers)) if values else None
 
 
 def read_texts(path: Path) -> list[list[str]]:
-    """Cells of all rows as texts, the header first; a comma within quotes belongs to its cell.
+    """Read the cells of all rows as texts, the header first; keep commas within quotes.
 
     Raises:
-        ConfigurationError: there is no such file.
-        DataError: it is no such text.
+        ConfigurationError: the file does not exist.
+        DataError: not a CSV text.
     """
     try:
         rows = csv.reader(line for line in read_text(path).lines if not _is_comment(line))
@@ -108,26 +108,29 @@ def read_texts(path: Path) -> list[list[str]]:
 
 
 def write_table(
-    path: Path, cells: Sequence[str], columns: Sequence[Vector], comments: Sequence[str] = (), forms: str = "%.9g"
+    path: Path, cells: Sequence[str], columns: Sequence[Vector], comments: Sequence[str] = (), formats: str = "%.9g"
 ) -> None:
-    """Write a table as `read` reads it; a cell is empty where the value is undefined.
+    """Write a table in the format of `read`; undefined values (NaN) become empty cells.
 
     Args:
-        path: the file.
-        cells: heads of the columns, units included.
-        columns: numbers, (rows,) each.
+        path: file to write.
+        cells: column headers, including units.
+        columns: numbers of each column, (rows,).
         comments: lines above the header.
-        forms: of a number, or of all numbers of a row, separated by commas.
+        formats: format of all numbers, or formats of the columns separated by commas.
     """
-    each = forms.split(",") if "," in forms else [forms] * len(cells)
-    row = ",".join(each)
+    cell_formats = formats.split(",") if "," in formats else [formats] * len(cells)
+    row = ",".join(cell_formats)
     with path.open("w", encoding="utf-8", newline="") as file:
         file.writelines(f"{line}\n" for line in (*(f"# {comment}" for comment in comments), ",".join(cells)))
         for first in range(0, len(columns[0]), ROWS_AT_ONCE):
             table = np.column_stack([column[first : first + ROWS_AT_ONCE] for column in columns])
             gaps = set(np.flatnonzero(np.isnan(table).any(axis=1)).tolist())
             file.writelines(
-                ",".join("" if value != value else form % value for form, value in zip(each, values, strict=True))
+                ",".join(
+                    "" if value != value else number_format % value
+                    for number_format, value in zip(cell_formats, values, strict=True)
+                )
                 + "\n"
                 if index in gaps
                 else row % tuple(values) + "\n"
@@ -136,45 +139,45 @@ def write_table(
 
 
 def write(path: Path, record: Record, frame: str) -> None:
-    """Write a record, one row a sample; arguments of `vehicle.signals.records.formats.write_record`."""
+    """Write a record, one row per sample; see `vehicle.signals.records.formats.write_record`."""
     heads = [TIME, *(f"{name} [{record.units[name]}]" for name in record.channels)]
     write_table(path, heads, [record.time, *record.channels.values()], [f"frame: {frame}"])
 
 
 def _is_comment(line: str) -> bool:
-    """Whether a line holds no data: blank, or '#' that does not begin a spreadsheet error such as '#N/A'."""
+    """Return True for a blank line or a comment; '#N/A' and other spreadsheet errors are data."""
     text = line.strip()
     return not text or (text[0] == "#" and not _SPREADSHEET_ERROR.match(text))
 
 
 def _split(row: str, delimiter: str) -> list[str]:
-    """Cells of a row, without blanks and quotes around them."""
+    """Split a row into cells; strip blanks and quotes."""
     return [cell.strip().strip('"').strip() for cell in row.split(delimiter)]
 
 
 def fast(rows: list[str], header: Header) -> Vector | None:
-    """All numbers at once, (rows, columns); None unless all are finite and in the right shape.
+    """Parse all numbers at once, (rows, columns); None unless all are finite and the number of columns is right.
 
     Args:
         rows: lines of text.
-        header: tells the delimiter and the number of columns.
+        header: header with delimiter and number of columns.
     """
     try:
         values = np.loadtxt(rows, delimiter=header.delimiter, comments=None, ndmin=2, dtype=np.float64)
     except ValueError:
         return None
     whole = values.shape[1] == len(header.cells)
-    # NaN fails the comparison too.
+    # The comparison is False for NaN.
     return values if whole and (not values.size or -LARGEST <= values.min() <= values.max() <= LARGEST) else None
 
 
 def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
-    """Read all numbers at once, (rows, columns), NaN for a missing value; None where `careful` must look at the rows.
+    """Parse all numbers at once, (rows, columns), NaN for missing values; None if `careful` must parse the rows.
 
     Args:
         rows: lines of text.
-        header: tells the delimiter and the number of columns.
-        key: index of the column that no row may leave empty; -1 for none.
+        header: header with delimiter and number of columns.
+        key: index of the column without missing values; -1 for none.
     """
     sign = re.escape(header.delimiter)
     gap = re.compile(rf"(?:(?<=^)|(?<={sign}))[ ]*(?:#?na|n/a|null|none|-)?[ ]*(?=$|{sign})", re.IGNORECASE)
@@ -190,17 +193,17 @@ def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
 
 
 def careful(numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted) -> Vector:
-    """All numbers cell by cell, (rows, columns), NaN where `Wanted.missing` allows it.
+    """Parse numbers cell by cell, (rows, columns), NaN for missing values if `Wanted.missing` allows.
 
     Args:
-        numbers: line of each row.
+        numbers: line number of each row.
         rows: lines of text.
-        header: of the table.
-        key: index of the time or frequency; -1 for none.
-        wanted: what is asked of the file.
+        header: header of the table.
+        key: index of the column of times or frequencies; -1 for none.
+        wanted: requirements on the table.
 
     Raises:
-        DataError: a cell is no number, or a row has another number of cells.
+        DataError: a non-numeric cell, or a row with another number of cells.
     """
     width = len(header.cells)
     values: NDArray[np.float64] = np.full((len(rows), width), np.nan)
@@ -236,7 +239,7 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
 
 
 def _ends_here(rows: list[str], column: int, header: Header) -> bool:
-    """Whether no row from here on has a value in the column."""
+    """Return True if no row has a value in the column."""
     return not any(column < len(cells) and cells[column] for cells in (_split(row, header.delimiter) for row in rows))
 
 
@@ -247,30 +250,30 @@ def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header
         if index < len(rows) - 1:
             return _different_length(f"{header.path}:{numbers[index]}:{width}: column {header.cells[-1]!r}")
         return DataError(
-            f"{place}: the last row has {len(cells)} cells, the header {width}; the file was cut off; remove the row"
+            f"{place}: the last row has {len(cells)} cells, the header {width}; the file is truncated; remove the row"
         )
     hint = "one cell per column"
     if len(cells) < width and any(sign in rows[index] for sign in (";", "\t")):
         hint = f"separate the cells by {header.delimiter!r} as in the header"
     elif len(cells) > width and header.delimiter == ",":
-        hint = "with decimal commas the columns must be separated by ';', in the header too; 1,5 is never guessed"
+        hint = "with decimal commas the columns must be separated by ';', in the header too; 1,5 is ambiguous"
     return DataError(f"{place}: row has {len(cells)} cells, the header {width}; {hint}")
 
 
 def _different_length(place: str) -> DataError:
     return DataError(
-        f"{place} ends here while others go on: columns of different length; all plates need the same samples; "
-        "nothing is cut or filled up; export them over the same time"
+        f"{place} ends before the other columns: columns of different length, must be equal; export all columns over "
+        "the same time"
     )
 
 
 def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[str]:
-    """Rows with decimal points instead of commas; refused where a comma could be anything else.
+    """Replace decimal commas by decimal points; reject ambiguous commas.
 
     Args:
-        numbers: line of each row.
+        numbers: line number of each row.
         rows: lines of text.
-        header: of the table.
+        header: header of the table.
 
     Raises:
         DataError: a comma that may separate thousands.

@@ -1,4 +1,4 @@
-"""Where the table of a text file begins, what separates its cells, and what its columns hold."""
+"""Find the table in a text file: first line, delimiter, and data types of the columns."""
 
 from __future__ import annotations
 
@@ -14,14 +14,18 @@ from vehicle.signals.records.heads import NUMBER, NUMBER_WITH_COMMA, cells_of
 
 TEXT_LINES = 400
 """Maximum number of lines above the numbers."""
+
 AGREEING = 4
-"""Lines of one shape that tell where the table begins."""
+"""Number of consistent lines that mark the beginning of the table."""
+
 SAMPLED = 200
-"""Rows, spread over the file, that tell what a column holds where its first cells are empty or texts."""
+"""Number of rows, spread over the file, that determine the type of a column whose first cells are empty or texts."""
+
 SAME_SHAPE = 0.9
-"""Minimum share of the sampled rows that agree, in a table with columns of text [-]."""
+"""Minimum share of consistent sampled rows in a table with text columns [-]."""
+
 LARGEST_KINDS = 64
-"""Maximum number of different texts of a column that tells kinds of rows apart; more are remarks."""
+"""Maximum number of different texts of a column that distinguishes sources of rows; more are remarks."""
 
 DELIMITERS = (";", "\t", ",", "")
 
@@ -31,12 +35,12 @@ _MISSING = ("", "nan", "-", "na", "n/a", "#n/a", "null", "none")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TextTable:
-    """Place and form of a table.
+    """Position and layout of a table.
 
     Attributes:
-        start: index of its first line.
-        delimiter: between the cells; "" for blanks.
-        kinds: what each column holds: numbers, dates or clocks, or other texts.
+        start: index of the first row.
+        delimiter: delimiter of the cells; "" for blanks.
+        kinds: type of each column: numbers, dates or clocks, or texts.
     """
 
     start: int
@@ -45,14 +49,14 @@ class TextTable:
 
 
 def find_table(path: Path, lines: Sequence[str]) -> TextTable:
-    """Find the table of numbers in a text: numbers alone, else with dates and clocks, else with columns of text.
+    """Find the table of numbers in a text: numbers only, else with dates and clocks, else with text columns.
 
     Args:
-        path: the file, for messages.
-        lines: of the file.
+        path: measurement file, for messages.
+        lines: all lines of the file.
 
     Raises:
-        DataError: there is none.
+        DataError: no table.
     """
     for allowed in (("number",), ("number", "clock"), ("number", "clock", "text")):
         for delimiter in DELIMITERS:
@@ -65,7 +69,7 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
         if len(following) > 2 and all(_kinds(line, ";") == ["number"] for line in following):
             return TextTable(start=start, delimiter=";", kinds=("number",))
     raise DataError(
-        f"{path}: no table of numbers in the first {TEXT_LINES} lines; needed are rows of numbers in columns that are "
+        f"{path}: no table of numbers in the first {TEXT_LINES} lines; needed are rows of numbers in columns "
         "separated by ';', tab, ',' or blanks, with a line of names and units above them"
     )
 
@@ -85,11 +89,11 @@ def _kinds(row: str, delimiter: str) -> list[Kind]:
 
 
 def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[str]) -> tuple[Kind, ...] | None:
-    """Kinds of the columns of a table that begins at a line; None where no such table does."""
+    """Return the column types of the table that begins at a line; None if no table begins there."""
     if not lines[start].strip() or (delimiter and delimiter not in lines[start]):
         return None
     first = _kinds(lines[start], delimiter)
-    if len(first) < 2 or "number" not in first or not all(one in (*allowed, "missing") for one in first):
+    if len(first) < 2 or "number" not in first or not all(kind in (*allowed, "missing") for kind in first):
         return None
     if len(allowed) > 1 and allowed[-1] not in first:
         return None
@@ -98,90 +102,92 @@ def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[s
         return None
     merged = first
     for row in rows:
-        joined = _joined(merged, _kinds(row, delimiter))
-        if joined is None:
+        combined = _joined(merged, _kinds(row, delimiter))
+        if combined is None:
             return None
-        merged = joined
+        merged = combined
     if "text" in merged and not _goes_on(lines[start:], delimiter, merged):
         return None
-    if not all(one in (*allowed, "missing") for one in merged):
+    if not all(kind in (*allowed, "missing") for kind in merged):
         return None
     return tuple(merged)
 
 
 def _joined(first: Sequence[Kind], second: Sequence[Kind]) -> list[Kind] | None:
-    """Kinds of two rows together; None where they differ. A clock or a word may stand in a column of texts."""
+    """Combine the column types of two rows; None if they differ. A text column may contain clocks."""
     if len(first) != len(second):
         return None
-    found: list[Kind] = []
-    for one, other in zip(first, second, strict=True):
-        if one == other or other == "missing":
-            found.append(one)
-        elif one == "missing":
-            found.append(other)
-        elif {one, other} == {"clock", "text"}:
-            found.append("text")
+    combined: list[Kind] = []
+    for kind, second_kind in zip(first, second, strict=True):
+        if kind == second_kind or second_kind == "missing":
+            combined.append(kind)
+        elif kind == "missing":
+            combined.append(second_kind)
+        elif {kind, second_kind} == {"clock", "text"}:
+            combined.append("text")
         else:
             return None
-    return found
+    return combined
 
 
 def _spread(lines: Sequence[str]) -> list[str]:
-    """Some of the lines that are not blank, spread evenly, with the first and the last."""
+    """Return an evenly spread sample of the non-blank lines, including the first and last lines."""
     step = max(1, len(lines) // SAMPLED)
     return [line for line in (*lines[:SAMPLED:4], *lines[::step], *lines[-3:]) if line.strip()]
 
 
 def _goes_on(lines: Sequence[str], delimiter: str, kinds: Sequence[Kind]) -> bool:
-    """True if most lines to the end of the file have the kinds of the first."""
+    """Return True if at least `SAME_SHAPE` of the lines up to the end of the file have these column types."""
     rows = _spread(lines)
     good = sum(1 for row in rows if _joined(kinds, _kinds(row, delimiter)) is not None)
     return good >= SAME_SHAPE * len(rows)
 
 
 def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequence[str]) -> tuple[Kind, ...]:
-    """Return the kinds of all columns, also of those whose first cells are empty.
+    """Determine the types of all columns, including columns whose first cells are empty.
 
     Args:
-        path: the file, for messages.
-        rows: of the table.
-        table: its form.
-        names: of the columns, for messages.
+        path: measurement file, for messages.
+        rows: rows of the table.
+        table: position and layout of the table.
+        names: column names, for messages.
 
     Raises:
-        DataError: rows of different sensors alternate in one table.
+        DataError: rows of different sensors alternate in the table.
     """
-    if all(one == "number" for one in table.kinds):
+    if all(column_kind == "number" for column_kind in table.kinds):
         return table.kinds
     sampled = [cells_of(row, table.delimiter) for row in _spread(rows)]
-    found: list[Kind] = []
-    for column, known in enumerate(table.kinds):
+    settled: list[Kind] = []
+    for column, settled_kind in enumerate(table.kinds):
         cells = [row[column] for row in sampled if column < len(row)]
         kinds = {_kind(cell, table.delimiter) for cell in cells} - {"missing"}
         if "other" in kinds:
             kinds = kinds - {"other"} | {"text"}
-        if known == "missing":
-            known = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
-        elif known == "clock" and sum(_kind(cell, table.delimiter) == "text" for cell in cells) > len(cells) // 2:
-            known = "text"
-        found.append(known)
-    _check_alternation(path, rows, found, table.delimiter, names)
-    return tuple(found)
+        if settled_kind == "missing":
+            settled_kind = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
+        elif (
+            settled_kind == "clock" and sum(_kind(cell, table.delimiter) == "text" for cell in cells) > len(cells) // 2
+        ):
+            settled_kind = "text"
+        settled.append(settled_kind)
+    _check_alternation(path, rows, settled, table.delimiter, names)
+    return tuple(settled)
 
 
 def _check_alternation(
     path: Path, rows: Sequence[str], kinds: Sequence[Kind], delimiter: str, names: Sequence[str]
 ) -> None:
-    """Refuse a table in which a text tells from row to row which sensor the numbers belong to."""
+    """Reject a table with alternating rows of different sensors, named in a text column."""
     head = [cells_of(row, delimiter) for row in rows[:SAMPLED]]
-    for column, kind in enumerate(kinds):
+    for column, column_kind in enumerate(kinds):
         texts = [row[column] for row in head if column < len(row)]
         different = sorted(set(texts))
-        changes = sum(1 for one, other in pairwise(texts) if one != other)
-        in_turn = changes > max(1 + 0.1 * len(texts), 1.5 * len(different))  # not a text that changes now and then
-        if kind == "text" and 1 < len(different) <= LARGEST_KINDS and in_turn:
+        changes = sum(1 for text, next_text in pairwise(texts) if text != next_text)
+        alternates = changes > max(1 + 0.1 * len(texts), 1.5 * len(different))  # excludes texts that change rarely
+        if column_kind == "text" and 1 < len(different) <= LARGEST_KINDS and alternates:
             shown = ", ".join(map(repr, different[:4]))
             raise DataError(
-                f"{path}: column {names[column]!r} holds {shown} in turn: rows of different sources stand in one "
-                "table; write a file for each of them"
+                f"{path}: column {names[column]!r} alternates between {shown}: rows of different sources are in "
+                "one table; write one file per source"
             )

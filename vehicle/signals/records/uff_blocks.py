@@ -1,4 +1,4 @@
-"""Datasets of a universal file: where they begin and end, their texts, whole numbers and numbers."""
+"""Parse the datasets of a universal file: begin and end, texts, integers and real numbers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NUMBER = re.compile(rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
 class Block(NamedTuple):
-    """A dataset: its number, whether it is binary, the rest of its first line, and where its second line begins."""
+    """Dataset: number, True if binary, rest of the first line, and byte position of the second line."""
 
     number: int
     binary: bool
@@ -28,13 +28,13 @@ class Block(NamedTuple):
 
 
 def text_of(line: bytes) -> str:
-    """A line; a byte that is no UTF-8 is Windows text; NONE is empty."""
-    found = raw_text(line).strip(" \r\n\0")
-    return "" if found.upper() == "NONE" else found
+    """Decode a line as UTF-8 or else Windows text, and strip blanks; NONE becomes an empty text."""
+    text = raw_text(line).strip(" \r\n\0")
+    return "" if text.upper() == "NONE" else text
 
 
 def raw_text(line: bytes) -> str:
-    """A line with the blanks at its beginning."""
+    """Decode a line as UTF-8 or else Windows text; keep leading blanks."""
     try:
         return line.decode("utf-8").rstrip("\r\n")
     except UnicodeDecodeError:
@@ -42,20 +42,20 @@ def raw_text(line: bytes) -> str:
 
 
 def cells(line: bytes, widths: tuple[int, ...]) -> list[str]:
-    """Cells of fixed widths; blanks that were cut off are blanks."""
-    text, found, start = raw_text(line), [], 0
+    """Split a line into cells of fixed widths; cells beyond the end of the line are empty."""
+    text, fields, start = raw_text(line), [], 0
     for width in widths:
         cell = text[start : start + width].strip()
-        found.append("" if cell.upper() == "NONE" else cell)
+        fields.append("" if cell.upper() == "NONE" else cell)
         start += width
-    return found
+    return fields
 
 
 def wholes(line: bytes) -> list[int]:
-    """Whole numbers of a line, between blanks, or in ten columns each where they stand against each other.
+    """Parse the integers of a line, separated by blanks, or in fields of ten characters without blanks.
 
     Raises:
-        ValueError: it holds something else.
+        ValueError: the line contains other text.
     """
     parts = line.split()
     if any(len(part) > 10 for part in parts):
@@ -64,10 +64,10 @@ def wholes(line: bytes) -> list[int]:
 
 
 def numbers(lines: list[bytes]) -> list[float]:
-    """Numbers of lines, which may stand against each other: 1.0E+00-2.0E+00.
+    """Parse the numbers of lines, with or without blanks between numbers: 1.0E+00-2.0E+00.
 
     Raises:
-        ValueError: there is something else among them.
+        ValueError: the lines contain other text.
     """
     body = D_EXPONENT.sub(b"E", b" ".join(lines))
     if _NUMBER.sub(b"", body).strip():
@@ -76,17 +76,17 @@ def numbers(lines: list[bytes]) -> list[float]:
 
 
 def check_values(path: Path, where: str, values: Vector) -> None:
-    """Refuse what no sensor says: numbers of the other byte order are not finite, or beyond `LARGEST`."""
+    """Reject numbers that are not finite or above `LARGEST`, as results from a wrong byte order."""
     if not np.isfinite(values).all() or (values.size and float(np.abs(values).max()) > LARGEST):
         raise DataError(
-            f"{path}: {where} holds numbers that are not finite, or beyond {LARGEST:g}; is its byte order wrong? "
+            f"{path}: {where} has numbers that are not finite, or above {LARGEST:g}; is its byte order wrong? "
             "export it again, or as text (UFF 58)"
         )
 
 
 def refuse(path: Path, where: str, error: Exception) -> NoReturn:
-    """The sentence for a dataset whose lines do not fit its format."""
+    """Raise the error for a dataset whose lines do not match its format."""
     text = str(error) if not isinstance(error, (IndexError, KeyError)) else "a line is missing or too short"
     raise DataError(
-        f"{path}: {where} is no such dataset ({text}); it was cut off or damaged; export it again"
+        f"{path}: {where} does not match its format ({text}); it is truncated or damaged; export it again"
     ) from None

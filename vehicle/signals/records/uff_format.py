@@ -1,4 +1,4 @@
-"""Universal files: functions at nodes, geometry and mode shapes, read with the traps that real files hold.
+"""Read universal files (UFF): functions at nodes, geometry and mode shapes, including common format deviations.
 
 Source: Universal File Datasets, University of Cincinnati SDRL, datasets 15, 18, 55, 58, 58b, 82, 151, 164, 2411, 2412
 and 2414.
@@ -26,11 +26,11 @@ def read(path: Path) -> Measurement:
     """Read all functions, mode shapes and the geometry of a file.
 
     Raises:
-        DataError: damaged, cut off, or without any of them.
+        DataError: the file is damaged, truncated, or without functions, shapes and nodes.
     """
     data = path.read_bytes()
     channels: list[Channel] = []
-    late: list[tuple[int, str, list[bytes]]] = []
+    results: list[tuple[int, str, list[bytes]]] = []
     others: Counter[str] = Counter()
     units: Units | None = None
     nodes = Nodes()
@@ -46,40 +46,40 @@ def read(path: Path) -> Measurement:
             continue
         end = END.search(data, block.start - 1)
         if end is None:
-            raise DataError(f"{path}: {where} has no end; the file was cut off; export it again")
+            raise DataError(f"{path}: {where} has no end; the file is truncated; export it again")
         lines = data[block.start : end.start()].splitlines()
         if block.number == 164:
             units = read_units(path, where, lines)
         elif block.number == 151:
             program = text_of(lines[2])[:40] if len(lines) > 2 else ""
         elif block.number in (55, 2414):
-            late.append((block.number, where, lines))  # axis systems may stand behind
+            results.append((block.number, where, lines))  # axis systems may come later in the file
         elif not nodes.read(path, block.number, where, lines):
             others[str(block.number)] += 1
         position = end.end() - 1
     shapes: list[ModeShape] = []
-    for number, where, lines in late:
+    for number, where, lines in results:
         shape = read_shape(path, number, where, lines, nodes, units or Units())
         if isinstance(shape, ModeShape):
             shapes.append(shape)
         else:
             others[f"{number}, {shape}"] += 1
-    held = ", ".join(f"{what} ({count})" for what, count in sorted(others.items()))
+    summary = ", ".join(f"{dataset} ({count})" for dataset, count in sorted(others.items()))
     if not channels and not shapes and not nodes.at:
         raise DataError(
-            f"{path}: no function, mode shape or node in this universal file; its datasets: {held or 'none'}; export "
-            "the time histories or frequency responses as UFF 58, or mode shapes as UFF 55"
+            f"{path}: no function, mode shape or node in this universal file; its datasets: {summary or 'none'}; "
+            "export the time histories or frequency responses as UFF 58, or mode shapes as UFF 55"
         )
     geometry = nodes.geometry(units or Units())
-    notices = [f"other datasets: {held}"] if held else []
+    notices = [f"other datasets: {summary}"] if summary else []
     if nodes.at:
         notices.append(f"{len(geometry.points)} nodes, {len(geometry.lines)} lines and elements")
     if units is None and (nodes.at or shapes):
-        notices.append("no dataset 164: coordinates are taken in m")
+        notices.append("no dataset 164: coordinates are assumed in m")
     return Measurement(
         path=path,
         format="uff",
-        channels=_named([_turned(one, nodes) for one in channels]),
+        channels=_named([_turned(channel, nodes) for channel in channels]),
         sha256=digest(path),
         program=program,
         start=start,
@@ -90,7 +90,7 @@ def read(path: Path) -> Measurement:
 
 
 def _turned(channel: Channel, nodes: Nodes) -> Channel:
-    """The direction of a channel in the global axes; a remark where it lies along none of them."""
+    """Convert the direction of a channel to global axes; add a remark if it is not along a global axis."""
     if channel.direction[1:] not in ("X", "Y", "Z") or not channel.place.isdecimal():
         return channel
     axes = nodes.directions(int(channel.place))
@@ -98,12 +98,12 @@ def _turned(channel: Channel, nodes: Nodes) -> Channel:
         return channel
     along = axes[:, "XYZ".index(channel.direction[1])] * (-1.0 if channel.direction[0] == "-" else 1.0)
     largest = int(np.argmax(np.abs(along)))
-    said = f"{channel.direction} of the node's own axes"
+    note = f"{channel.direction} of the local axes of the node"
     if abs(along[largest]) > 1.0 - 1e-5:
         sign = "+" if along[largest] > 0.0 else "-"
-        return replace(channel, direction=f"{sign}{'XYZ'[largest]}", remark=_joined(channel.remark, said))
+        return replace(channel, direction=f"{sign}{'XYZ'[largest]}", remark=_joined(channel.remark, note))
     shown = ", ".join(f"{value:.3g}" for value in along)
-    return replace(channel, direction="", remark=_joined(channel.remark, f"{said}, along ({shown})"))
+    return replace(channel, direction="", remark=_joined(channel.remark, f"{note}, along ({shown})"))
 
 
 def _joined(*texts: str) -> str:
@@ -111,11 +111,11 @@ def _joined(*texts: str) -> str:
 
 
 def _named(channels: list[Channel]) -> tuple[Channel, ...]:
-    """The text of a set is its name where it tells it from the others; else its place and direction are."""
-    texts = Counter(one.name for one in channels)
+    """Name channels by their text if it is unique, else by point and direction."""
+    texts = Counter(channel.name for channel in channels)
     named = []
-    for one in channels:
-        point = one.place + one.direction + (f"/{one.reference}" if one.reference else "")
-        alone = one.name and texts[one.name] == 1
-        named.append(one if alone or not point else replace(one, name=point))
+    for channel in channels:
+        point = channel.place + channel.direction + (f"/{channel.reference}" if channel.reference else "")
+        unique = channel.name and texts[channel.name] == 1
+        named.append(channel if unique or not point else replace(channel, name=point))
     return tuple(named)

@@ -1,4 +1,4 @@
-"""Units of measurement files: what they measure, and what they are in SI."""
+"""Units of measurement files: quantity and conversion to SI."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import re
 from typing import NamedTuple
 
 STANDARD_GRAVITY = 9.80665
-"""[m/s2], ISO 80000-3, for records in g"""
+"""Standard acceleration of gravity [m/s2], ISO 80000-3, for records in g."""
 
 
 class Unit(NamedTuple):
-    """A unit: value in SI = value * factor."""
+    """Unit with its quantity: value in SI = value * factor."""
 
     quantity: str
     si: str
@@ -62,10 +62,10 @@ _TABLE = {
 }
 
 UNITS = {text: Unit(*kind, factor) for kind, units in _TABLE.items() for text, factor in units.items()}
-"""Plain form of a unit to its meaning. Letters count: m is no M, and g is gravity, in which sensors are calibrated."""
+"""Plain spelling -> unit. Case matters: m differs from M; g is gravity, in which sensors are calibrated."""
 
 QUANTITIES = {kind[0]: kind[1] for kind in _TABLE}
-"""Quantity to its SI unit."""
+"""Quantity -> SI unit."""
 
 _SPELLINGS = {
     **dict.fromkeys(("second", "seconds", "Seconds", "Sec", "Secs", "secs"), "s"),
@@ -89,7 +89,7 @@ _SPELLINGS = {
     **dict.fromkeys(("kilopascals", "kpa", "KPa"), "kPa"),
     **dict.fromkeys(("PSI",), "psi"),
 }
-"""Spellings of loggers to the form of `_TABLE`."""
+"""Spellings of loggers -> spelling in `_TABLE`."""
 
 _SECONDS_SQUARED = re.compile(r"/(s|sec)(\^2|²|\*\*2|\^\(2\)|/s|/sec)$")
 _NEGATIVE = re.compile(r"[ .·*]?s(\^-|\^\(-|-|⁻)(?P<power>[12¹²])\)?$")
@@ -98,43 +98,43 @@ _INVERSE = re.compile(r"\(1/(?P<lower>[^()]+)\)[*·. ]\(?(?P<upper>[^()]+)\)?")
 
 
 def plain_unit(text: str) -> str:
-    """A unit in the one form of the table: m/s^2, m/s², m/s/s, m.s-2 are m/s2; micro signs are u."""
-    found = text.strip().strip("[]").strip()
-    if found.startswith("(") and found.endswith(")") and found.count("(") == 1:
-        found = found[1:-1].strip()
-    found = _SPELLINGS.get(found, found)
-    found = found.replace("µ", "u").replace("μ", "u").replace("sec", "s").replace("_", "")
-    found = re.sub(r"/\(s ?(\^2|²|2|\*s)\)$", "/s2", found)
-    found = _SECONDS_SQUARED.sub("/s2", found.replace(" / ", "/"))
-    found = _NEGATIVE.sub(lambda match: "/s2" if match["power"] in "2²" else "/s", found)
-    if found in ("N m", "N*m", "N·m", "N.m", "kN m", "kN*m"):
-        found = re.sub(r"[ *·.]", "", found)
-    return "g" if found == "G" else found
+    """Return a unit in the spelling of the table: m/s^2, m/s², m/s/s, m.s-2 become m/s2, micro signs u."""
+    unit = text.strip().strip("[]").strip()
+    if unit.startswith("(") and unit.endswith(")") and unit.count("(") == 1:
+        unit = unit[1:-1].strip()
+    unit = _SPELLINGS.get(unit, unit)
+    unit = unit.replace("µ", "u").replace("μ", "u").replace("sec", "s").replace("_", "")
+    unit = re.sub(r"/\(s ?(\^2|²|2|\*s)\)$", "/s2", unit)
+    unit = _SECONDS_SQUARED.sub("/s2", unit.replace(" / ", "/"))
+    unit = _NEGATIVE.sub(lambda match: "/s2" if match["power"] in "2²" else "/s", unit)
+    if unit in ("N m", "N*m", "N·m", "N.m", "kN m", "kN*m"):
+        unit = re.sub(r"[ *·.]", "", unit)
+    return "g" if unit == "G" else unit
 
 
 def find_unit(text: str) -> Unit | None:
-    """What a unit means; None where the table does not have it.
+    """Return the unit for a text; None for an unknown unit.
 
     Args:
-        text: as found in a file; a number before it, as in "12.5 mm", is the value of one.
+        text: unit in the file; with a number, as in "12.5 mm", the value 1 in the file means that number.
     """
-    known = UNITS.get(plain_unit(text))
-    scaled = _SCALED.fullmatch(text.strip()) if known is None else None
+    entry = UNITS.get(plain_unit(text))
+    scaled = _SCALED.fullmatch(text.strip()) if entry is None else None
     if scaled is None:
-        return known
+        return entry
     unit = UNITS.get(plain_unit(scaled["unit"]))
     return None if unit is None else unit._replace(factor=unit.factor * float(scaled["number"]))
 
 
 GRAMS = ("g/s", "mg/s", "g/km", "g/h", "g/min", "g/l")
-"""Quotients in which g is a gram: flows of air and fuel."""
+"""Ratios in which g is the gram: flows of air and fuel."""
 
 
 def find_ratio(text: str) -> Unit | None:
-    """What a unit or the quotient of two units means, as (m/s2)/N, g/m or m/s2/N; None where that is open.
+    """Return the unit for a text or a ratio of units, such as (m/s2)/N, g/m or m/s2/N; None if ambiguous or unknown.
 
     Args:
-        text: as found in a file.
+        text: unit in the file.
     """
     whole = find_unit(text)
     if whole is not None or text.strip().lower() in GRAMS:
@@ -142,16 +142,16 @@ def find_ratio(text: str) -> Unit | None:
     inverse = _INVERSE.fullmatch(text.strip())
     if inverse:
         text = f"({inverse['upper']})/({inverse['lower']})"
-    found: list[Unit] = []
+    ratios: list[Unit] = []
     for match in re.finditer("/", text):
         upper, lower = find_unit(text[: match.start()]), find_unit(text[match.end() :])
         if upper is not None and lower is not None:
-            found.append(
+            ratios.append(
                 Unit(f"{upper.quantity}/{lower.quantity}", f"({upper.si})/({lower.si})", upper.factor / lower.factor)
             )
-    return found[0] if len(set(found)) == 1 else None
+    return ratios[0] if len(set(ratios)) == 1 else None
 
 
 def allowed_units(quantity: str | None = None) -> str:
-    """The units of a quantity, or of all, for messages."""
+    """List the units of a quantity, or all units, for messages."""
     return ", ".join(text for text, unit in UNITS.items() if quantity in (None, unit.quantity))

@@ -1,4 +1,4 @@
-"""WAV files of recorders: integers of 8 to 32 bits or floating point; one is full scale, whose value the user knows."""
+"""Read WAV files of recorders: integers of 8 to 32 bits or floating point, relative to full scale."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from vehicle.signals.records.reader import digest
 
 
 def read(path: Path) -> Measurement:
-    """Read all channels; integers become shares of full scale.
+    """Read all channels; integers become fractions of full scale.
 
     Raises:
-        DataError: damaged, cut off, or compressed.
+        DataError: the file is damaged, truncated, or compressed.
     """
     from scipy.io import wavfile
 
@@ -37,18 +37,18 @@ def read(path: Path) -> Measurement:
         ZeroDivisionError,
         wavfile.WavFileWarning,
     ) as error:
-        raise DataError(f"{path}: no WAV file that can be read ({error}); export it as uncompressed WAV") from None
+        raise DataError(f"{path}: cannot be read as WAV ({error}); export it as uncompressed WAV") from None
     if data.size == 0 or rate <= 0:
-        raise DataError(f"{path}: {data.size} samples at {rate} Hz; needed is a record")
+        raise DataError(f"{path}: {data.size} samples at {rate} Hz, must be a record")
     if not np.isfinite(data).all():
-        raise DataError(f"{path}: holds numbers that are not finite; repair the record")
+        raise DataError(f"{path}: contains numbers that are not finite; repair the record")
     values = data.reshape(len(data), -1).astype(np.float64)
     if data.dtype.kind == "u":
         values = (values - 128.0) / 128.0
     elif data.dtype.kind == "i":
         values /= -float(np.iinfo(data.dtype).min)
     axis = uniform_axis(len(values), 1.0 / rate)
-    remark = "no unit: shares of full scale; its value is given as --unit '12.5 mm', with the number"
+    remark = "no unit: fractions of full scale; set the value of full scale, as --unit '12.5 mm'"
     channels = tuple(
         Channel(name=f"channel {n + 1}", values=values[:, n].copy(), axis=axis, remark=remark)
         for n in range(values.shape[1])
@@ -57,7 +57,7 @@ def read(path: Path) -> Measurement:
 
 
 def _check_chunks(path: Path) -> None:
-    """Refuse a chunk that claims more than the file holds."""
+    """Reject a chunk that claims more bytes than the file contains."""
     data = path.read_bytes()
     order = ">" if data[:4] == b"RIFX" else "<"
     position = 12
@@ -69,4 +69,4 @@ def _check_chunks(path: Path) -> None:
         if name == b"data":
             return
         position += 8 + size + size % 2
-    raise DataError(f"{path}: no chunk of data; the file was cut off; export it again")
+    raise DataError(f"{path}: no chunk of data; the file is truncated; export it again")

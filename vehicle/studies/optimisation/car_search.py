@@ -1,4 +1,4 @@
-"""A search for better parameters of a car: checked before anything is computed, then run in a folder."""
+"""Search for optimal parameters of a car: check all arguments first, then run in a folder."""
 
 from __future__ import annotations
 
@@ -14,18 +14,24 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
-from vehicle.studies.optimisation.closer_look import chosen_cars, compared, left_validity, new_cars, without_tolerances
-from vehicle.studies.optimisation.found_cars import FoundCars
-from vehicle.studies.optimisation.kept_search import kept_search
+from vehicle.studies.optimisation.front_checks import (
+    mujoco_differences,
+    named_cars,
+    shares_as_good,
+    validity_warnings,
+    without_tolerances,
+)
 from vehicle.studies.optimisation.outcome import outcome
-from vehicle.studies.optimisation.problem import Tolerance, parsed_tolerance, parsed_wishes
+from vehicle.studies.optimisation.problem import Tolerance, parsed_criteria, parsed_tolerance
 from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.optimisation.search import pymoo
-from vehicle.studies.optimisation.trials import ALONE, Spread, Trials, bands, on_executor, samples_for
+from vehicle.studies.optimisation.search_result import FoundCars
+from vehicle.studies.optimisation.stored_search import stored_search
+from vehicle.studies.optimisation.trials import NO_TOLERANCES, Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.optimisation.variables import problem_of, require_bounds, toleranced
-from vehicle.studies.sweeps.evaluation import evaluate
+from vehicle.studies.sweeps.case_evaluation import evaluate
 from vehicle.studies.sweeps.executors import process_pool
-from vehicle.studies.sweeps.inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
 
 Tolerances = Mapping[str, float | str] | Sequence[Tolerance]
 """Path to half of the band: in the unit of the parameter, or as "15%"."""
@@ -33,11 +39,11 @@ Tolerances = Mapping[str, float | str] | Sequence[Tolerance]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SearchPlan:
-    """A search that can be run.
+    """Checked search, ready to run.
 
     Attributes:
-        trials: how cars are tried.
-        vehicle: parameters of the car as it is.
+        trials: evaluation of the cars.
+        vehicle: parameters of the unmodified car.
         skip: start of the evaluation [s].
         seed: seed of the search.
     """
@@ -60,40 +66,40 @@ class SearchPlan:
         """Run the search.
 
         Args:
-            folder: existing folder in which every car is stored; a search in it is continued.
+            folder: existing folder in which every car is stored; an interrupted search in the folder is continued.
             cars: number of cars to try.
             population: cars of a generation.
-            executor: makes what evaluates cars; this process by default.
+            executor: function that returns the executor for the evaluation of cars; by default this process.
             check: run the named cars with MuJoCo too.
             progress: called with the finished fraction.
 
         Raises:
-            ConfigurationError: the folder holds another search.
-            SimulationError: no car keeps the limits, or none could be run.
+            ConfigurationError: the folder contains another search.
+            SimulationError: no car satisfies the limits, or no car could be run.
         """
         trials = self.trials
         with ExitStack() as held:
             if executor is not None:
                 trials = replace(trials, evaluate=on_executor(held.enter_context(executor()), trials.measure))
-            base, generations = kept_search(
+            base, generations = stored_search(
                 trials, folder, cars=cars, population=population, seed=self.seed, progress=progress
             )
-            found = outcome(trials.problem, base, generations)
-            named = chosen_cars(trials, found)
-            nominal = without_tolerances(trials, found) if trials.spread.tolerances else None
-            reached = new_cars(trials, found, self.seed) if trials.spread.quantile > 0.0 else None
-            checked = compared(trials, found) if check else None
+            outcome_of_search = outcome(trials.problem, base, generations)
+            cars_by_name = named_cars(trials, outcome_of_search)
+            nominal = without_tolerances(trials, outcome_of_search) if trials.spread.tolerances else None
+            reached = shares_as_good(trials, outcome_of_search, self.seed) if trials.spread.quantile > 0.0 else None
+            checked = mujoco_differences(trials, outcome_of_search) if check else None
         return FoundCars(
-            outcome=found,
+            outcome=outcome_of_search,
             trials=self.trials,
             vehicle=self.vehicle,
-            cars=named,
+            cars=cars_by_name,
             skip=self.skip,
             seed=self.seed,
             nominal=nominal,
             reached=reached,
             checked=checked,
-            notices=tuple(left_validity(trials, named)),
+            notices=tuple(validity_warnings(trials, cars_by_name)),
         )
 
 
@@ -112,22 +118,22 @@ def plan_search(
     skip: float | None = None,
     seed: int = 1,
 ) -> SearchPlan:
-    """Check a search; arguments and errors of `optimise_car`."""
+    """Check the arguments of a search and return the search; arguments and errors as in `optimise_car`."""
     pymoo("core.problem")
     vehicle, file = car.vehicle, file_of(car)
     sources = inputs_of(car, inputs)
     names = [source.name for source in sources]
     if len(set(names)) < len(names):
-        raise ConfigurationError(f"inputs {', '.join(names)}: two have one name; rename a file, or give each once")
+        raise ConfigurationError(f"inputs {', '.join(names)}: equal names; rename a file, or use each input once")
     start = common_start(sources, skip)
-    wishes = parsed_wishes(minimise, maximise, limits, names)
-    measure = ride_measure(vehicle, tuple(wish.number for wish in wishes), start)
-    wishes = tuple(replace(wish, unit=measure.units[wish.number]) for wish in wishes)
-    problem = problem_of(vehicle, _ranges(vary), wishes, names)
+    criteria = parsed_criteria(minimise, maximise, limits, names)
+    measure = ride_measure(vehicle, tuple(criterion.number for criterion in criteria), start)
+    criteria = tuple(replace(criterion, unit=measure.units[criterion.number]) for criterion in criteria)
+    problem = problem_of(vehicle, _ranges(vary), criteria, names)
     require_bounds(file, car.overrides, problem)
-    spread = ALONE
+    spread = NO_TOLERANCES
     if not tolerances and (samples is not None or quantile is not None):
-        raise ConfigurationError("samples, quantile: belong to tolerances, and there are none")
+        raise ConfigurationError("samples, quantile: only valid with tolerances; add tolerances")
     if tolerances:
         chosen, count = _quantile_and_samples(quantile, samples)
         if isinstance(tolerances, Mapping):
@@ -178,16 +184,16 @@ def optimise_car(
         minimise, maximise: objectives, as "comfort", "tyre_load", "travel", "slip_share"; with several inputs
             "comfort@NAME", "comfort@mean" or "comfort@worst".
         limits: constraints, as "travel<=0.06", in the unit of the value.
-        tolerances: path to half of the band within which made cars differ: in its unit, or as "15%".
-        samples: made cars for each car tried; 8 by default.
-        quantile: quantile of their values that counts, 0.5 to 1; the mean by default.
+        tolerances: path to half width of the production tolerance: in the unit of the parameter, or as "15%".
+        samples: number of cars within the tolerances for each car tried; 8 by default.
+        quantile: quantile of their values that is optimised, 0.5 to 1; the mean by default.
         cars: number of cars to try, at least 8.
         population: cars of a generation, at least 8.
-        seed: one seed is one search, from 0 on.
+        seed: seed of the search, at least 0; equal seeds give equal searches.
         engine: as in `Car.run`.
         skip: start of the evaluation [s]; 2 by default, on a road see `Car.run`.
         jobs: number of processes; the result does not depend on it.
-        folder: existing folder in which every car is stored, and found again by the next call; None stores none.
+        folder: existing folder in which every car is stored, for the next call to continue; None stores no cars.
         check: run the named cars with MuJoCo too.
         progress: called with the finished fraction.
 
@@ -195,10 +201,10 @@ def optimise_car(
         The Pareto front and its named cars; `print` shows them, `write` writes all files.
 
     Raises:
-        ConfigurationError: a path, bound, objective or limit that the car does not have, or a number out of range.
+        ConfigurationError: the car lacks a path, objective or limit, or a value is out of range.
         DataError: an input cannot be read.
         MissingPartError: pymoo is not installed.
-        SimulationError: no car keeps the limits, or none could be run.
+        SimulationError: no car satisfies the limits, or no car could be run.
     """
     require_counts(cars=cars, population=population, search_seed=seed)
     plan = plan_search(
@@ -227,14 +233,14 @@ def optimise_car(
 
 
 LEAST_COUNTS = {"cars": 8, "population": 8, "search_seed": 0}
-"""Minimum number of cars, cars of a generation, and seed."""
+"""Minimum number of cars, number of cars of a generation, and seed."""
 
 
 def require_counts(**counts: int) -> None:
     """Check the size and the seed of a search, by the names of `LEAST_COUNTS`.
 
     Raises:
-        ConfigurationError: one is below its minimum.
+        ConfigurationError: a value is below its minimum.
     """
     for name, number in counts.items():
         if number < LEAST_COUNTS[name]:
@@ -252,20 +258,20 @@ def _ranges(vary: Mapping[str, Sequence[float]] | Sequence[Range]) -> Sequence[R
 
 
 def _quantile_and_samples(quantile: float | None, samples: int | None) -> tuple[float, int]:
-    """Return the quantile, NaN for the mean, and the number of made cars for each car tried.
+    """Return the quantile, NaN for the mean, and the number of cars within the tolerances for each car tried.
 
     Raises:
-        ConfigurationError: out of range, or too few cars for the quantile.
+        ConfigurationError: the quantile is out of range, or there are too few cars for the quantile.
     """
     chosen = math.nan if quantile is None else quantile
     if quantile is not None and not 0.5 <= chosen <= 1.0:
-        raise ConfigurationError(f"--quantile {chosen:g}: allowed are 0.5 to below 1, and 1 for the worst car")
+        raise ConfigurationError(f"--quantile {chosen:g}: must be 0.5 to below 1, or 1 for the worst car")
     needed = samples_for(chosen) if chosen < 1.0 else 2
     if samples is None:
         return chosen, max(8, needed)
     if samples < needed:
         raise ConfigurationError(
-            f"--quantile {chosen:g}: needs at least {needed} cars, found --samples {samples}; give "
+            f"--quantile {chosen:g}: needs at least {needed} cars, found --samples {samples}; set "
             f"--samples {needed}, a lower quantile, or --quantile 1 for the worst of {samples} cars"
         )
     return chosen, samples

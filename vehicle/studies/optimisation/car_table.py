@@ -1,4 +1,4 @@
-"""`cars.csv`: every car that was tried, written generation by generation, read again when a search goes on."""
+"""Table `cars.csv` of all cars tried, written generation by generation and read when a search is continued."""
 
 from __future__ import annotations
 
@@ -14,51 +14,50 @@ from vehicle.errors import DataError, OutputError
 from vehicle.runs.output.folder import write_text
 from vehicle.runs.output.written_files import note
 from vehicle.studies.optimisation.problem import Problem
-from vehicle.studies.optimisation.search import Tried
+from vehicle.studies.optimisation.search import TriedCars
 
 CARS = "cars.csv"
 
 
 def columns(problem: Problem) -> list[str]:
-    """Heads of the parameters and of the numbers, with units."""
-    parameters = [f"{one.path} [{unit}]" for one, unit in zip(problem.ranges, problem.units, strict=True)]
-    return [*parameters, *(f"{wish.label} [{wish.unit}]" for wish in problem.wishes)]
+    """Return the column heads of the parameters and of the objectives and limits, with units."""
+    parameters = [f"{bounds.path} [{unit}]" for bounds, unit in zip(problem.ranges, problem.units, strict=True)]
+    return [*parameters, *(f"{criterion.label} [{criterion.unit}]" for criterion in problem.criteria)]
 
 
 def cells(numbers: Sequence[float]) -> list[str]:
-    """Numbers with all their digits; empty where there is none."""
+    """Return numbers as text with all digits; empty for NaN."""
     return ["" if math.isnan(number) else repr(float(number)) for number in numbers]
 
 
 class CarTable:
-    """The file of the cars of a search; generation 0 is the car as it is.
+    """File of the cars of a search; generation 0 is the unmodified car.
 
     Args:
-        path: the file. Generations that are there are kept, but for the last: a killed process may have left half of
-            it.
-        problem: what is wanted.
+        path: the file. Existing generations are kept except the last, which may be incomplete after a killed process.
+        problem: parameters, objectives and limits.
 
     Raises:
         DataError: the file is damaged.
-        OutputError: it cannot be written.
+        OutputError: the file cannot be written.
     """
 
     def __init__(self, path: Path, problem: Problem) -> None:
         self.path, self.problem = path, problem
-        self.generations: list[Tried] = []
+        self.generations: list[TriedCars] = []
         self._cars = 0
         self._head = ["car", "generation", *columns(problem), "failed because"]
-        known = self._read() if path.exists() else []
+        stored = self._read() if path.exists() else []
         write_text(path, _text([self._head]))
-        note(path)  # which grows from now on
-        for tried in known:
+        note(path)  # the file grows from now on
+        for tried in stored:
             self.add(tried)
 
-    def add(self, tried: Tried) -> None:
-        """Keep a generation.
+    def add(self, tried: TriedCars) -> None:
+        """Append a generation to the file.
 
         Raises:
-            OutputError: the disk refuses it.
+            OutputError: the file cannot be written.
         """
         rows = [
             [str(self._cars + i), str(len(self.generations)), *cells(point), *cells(values), reason.replace("\n", " ")]
@@ -68,30 +67,30 @@ class CarTable:
             with self.path.open("a", encoding="utf-8") as file:
                 file.write(_text(rows))
         except OSError as error:
-            raise OutputError(f"{self.path}: cannot be written: {error.strerror}; --resume goes on") from None
+            raise OutputError(f"{self.path}: cannot be written: {error.strerror}; continue with --resume") from None
         self._cars += len(rows)
         self.generations.append(tried)
 
-    def _read(self) -> list[Tried]:
-        """All generations of the file but the last."""
+    def _read(self) -> list[TriedCars]:
+        """Read all generations of the file except the last."""
         size = len(self.problem.ranges)
-        found: dict[str, list[list[str]]] = {}
+        generations: dict[str, list[list[str]]] = {}
         for row in list(csv.reader(self.path.read_text(encoding="utf-8").splitlines()))[1:]:
-            if len(row) == len(self._head):  # else it was cut off
-                found.setdefault(row[1], []).append(row)
-        if found:
-            found.popitem()
+            if len(row) == len(self._head):  # a shorter row is incomplete
+                generations.setdefault(row[1], []).append(row)
+        if generations:
+            generations.popitem()
         try:
             return [
-                Tried(
+                TriedCars(
                     points=np.array([[_number(cell) for cell in row[2 : 2 + size]] for row in rows]),
                     values=np.array([[_number(cell) for cell in row[2 + size : -1]] for row in rows]),
                     reasons=tuple(row[-1] for row in rows),
                 )
-                for rows in found.values()
+                for rows in generations.values()
             ]
         except ValueError as error:
-            raise DataError(f"{self.path}: no table of a search ({error}); start anew with --force") from None
+            raise DataError(f"{self.path}: not a table of a search ({error}); start again with --force") from None
 
 
 def _number(cell: str) -> float:

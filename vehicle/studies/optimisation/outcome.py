@@ -1,4 +1,4 @@
-"""What a search found: its front, the cars on it that have a name, and whether it still moved at the end."""
+"""Outcome of a search: Pareto front, named cars on the front, and growth of the hypervolume."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from vehicle.errors import SimulationError
 from vehicle.studies.optimisation.front import Indices, ends, front, hypervolume, knee, thinned
 from vehicle.studies.optimisation.problem import Problem, Vector
-from vehicle.studies.optimisation.search import Tried, joined
+from vehicle.studies.optimisation.search import TriedCars, joined
 
 BASE, KNEE, BEST = "base", "knee", "best"
 
 SHOWN = 100
-"""Most cars of a front that are written and drawn: from one to the next about a hundredth of it."""
+"""Maximum number of cars of a front that are written and drawn: neighbours are about a hundredth of the front apart."""
 
 PARTS = (0.25, 0.5, 0.75)
-"""Shares of the cars after which the hypervolume is looked at."""
+"""Shares of the cars after which the hypervolume is computed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -26,77 +26,82 @@ class Outcome:
     """A finished search.
 
     Attributes:
-        problem: what was wanted.
-        base: the car as it is.
-        tried: all others.
-        whole: number of cars that no other beats.
-        front: rows of `tried` of at most `SHOWN` of them, far from each other, by the first objective.
-        named: name to row: best of each objective, knee.
-        reached: share of their hypervolume that was reached after `PARTS` of the cars; empty for a front of one car.
+        problem: parameters, objectives and limits.
+        base: unmodified car.
+        tried: all other cars.
+        front_size: number of non-dominated cars.
+        front: rows of `tried` of at most `SHOWN` non-dominated cars, well spread, sorted by the first objective.
+        named: name to row of `tried`: best car of each objective, knee point.
+        reached: share of the final hypervolume after each of `PARTS` of the cars; empty for a front of one car.
     """
 
     problem: Problem
-    base: Tried
-    tried: Tried
-    whole: int
+    base: TriedCars
+    tried: TriedCars
+    front_size: int
     front: Indices
     named: Mapping[str, int]
     reached: Mapping[float, float]
 
     @property
     def costs(self) -> Vector:
-        """Objectives of the front, less is better; (f, goals)."""
+        """Return the objectives of the front as costs, less is better; (f, goals)."""
         return self.problem.costs(self.tried.values[self.front])
 
 
-def outcome(problem: Problem, base: Tried, generations: Sequence[Tried]) -> Outcome:
-    """What the cars of a search give.
+def outcome(problem: Problem, base: TriedCars, generations: Sequence[TriedCars]) -> Outcome:
+    """Evaluate a finished search: front, named cars and growth of the hypervolume.
+
+    Args:
+        problem: parameters, objectives and limits.
+        base: unmodified car.
+        generations: cars of each generation.
 
     Raises:
-        SimulationError: none of them keeps the limits, or none could be run.
+        SimulationError: no car satisfies the limits, or no car could be run.
     """
     tried = joined(generations)
     kept = np.flatnonzero(tried.kept(problem))
     if not kept.size:
-        raise SimulationError(_none_kept(problem, tried))
+        raise SimulationError(_no_front_message(problem, tried))
     costs = problem.costs(tried.values)
-    found = kept[front(costs[kept])]
-    own = costs[found]
+    non_dominated = kept[front(costs[kept])]
+    front_costs = costs[non_dominated]
     reached = {}
-    if len(found) > 1:  # a front of one car has no extent
-        whole = hypervolume(own, own)
+    if len(non_dominated) > 1:  # a front of one car has no extent
+        final = hypervolume(front_costs, front_costs)
         for part in PARTS:
             early = costs[kept[kept < part * len(tried.reasons)]]
-            reached[part] = hypervolume(early, own) / whole if early.size else 0.0
+            reached[part] = hypervolume(early, front_costs) / final if early.size else 0.0
     names = [BEST] if len(problem.goals) == 1 else [f"{BEST} {goal.label}" for goal in problem.goals]
-    rows = dict(zip(names, ends(own), strict=True))
+    rows = dict(zip(names, ends(front_costs), strict=True))
     if len(problem.goals) > 1:
-        rows[KNEE] = knee(own)
+        rows[KNEE] = knee(front_costs)
     return Outcome(
         problem=problem,
         base=base,
         tried=tried,
-        whole=len(found),
-        front=found[thinned(own, list(rows.values()), SHOWN)],
-        named={name: int(found[row]) for name, row in rows.items()},
+        front_size=len(non_dominated),
+        front=non_dominated[thinned(front_costs, list(rows.values()), SHOWN)],
+        named={name: int(non_dominated[row]) for name, row in rows.items()},
         reached=reached,
     )
 
 
-def _none_kept(problem: Problem, tried: Tried) -> str:
-    """Why there is no front."""
+def _no_front_message(problem: Problem, tried: TriedCars) -> str:
+    """Return the message for a search without a car that satisfies the limits."""
     ran = np.array([not reason for reason in tried.reasons])
     if not ran.any():
-        return f"none of {ran.size} cars could be run; the first: {tried.reasons[0]}"
+        return f"all {ran.size} cars failed; the first: {tried.reasons[0]}"
     excess = problem.excesses(tried.values[ran])
     nearest = int(np.argmin(np.max(excess, axis=1)))
     first, values = len(problem.goals), tried.values[ran][nearest]
     broken = [
-        f"{limit.words} is {values[first + i]:.4g} {limit.unit}"
+        f"{limit.expression} is {values[first + i]:.4g} {limit.unit}"
         for i, limit in enumerate(problem.limits)
         if excess[nearest, i] > 0.0
     ]
     return (
-        f"none of {ran.size} cars keeps all limits; the nearest one misses {', '.join(broken)}; widen the limits or "
+        f"0 of {ran.size} cars satisfy all limits; the nearest car violates {', '.join(broken)}; widen the limits or "
         "the bounds"
     )

@@ -1,4 +1,4 @@
-"""What is wanted of a car: parameters with bounds, numbers to minimise or maximise, numbers with a limit."""
+"""Optimisation problem: parameters with bounds, objectives, and limits."""
 
 from __future__ import annotations
 
@@ -16,190 +16,192 @@ from vehicle.model.parameters.ranges import Range
 Vector = npt.NDArray[np.float64]
 
 MEAN, WORST = "mean", "worst"
-"""Behind the @: over all inputs."""
+"""Texts after the @ that combine the values of all inputs."""
 
 FINEST = 1e-4
-"""Values are tried in decimal steps of at most this share of their range: what is found can be typed, and is then the
-same car."""
+"""Maximum decimal step of a parameter over its range [-]: a rounded value can be typed, and gives the same car."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Wish:
-    """A number of the ride on an input, or over all of them, that should be small or large.
+class Criterion:
+    """Objective or limit: a quantity of the ride on an input or over all inputs.
 
     Attributes:
-        number: as of `ride.KINDS`.
-        place: name of an input, `MEAN` or `WORST`; empty for the only one.
-        sense: 1 for small, -1 for large.
-        limit: what the number must not pass; NaN where it is to be as small or large as can be.
-        unit: of the number.
+        number: name of the quantity, see `ride.QUANTITIES`.
+        input_name: name of an input, `MEAN` or `WORST`; empty for a single input.
+        sense: 1 to minimise or for an upper limit, -1 to maximise or for a lower limit.
+        limit: limit of the quantity; NaN for an objective.
+        unit: unit of the quantity.
     """
 
     number: str
-    place: str = ""
+    input_name: str = ""
     sense: float = 1.0
     limit: float = math.nan
     unit: str = ""
 
     @property
     def label(self) -> str:
-        """The number and its place: "comfort@road_A_120"."""
-        return f"{self.number}@{self.place}" if self.place else self.number
+        """Return quantity and input, as "comfort@road_A_120"."""
+        return f"{self.number}@{self.input_name}" if self.input_name else self.number
 
     @property
     def is_limit(self) -> bool:
-        """Whether it is a limit, and not an objective."""
+        """Return True for a limit, False for an objective."""
         return not math.isnan(self.limit)
 
     @property
-    def words(self) -> str:
-        """The wish as its option has it."""
+    def expression(self) -> str:
+        """Return the criterion in the syntax of its option."""
         return f"{self.label}{'<=' if self.sense > 0 else '>='}{self.limit:g}" if self.is_limit else self.label
 
     def of(self, values: Vector, inputs: Sequence[str]) -> Vector:
-        """The number over the inputs.
+        """Reduce the values on the inputs to the value of the criterion.
 
         Args:
-            values: of the number; (..., inputs).
-            inputs: their names.
+            values: values of the quantity; (..., inputs).
+            inputs: names of the inputs.
 
         Returns:
-            (...).
+            Value on one input, mean, or worst; (...).
         """
-        if self.place in inputs:
-            return np.asarray(values[..., inputs.index(self.place)])
-        if self.place == MEAN:
+        if self.input_name in inputs:
+            return np.asarray(values[..., inputs.index(self.input_name)])
+        if self.input_name == MEAN:
             return np.asarray(np.mean(values, axis=-1))
         return np.asarray(self.sense * np.max(self.sense * values, axis=-1))
 
     def excess(self, value: Vector) -> Vector:
-        """How far a number is beyond its limit, over the limit where it is not 0; at most 0 where it is kept [-]."""
+        """Return the relative violation of the limit, absolute for a limit of 0; at most 0 if satisfied [-]."""
         return self.sense * (value - self.limit) / (abs(self.limit) or 1.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Tolerance:
-    """How far a parameter of a made car may be from its value, evenly likely anywhere in between.
+    """Production tolerance of a parameter, uniformly distributed about its value.
 
     Attributes:
-        path: of the parameter.
-        width: half of the band; a share of the value, or in its unit.
-        relative: which of them.
+        path: path of the parameter.
+        width: half width of the band, as a share of the value or in the unit of the parameter.
+        relative: True if `width` is a share of the value.
     """
 
     path: str
     width: float
     relative: bool
 
-    def around(self, value: float, place: float) -> float:
-        """Value at a place from -1 to 1 of the band."""
-        return value * (1.0 + place * self.width) if self.relative else value + place * self.width
+    def value_at(self, value: float, position: float) -> float:
+        """Return the value at a position from -1 to 1 in the band."""
+        return value * (1.0 + position * self.width) if self.relative else value + position * self.width
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Problem:
-    """A search.
+    """Optimisation problem.
 
     Attributes:
-        ranges: the parameters.
-        places: whole paths that each of them sets; several for "*.damper.viscous".
-        units: theirs.
-        base: values of the car as it is; NaN where the places of one have different values.
-        wishes: objectives first, then limits.
-        inputs: names.
+        ranges: parameters with bounds.
+        paths: full paths set by each parameter; several for "*.damper.viscous".
+        units: units of the parameters.
+        base: parameter values of the unmodified car; NaN for a parameter whose paths have different values.
+        criteria: objectives first, then limits.
+        inputs: names of the inputs.
     """
 
     ranges: tuple[Range, ...]
-    places: tuple[tuple[str, ...], ...]
+    paths: tuple[tuple[str, ...], ...]
     units: tuple[str, ...]
     base: tuple[float, ...]
-    wishes: tuple[Wish, ...]
+    criteria: tuple[Criterion, ...]
     inputs: tuple[str, ...]
 
     @property
-    def goals(self) -> tuple[Wish, ...]:
-        """The objectives."""
-        return tuple(wish for wish in self.wishes if not wish.is_limit)
+    def goals(self) -> tuple[Criterion, ...]:
+        """Return the objectives."""
+        return tuple(criterion for criterion in self.criteria if not criterion.is_limit)
 
     @property
-    def limits(self) -> tuple[Wish, ...]:
-        """The limits."""
-        return self.wishes[len(self.goals) :]
+    def limits(self) -> tuple[Criterion, ...]:
+        """Return the limits."""
+        return self.criteria[len(self.goals) :]
 
     def point(self, shares: Vector) -> Vector:
-        """Values of the parameters, rounded, at shares of their ranges; (n, p) of (n, p)."""
-        low, high = np.array([(one.low, one.high) for one in self.ranges]).T
+        """Return rounded parameter values (n, p) at shares (n, p) of the ranges."""
+        low, high = np.array([(bounds.low, bounds.high) for bounds in self.ranges]).T
         exact = low + shares * (high - low)
-        places = [math.ceil(-math.log10(FINEST * (one.high - one.low))) for one in self.ranges]
-        rounded = [[round(value, place) for value, place in zip(row, places, strict=True)] for row in exact.tolist()]
+        decimals = [math.ceil(-math.log10(FINEST * (bounds.high - bounds.low))) for bounds in self.ranges]
+        rounded = [
+            [round(value, digits) for value, digits in zip(row, decimals, strict=True)] for row in exact.tolist()
+        ]
         return np.clip(np.array(rounded).reshape(exact.shape), low, high)
 
     def share(self, values: Vector) -> Vector:
-        """Places of values in their ranges, 0 to 1 inside; (..., p)."""
-        low, high = np.array([(one.low, one.high) for one in self.ranges]).T
+        """Return parameter values as shares of the ranges, 0 to 1 inside; (..., p)."""
+        low, high = np.array([(bounds.low, bounds.high) for bounds in self.ranges]).T
         return np.asarray((values - low) / (high - low))
 
     def changes(self, point: Sequence[float]) -> dict[str, float]:
-        """Whole path to value of what a point changes; a NaN leaves its parameter as it is."""
-        pairs = zip(self.places, point, strict=True)
-        return {place: float(value) for places, value in pairs for place in places if not math.isnan(value)}
+        """Return full path to value for the parameters of a point; parameters with NaN are left out."""
+        pairs = zip(self.paths, point, strict=True)
+        return {path: float(value) for paths, value in pairs for path in paths if not math.isnan(value)}
 
     def costs(self, values: Vector) -> Vector:
-        """Objectives so that less is better; (n, goals) of (n, wishes)."""
+        """Return the objectives as costs, less is better; (n, goals) of (n, criteria)."""
         return np.asarray(values[:, : len(self.goals)] * np.array([goal.sense for goal in self.goals]))
 
     def excesses(self, values: Vector) -> Vector:
-        """How far each limit is passed, as of `Wish.excess`; (n, limits) of (n, wishes)."""
+        """Return the violation of each limit, see `Criterion.excess`; (n, limits) of (n, criteria)."""
         goals = len(self.goals)
-        found = [limit.excess(values[:, goals + index]) for index, limit in enumerate(self.limits)]
-        return np.array(found).reshape(len(self.limits), len(values)).T
+        excesses = [limit.excess(values[:, goals + index]) for index, limit in enumerate(self.limits)]
+        return np.array(excesses).reshape(len(self.limits), len(values)).T
 
 
-def parsed_wishes(
+def parsed_criteria(
     minimise: Sequence[str], maximise: Sequence[str], limits: Sequence[str], inputs: Sequence[str]
-) -> tuple[Wish, ...]:
-    """Objectives and limits of options.
+) -> tuple[Criterion, ...]:
+    """Parse objectives and limits from the texts of options.
 
     Args:
         minimise, maximise: NUMBER or NUMBER@INPUT.
-        limits: the same with <=VALUE or >=VALUE behind.
-        inputs: names.
+        limits: NUMBER<=VALUE, NUMBER@INPUT<=VALUE, or the same with >=.
+        inputs: names of the inputs.
 
     Raises:
-        ConfigurationError: a text is none of these, an input has no such name, or something is there twice.
+        ConfigurationError: bad syntax, an unknown input, or a repeated criterion.
     """
-    found = [_wish("--minimise", text, 1.0, math.nan, inputs) for text in minimise]
-    found += [_wish("--maximise", text, -1.0, math.nan, inputs) for text in maximise]
-    if not found:
-        raise ConfigurationError("nothing to optimise; give --minimise comfort, or another number, once or more")
+    criteria = [_criterion("--minimise", text, 1.0, math.nan, inputs) for text in minimise]
+    criteria += [_criterion("--maximise", text, -1.0, math.nan, inputs) for text in maximise]
+    if not criteria:
+        raise ConfigurationError("no objective; add --minimise comfort, or another quantity, once or more")
     for text in limits:
         parts = re.fullmatch(r"(.+?)\s*(<=|>=)\s*(.+)", text)
         bound = _number(parts[3]) if parts else math.nan
         if parts is None or not math.isfinite(bound):
-            raise ConfigurationError(f"--limit {text}: needed is NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06")
-        found.append(_wish("--limit", parts[1], 1.0 if parts[2] == "<=" else -1.0, bound, inputs))
-    seen = [(one.label, one.sense if one.is_limit else 0.0) for one in found]
-    twice = next((one for one, key in zip(found, seen, strict=True) if seen.count(key) > 1), None)
+            raise ConfigurationError(f"--limit {text}: must be NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06")
+        criteria.append(_criterion("--limit", parts[1], 1.0 if parts[2] == "<=" else -1.0, bound, inputs))
+    keys = [(criterion.label, criterion.sense if criterion.is_limit else 0.0) for criterion in criteria]
+    twice = next((criterion for criterion, key in zip(criteria, keys, strict=True) if keys.count(key) > 1), None)
     if twice is not None:
-        raise ConfigurationError(f"{twice.words}: asked for twice; give it once")
-    return tuple(found)
+        raise ConfigurationError(f"{twice.expression}: specified more than once; remove the repetition")
+    return tuple(criteria)
 
 
-def _wish(option: str, text: str, sense: float, limit: float, inputs: Sequence[str]) -> Wish:
-    number, at, place = (part.strip() for part in text.partition("@"))
-    places = [*inputs, MEAN, WORST]
-    if at and place not in places:
-        raise ConfigurationError(f"{option} {text}: no input {place!r}; behind the @ stands {', '.join(places)}")
+def _criterion(option: str, text: str, sense: float, limit: float, inputs: Sequence[str]) -> Criterion:
+    """Parse one objective or limit."""
+    number, at, input_name = (part.strip() for part in text.partition("@"))
+    allowed = [*inputs, MEAN, WORST]
+    if at and input_name not in allowed:
+        raise ConfigurationError(f"{option} {text}: no input {input_name!r}; use one of {', '.join(allowed)} after @")
     if not at and len(inputs) > 1:
         if math.isnan(limit):
-            ways = ", ".join(f"{number}@{one}" for one in places)
-            raise ConfigurationError(f"{option} {text}: there are {len(inputs)} inputs; say which: {ways}")
-        place = WORST
-    return Wish(number=number, place=place, sense=sense, limit=limit)
+            choices = ", ".join(f"{number}@{name}" for name in allowed)
+            raise ConfigurationError(f"{option} {text}: there are {len(inputs)} inputs; choose one of {choices}")
+        input_name = WORST
+    return Criterion(number=number, input_name=input_name, sense=sense, limit=limit)
 
 
 def parsed_range(text: str) -> Range:
-    """A parameter between bounds, of an option.
+    """Parse a parameter with bounds from the text of an option.
 
     Raises:
         ConfigurationError: the text is not PATH=LOW:HIGH with two ascending numbers.
@@ -207,14 +209,14 @@ def parsed_range(text: str) -> Range:
     path, _, bounds = (part.strip() for part in text.partition("="))
     low, _, high = bounds.partition(":")
     if not path or not math.isfinite(_number(low)) or not math.isfinite(_number(high)):
-        raise ConfigurationError(f"--vary {text}: needed is PATH=LOW:HIGH, as in front.damper.viscous=800:4000")
+        raise ConfigurationError(f"--vary {text}: must be PATH=LOW:HIGH, as front.damper.viscous=800:4000")
     if not _number(low) < _number(high):
         raise ConfigurationError(f"--vary {text}: the lower bound must be below the upper one")
     return Range(path=path, low=_number(low), high=_number(high))
 
 
 def parsed_tolerance(text: str) -> Tolerance:
-    """A tolerance of an option.
+    """Parse a tolerance from the text of an option.
 
     Raises:
         ConfigurationError: the text is not PATH=NUMBER or PATH=NUMBER% with a number above 0.
@@ -223,8 +225,8 @@ def parsed_tolerance(text: str) -> Tolerance:
     width = _number(size.removesuffix("%"))
     if not path or not (math.isfinite(width) and width > 0.0):
         raise ConfigurationError(
-            f"--tolerance {text}: needed is PATH=NUMBER in the unit of the parameter, or PATH=NUMBER%, above 0: half "
-            "of the band, as front.damper.coulomb_friction=20%"
+            f"--tolerance {text}: must be PATH=NUMBER in the unit of the parameter, or PATH=NUMBER%, above 0: the half "
+            "width of the band, as front.damper.coulomb_friction=20%"
         )
     relative = size.endswith("%")
     return Tolerance(path=path, width=width / 100.0 if relative else width, relative=relative)

@@ -1,4 +1,4 @@
-"""What a search looks at: comfort, tyre load, travel and slip of a run."""
+"""Quantities of the ride for a search: comfort, tyre load, travel and slip of a run."""
 
 from __future__ import annotations
 
@@ -16,36 +16,36 @@ from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.studies.sweeps.measure import of_one
-from vehicle.studies.sweeps.runs import Runs, Vector
+from vehicle.studies.sweeps.run_batch import Runs, Vector
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 SEAT = tuple(f"seat_acc_{axis}" for axis in AXES)
 
-KINDS = {
-    "comfort": ("m/s2", "unweighted RMS of the seat rail, 2 to 50 Hz, all axes; comfort_x, _y, _z one of them"),
+QUANTITIES = {
+    "comfort": ("m/s2", "unweighted RMS of the seat rail, 2 to 50 Hz, all axes; comfort_x, _y, _z for an axis"),
     "weighted": ("m/s2", "weighted RMS of the seat rail (ISO 2631-1), all axes"),
     "seat": ("m/s2", "weighted RMS of the seat (ISO 2631-1), all axes, of a car with an occupant"),
-    "tyre_load": ("-", "RMS of dynamic over static tyre load, all tyres; tyre_load_fr that of one"),
-    "lowest_load": ("-", "lowest tyre load over the static one, all tyres; lowest_load_fr that of one"),
-    "travel": ("m", "largest travel of a damper from rest; travel_fr that of one"),
-    "slip_share": ("-", "share of the time in which a damper slips, mean of all; slip_share_fr that of one"),
+    "tyre_load": ("-", "RMS of dynamic over static tyre load, all tyres; tyre_load_fr for a wheel"),
+    "lowest_load": ("-", "minimum tyre load over static load, all tyres; lowest_load_fr for a wheel"),
+    "travel": ("m", "maximum travel of a damper from rest; travel_fr for a wheel"),
+    "slip_share": ("-", "share of the time in which a damper slips, mean of all dampers; slip_share_fr for a wheel"),
 }
-"""Number to its unit and what it is."""
+"""Quantity to unit and definition."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RideMeasure:
-    """Numbers of a ride, of `KINDS`; tyre loads, travels and slips of one wheel have its name behind.
+    """Measure of `QUANTITIES` of the ride; a suffix selects an axis or a wheel.
 
-    The travel of a damper is the integral of its velocity from rest on. The RMS over all tyres is that of their loads
-    taken together; the largest travel and the lowest load are the worst of all.
+    The travel of a damper is the time integral of its velocity, from rest. The RMS over all tyres is the root of the
+    mean of their mean squares; travel and lowest load are the worst of all wheels.
 
     Attributes:
-        numbers: which.
-        wheels: of the car.
-        dampers: wheels that have a damper.
-        skip: seconds at the beginning that are left out: the car starts at rest.
-        timestep: longest step of the reduced engine [s].
+        numbers: names of the quantities.
+        wheels: wheels of the car.
+        dampers: wheels with a damper.
+        skip: excluded time at the beginning [s]: the car starts at rest.
+        timestep: maximum step of the reduced engine [s].
     """
 
     numbers: tuple[str, ...]
@@ -56,75 +56,77 @@ class RideMeasure:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Channels that are needed."""
-        found: list[str] = []
+        """Return the required channels."""
+        channels: list[str] = []
         for number in self.numbers:
-            kind, one = split(number)
-            if kind in ("comfort", "weighted"):
-                found += RAIL
-            elif kind == "seat":
-                found += SEAT
-            elif kind in ("tyre_load", "lowest_load"):
-                found += [f"tyre_{wheel}_force_z" for wheel in ([one] if one else self.wheels)]
+            quantity, suffix = split_name(number)
+            if quantity in ("comfort", "weighted"):
+                channels += RAIL
+            elif quantity == "seat":
+                channels += SEAT
+            elif quantity in ("tyre_load", "lowest_load"):
+                channels += [f"tyre_{wheel}_force_z" for wheel in ([suffix] if suffix else self.wheels)]
             else:
-                found += [f"damper_{wheel}_velocity" for wheel in ([one] if one else self.dampers)]
-        return tuple(dict.fromkeys(found))
+                channels += [f"damper_{wheel}_velocity" for wheel in ([suffix] if suffix else self.dampers)]
+        return tuple(dict.fromkeys(channels))
 
     @property
     def units(self) -> Mapping[str, str]:
-        """Name of each number to its unit."""
-        return {number: KINDS[split(number)[0]][0] for number in self.numbers}
+        """Return name of each quantity to its unit."""
+        return {number: QUANTITIES[split_name(number)[0]][0] for number in self.numbers}
 
     def __call__(self, run: Run) -> dict[str, float]:
-        """The numbers of a run."""
+        """Return the quantities of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """The numbers of several runs."""
-        return {number: self._number(runs, *split(number)) for number in self.numbers}
+        """Return the quantities of r runs; (r,) each."""
+        return {number: self._number(runs, *split_name(number)) for number in self.numbers}
 
-    def _number(self, runs: Runs, kind: str, one: str) -> Vector:
-        # Without the first sample: a round number of them has a spectrum ten times as quick as a prime one.
+    def _number(self, runs: Runs, quantity: str, suffix: str) -> Vector:
+        # Without the first sample: the FFT of a round number of samples is ten times as fast as that of a prime number.
         kept = slice(round(self.skip / runs.timestep) + 1, None)
-        if kind == "comfort":
+        if quantity == "comfort":
             value = comfort_values(runs.timestep, runs.stacked(*RAIL)[:, :, kept])
-            return value.axes[:, AXES.index(one)] if one else value.overall
-        if kind in ("weighted", "seat"):
-            each = runs.stacked(*(RAIL if kind == "weighted" else SEAT))
-            return np.array([weighted_rms_of(runs.timestep, xyz, skip=self.skip)[3] for xyz in each])
-        if kind in ("tyre_load", "lowest_load"):
-            wheels = [one] if one else self.wheels
+            return value.axes[:, AXES.index(suffix)] if suffix else value.overall
+        if quantity in ("weighted", "seat"):
+            histories = runs.stacked(*(RAIL if quantity == "weighted" else SEAT))
+            return np.array([weighted_rms_of(runs.timestep, xyz, skip=self.skip)[3] for xyz in histories])
+        if quantity in ("tyre_load", "lowest_load"):
+            wheels = [suffix] if suffix else self.wheels
             loads = [runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel in wheels]
-            if kind == "lowest_load":
+            if quantity == "lowest_load":
                 return np.asarray(np.min([np.min(load, axis=1) for load in loads], axis=0))
             return np.asarray(np.sqrt(np.mean([np.mean((load - 1.0) ** 2, axis=1) for load in loads], axis=0)))
-        velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in ([one] if one else self.dampers)}
-        if kind == "slip_share":
-            shares = [slip_shares(one[:, kept], runs.slip_velocity) for one in velocity.values()]
+        velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in ([suffix] if suffix else self.dampers)}
+        if quantity == "slip_share":
+            shares = [slip_shares(history[:, kept], runs.slip_velocity) for history in velocity.values()]
             return np.asarray(np.mean(shares, axis=0))
         travel = [
-            scipy.integrate.cumulative_trapezoid(one, dx=runs.timestep, axis=1, initial=0.0)[:, kept]
-            for one in velocity.values()
+            scipy.integrate.cumulative_trapezoid(history, dx=runs.timestep, axis=1, initial=0.0)[:, kept]
+            for history in velocity.values()
         ]
-        return np.asarray(np.max([np.max(np.abs(one), axis=1) for one in travel], axis=0))
+        return np.asarray(np.max([np.max(np.abs(history), axis=1) for history in travel], axis=0))
 
 
-def split(number: str) -> tuple[str, str]:
-    """Kind of a number, and the axis or wheel behind it; empty for all."""
-    kind = max((kind for kind in KINDS if f"{number}_".startswith(f"{kind}_")), key=len, default="")
-    return kind, number[len(kind) + 1 :]
+def split_name(number: str) -> tuple[str, str]:
+    """Return quantity and suffix (axis or wheel; empty for all) of the name of a number."""
+    quantity = max(
+        (quantity for quantity in QUANTITIES if f"{number}_".startswith(f"{quantity}_")), key=len, default=""
+    )
+    return quantity, number[len(quantity) + 1 :]
 
 
 def ride_measure(vehicle: Vehicle, numbers: tuple[str, ...], skip: float) -> RideMeasure:
-    """The measure of numbers of a car.
+    """Return the measure of given quantities of a car.
 
     Args:
-        vehicle: the car.
-        numbers: their names.
-        skip: seconds left out at the beginning.
+        vehicle: the vehicle.
+        numbers: names of the quantities.
+        skip: excluded time at the beginning [s].
 
     Raises:
-        ConfigurationError: a number that the car does not have.
+        ConfigurationError: the vehicle lacks a quantity.
     """
     names = {damper.name for damper in vehicle.composition.dampers}
     dampers = tuple(wheel for wheel in vehicle.wheels if f"damper_{wheel}" in names)
@@ -134,8 +136,8 @@ def ride_measure(vehicle: Vehicle, numbers: tuple[str, ...], skip: float) -> Rid
         has["seat"] = ("",)
     if not dampers:
         del has["travel"], has["slip_share"]
-    known = [f"{kind}_{one}".rstrip("_") for kind, ones in has.items() for one in ones]
+    available = [f"{quantity}_{suffix}".rstrip("_") for quantity, suffixes in has.items() for suffix in suffixes]
     for number in numbers:
-        if number not in known:
-            raise ConfigurationError(f"no number {number!r} of {vehicle.name}; there are {', '.join(known)}")
+        if number not in available:
+            raise ConfigurationError(f"{vehicle.name} has no quantity {number!r}; choose from {', '.join(available)}")
     return RideMeasure(numbers=tuple(dict.fromkeys(numbers)), wheels=vehicle.wheels, dampers=dampers, skip=skip)

@@ -1,4 +1,4 @@
-"""Files of a finished search: the front as table and picture, a vehicle file for each named car, the summary."""
+"""Files of a finished search: front as table and picture, vehicle files of the named cars, summary."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ FRONT = "front.csv"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Beside:
-    """The front of another search with the same objectives.
+class OtherFront:
+    """Pareto front of another search with the same objectives.
 
     Attributes:
-        folder: of it.
-        values: its objectives; (f, goals).
+        folder: folder of the other search.
+        values: objectives of the other front; (f, goals).
     """
 
     folder: Path
     values: Vector
 
 
-def read_beside(folder: Path, problem: Problem) -> Beside:
-    """The front of another search.
+def read_other_front(folder: Path, problem: Problem) -> OtherFront:
+    """Read the Pareto front of another search.
 
     Raises:
-        DataError: there is none, or it has not these objectives.
+        DataError: the folder contains no front with the objectives of the problem.
     """
     goals = columns(problem)[len(problem.ranges) :][: len(problem.goals)]
     try:
@@ -51,120 +51,130 @@ def read_beside(folder: Path, problem: Problem) -> Beside:
         values = np.array([[float(row[goal]) for goal in goals] for row in rows]).reshape(len(rows), len(goals))
     except (OSError, KeyError, TypeError, ValueError, UnicodeDecodeError):
         raise DataError(
-            f"--beside {folder}: holds no {FRONT} with the columns {', '.join(goals)}; give the folder of a finished "
-            "search with these objectives"
+            f"--beside {folder}: contains no {FRONT} with the columns {', '.join(goals)}; specify the folder of a "
+            "finished search with these objectives"
         ) from None
     if not rows:
-        raise DataError(f"--beside {folder}: its {FRONT} has no rows")
-    return Beside(folder=folder, values=values)
+        raise DataError(f"--beside {folder}: {FRONT} has no rows")
+    return OtherFront(folder=folder, values=values)
 
 
-def agreement(found: Outcome, beside: Beside) -> dict[str, float]:
-    """How the front of another search differs: its hypervolume less ours over ours, mean distance of both ways [-]."""
-    costs, other = found.costs, found.problem.costs(beside.values)
+def agreement(outcome: Outcome, beside: OtherFront) -> dict[str, float]:
+    """Compare the front of another search: relative difference of the hypervolume, and mean distance [-].
+
+    The distance is the mean of the distances in both directions, in extents of both fronts.
+    """
+    costs, other = outcome.costs, outcome.problem.costs(beside.values)
     both = np.concatenate([costs, other])
     ours, theirs = hypervolume(costs, both), hypervolume(other, both)
     mean = 0.5 * (distance(costs, other) + distance(other, costs))
     return {"hypervolume_change": theirs / ours - 1.0, "mean_distance": mean}
 
 
-def front_text(found: Outcome, nominal: Vector | None) -> str:
-    """The front as CSV.
+def front_text(outcome: Outcome, nominal: Vector | None) -> str:
+    """Return the front as CSV.
 
     Args:
-        found: the search.
-        nominal: numbers of its cars without tolerances, (f, wishes); None where there are none.
+        outcome: outcome of the search.
+        nominal: values of the cars of the front without tolerances, (f, criteria); None for a search without them.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    wishes = [f"{wish.label} without tolerances [{wish.unit}]" for wish in found.problem.wishes]
-    writer.writerow(["name", *columns(found.problem), *([] if nominal is None else wishes)])
-    names = {row: " and ".join(name for name, one in found.named.items() if one == row) for row in found.front}
-    for number, row in enumerate(found.front):
+    criteria = [f"{criterion.label} without tolerances [{criterion.unit}]" for criterion in outcome.problem.criteria]
+    writer.writerow(["name", *columns(outcome.problem), *([] if nominal is None else criteria)])
+    names = {
+        row: " and ".join(name for name, named_row in outcome.named.items() if named_row == row)
+        for row in outcome.front
+    }
+    for number, row in enumerate(outcome.front):
         more = [] if nominal is None else cells(nominal[number])
-        writer.writerow([names[row], *cells(found.tried.points[row]), *cells(found.tried.values[row]), *more])
+        writer.writerow([names[row], *cells(outcome.tried.points[row]), *cells(outcome.tried.values[row]), *more])
     return text.getvalue()
 
 
-def picture_of(found: Outcome, beside: Beside | None) -> FrontPicture:
-    """The picture of a search."""
-    problem, goals = found.problem, len(found.problem.goals)
-    values = found.tried.values[:, :goals]
+def picture_of(outcome: Outcome, beside: OtherFront | None) -> FrontPicture:
+    """Return the data of the picture of a search."""
+    problem, goals = outcome.problem, len(outcome.problem.goals)
+    values = outcome.tried.values[:, :goals]
     heads = columns(problem)
     return FrontPicture(
         objectives=heads[len(problem.ranges) :][:goals],
-        tried=values[found.tried.kept(problem)],
-        front=values[found.front],
-        base=found.base.values[0, :goals],
-        named={name: values[row] for name, row in found.named.items()},
+        tried=values[outcome.tried.kept(problem)],
+        front=values[outcome.front],
+        base=outcome.base.values[0, :goals],
+        named={name: values[row] for name, row in outcome.named.items()},
         other=None if beside is None else (f"front of {beside.folder.name}", beside.values),
         parameters=heads[: len(problem.ranges)],
-        shares=problem.share(found.tried.points[found.front]),
+        shares=problem.share(outcome.tried.points[outcome.front]),
         base_shares=problem.share(np.array(problem.base)),
     )
 
 
 def write_search(
     folder: Path,
-    found: Outcome,
+    outcome: Outcome,
     cars: Mapping[str, Car],
     *,
     summary: Mapping[str, Any],
     caption: str,
     nominal: Vector | None = None,
-    beside: Beside | None = None,
+    beside: OtherFront | None = None,
 ) -> None:
-    """Write all files of a finished search but the cars that were tried.
+    """Write all files of a finished search except the table of the cars tried.
 
     Args:
-        folder: where to.
-        found: the search.
-        cars: those with a name.
-        summary: what it says beside.
-        caption: of the picture.
-        nominal: as of `front_text`.
-        beside: another search to put beside.
+        folder: folder of the files.
+        outcome: outcome of the search.
+        cars: name to named car.
+        summary: further entries of the summary.
+        caption: caption of the picture.
+        nominal: values without tolerances, see `front_text`.
+        beside: front of another search for comparison.
     """
-    write_text(folder / FRONT, front_text(found, nominal))
-    write_whole(folder / "front.png", lambda path: plot_front(path, picture_of(found, beside), caption))
+    write_text(folder / FRONT, front_text(outcome, nominal))
+    write_whole(folder / "front.png", lambda path: plot_front(path, picture_of(outcome, beside), caption))
     files = {"front": FRONT, "picture": "front.png"}
     files |= {"cars": CARS} if (folder / CARS).exists() else {}
     files["summary"] = "summary.json"
     points = {}
-    for name, row in found.named.items():
+    for name, row in outcome.named.items():
         file = re.sub(r"[^A-Za-z0-9_.-]+", "_", name) + ".toml"
         header = f"{name} of a search; made with {' '.join(cars[name].overrides)}"
         write_text(folder / file, parameters_text(cars[name], header))
         files |= {name: file, **write_own_files(folder, cars[name])}
-        point = dict(zip((one.path for one in found.problem.ranges), found.tried.points[row].tolist(), strict=True))
+        paths = [bounds.path for bounds in outcome.problem.ranges]
+        point = dict(zip(paths, outcome.tried.points[row].tolist(), strict=True))
         points[name] = {"vehicle": file, "overrides": list(cars[name].overrides), "parameters": point}
-        points[name]["numbers"] = numbers(found.problem, found.tried.values[row])
-    problem = found.problem
+        points[name]["numbers"] = numbers(outcome.problem, outcome.tried.values[row])
+    problem = outcome.problem
     write_json(
         folder / "summary.json",
         {
             **summary,
             "parameters": [
                 {
-                    "path": one.path,
+                    "path": bounds.path,
                     "unit": unit,
-                    "low": one.low,
-                    "high": one.high,
+                    "low": bounds.low,
+                    "high": bounds.high,
                     "base": None if base != base else base,
                 }
-                for one, unit, base in zip(problem.ranges, problem.units, problem.base, strict=True)
+                for bounds, unit, base in zip(problem.ranges, problem.units, problem.base, strict=True)
             ],
-            "objectives": [{"number": one.label, "unit": one.unit, "sense": one.sense} for one in problem.goals],
-            "limits": [one.words for one in problem.limits],
+            "objectives": [
+                {"number": criterion.label, "unit": criterion.unit, "sense": criterion.sense}
+                for criterion in problem.goals
+            ],
+            "limits": [criterion.expression for criterion in problem.limits],
             "cars": {
-                "tried": len(found.tried.reasons),
-                "keep_the_limits": int(np.count_nonzero(found.tried.kept(problem))),
-                "failed": sum(bool(reason) for reason in found.tried.reasons),
-                "on_the_front": found.whole,
+                "tried": len(outcome.tried.reasons),
+                "keep_the_limits": int(np.count_nonzero(outcome.tried.kept(problem))),
+                "failed": sum(bool(reason) for reason in outcome.tried.reasons),
+                "on_the_front": outcome.front_size,
             },
-            "hypervolume_reached": {f"{part:g}": share for part, share in found.reached.items()},
-            "beside": None if beside is None else {"folder": str(beside.folder), **agreement(found, beside)},
-            BASE: numbers(problem, found.base.values[0]),
+            "hypervolume_reached": {f"{part:g}": share for part, share in outcome.reached.items()},
+            "beside": None if beside is None else {"folder": str(beside.folder), **agreement(outcome, beside)},
+            BASE: numbers(problem, outcome.base.values[0]),
             "points": points,
             "files": files,
         },
@@ -172,6 +182,6 @@ def write_search(
 
 
 def numbers(problem: Problem, values: Sequence[float]) -> dict[str, float | None]:
-    """Label to number, None where it does not exist."""
-    pairs = zip(problem.wishes, values, strict=True)
-    return {wish.words: None if value != value else float(value) for wish, value in pairs}
+    """Return objective or limit to value, None for NaN."""
+    pairs = zip(problem.criteria, values, strict=True)
+    return {criterion.expression: None if value != value else float(value) for criterion, value in pairs}

@@ -1,4 +1,4 @@
-"""The parameters of a search in a car: which values they set, their units, what the car has there."""
+"""Parameters of a search in a vehicle: full paths, units, and values of the unmodified car."""
 
 from __future__ import annotations
 
@@ -11,79 +11,82 @@ from vehicle.model.parameters.paths import meant, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.toml_file import as_table
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
-from vehicle.studies.optimisation.problem import Problem, Tolerance, Wish
+from vehicle.studies.optimisation.problem import Criterion, Problem, Tolerance
 
 
 def values_at(vehicle: Vehicle, option: str, path: str) -> dict[str, float]:
-    """Whole paths that a path stands for, and their values.
+    """Return full path to value for all parameters that a path refers to.
 
     Args:
-        vehicle: the car.
-        option: that names the path, for messages.
-        path: as of `vehicle.model.parameters.paths`.
+        vehicle: the vehicle.
+        option: name of the option with the path, for messages.
+        path: path of a parameter, see `vehicle.model.parameters.paths`.
 
     Raises:
-        ConfigurationError: there is no such number.
+        ConfigurationError: the path is not a numeric parameter of the vehicle.
     """
     try:
-        return {place: value_of(vehicle, place) for place in meant(as_table(vehicle), path)}
+        return {full: value_of(vehicle, full) for full in meant(as_table(vehicle), path)}
     except ConfigurationError as error:
         raise ConfigurationError(f"{option} {path}: {error}") from None
 
 
-def problem_of(vehicle: Vehicle, ranges: Sequence[Range], wishes: Sequence[Wish], inputs: Sequence[str]) -> Problem:
-    """A search in a car.
+def problem_of(
+    vehicle: Vehicle, ranges: Sequence[Range], criteria: Sequence[Criterion], inputs: Sequence[str]
+) -> Problem:
+    """Return the optimisation problem of a vehicle.
 
     Args:
-        vehicle: the car.
-        ranges: parameters.
-        wishes: objectives and limits, with their units.
-        inputs: names.
+        vehicle: the vehicle.
+        ranges: parameters with bounds.
+        criteria: objectives and limits, with their units.
+        inputs: names of the inputs.
 
     Raises:
-        ConfigurationError: there is no parameter, it is no number of the car, or two of them set the same one.
+        ConfigurationError: no parameter, a parameter is not a number of the vehicle, or two set the same value.
     """
     if not ranges:
-        raise ConfigurationError("nothing to vary; give --vary PATH=LOW:HIGH, once for each parameter")
-    each = [values_at(vehicle, "--vary", one.path) for one in ranges]
-    _once("--vary", each)
+        raise ConfigurationError("no parameter to vary; add --vary PATH=LOW:HIGH, once for each parameter")
+    each = [values_at(vehicle, "--vary", bounds.path) for bounds in ranges]
+    _require_unique("--vary", each)
     return Problem(
         ranges=tuple(ranges),
-        places=tuple(tuple(values) for values in each),
+        paths=tuple(tuple(values) for values in each),
         units=tuple(str(vehicle.quantity_of(next(iter(values)))["unit"]) for values in each),
         base=tuple(next(iter(values.values())) if len(set(values.values())) == 1 else math.nan for values in each),
-        wishes=tuple(wishes),
+        criteria=tuple(criteria),
         inputs=tuple(inputs),
     )
 
 
 def toleranced(vehicle: Vehicle, tolerances: Sequence[Tolerance]) -> tuple[tuple[Tolerance, Mapping[str, float]], ...]:
-    """Tolerances with their paths and values in a car.
+    """Return tolerances, each with full path to value of the vehicle.
 
     Raises:
-        ConfigurationError: one is no number of the car, or two are of the same one.
+        ConfigurationError: a path is not a number of the vehicle, or two tolerances refer to the same value.
     """
-    each = [values_at(vehicle, "--tolerance", one.path) for one in tolerances]
-    _once("--tolerance", each)
+    each = [values_at(vehicle, "--tolerance", tolerance.path) for tolerance in tolerances]
+    _require_unique("--tolerance", each)
     return tuple(zip(tolerances, each, strict=True))
 
 
-def _once(option: str, each: Sequence[Mapping[str, float]]) -> None:
+def _require_unique(option: str, each: Sequence[Mapping[str, float]]) -> None:
+    """Check that no value is set by two options."""
     paths = [path for values in each for path in values]
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice is not None:
-        raise ConfigurationError(f"{option} {twice}: set by {paths.count(twice)} of these options; give it once")
+        raise ConfigurationError(f"{option} {twice}: set by {paths.count(twice)} of these options; set it once")
 
 
 def require_bounds(vehicle: Path | None, fixed: Sequence[str], problem: Problem) -> None:
-    """Refuse bounds that no car can have, each taken alone, before anything is run.
+    """Check before any run that each bound of each parameter is a valid value of the vehicle.
 
     Raises:
-        ConfigurationError: naming the parameter and why.
+        ConfigurationError: a bound is invalid; the message contains the parameter and the reason.
     """
-    for one, places in zip(problem.ranges, problem.places, strict=True):
-        for value in (one.low, one.high):
+    for bounds, paths in zip(problem.ranges, problem.paths, strict=True):
+        for value in (bounds.low, bounds.high):
             try:
-                load_vehicle(vehicle, [*fixed, *(f"{place}={value!r}" for place in places)])
+                load_vehicle(vehicle, [*fixed, *(f"{path}={value!r}" for path in paths)])
             except ConfigurationError as error:
-                raise ConfigurationError(f"--vary {one.path}={one.low:g}:{one.high:g}: {error}") from None
+                raise ConfigurationError(f"--vary {bounds.path}={bounds.low:g}:{bounds.high:g}: {error}") from None

@@ -1,1 +1,1 @@
-"""Time waveform replication: the drive of the plates that makes the car answer as a measured one did."""
+"""Time waveform replication: plate signals that make the car respond with measured accelerations."""

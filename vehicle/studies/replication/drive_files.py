@@ -1,4 +1,4 @@
-"""Files of a drive that was found from a response: the drive, what it was asked for and what answers, the iteration."""
+"""Files of a replicated drive: plate signals, target and response, iterations, pictures, parameters, summary."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.signals.records.formats import write_record
 from vehicle.signals.records.table import Record
-from vehicle.studies.replication.found_drive import FoundDrive
+from vehicle.studies.replication.drive_search import FoundDrive
 from vehicle.studies.replication.iteration import Replication
 
 FILES = {
@@ -50,43 +50,47 @@ def save_drive(
 
 
 def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
-    """Write all files of a drive; arguments and result as of `save_drive`, the folder as of `output_folder`."""
-    found, plant, run = drive.replication, drive.plant, drive.run
+    """Write all files of a drive to a folder of `output_folder`; result as in `save_drive`."""
+    replication, plant, run = drive.replication, drive.plant, drive.run
     target = plant.target
-    signal, low, high = plant.signal(found.drive), *target.band
-    last = found.steps[-1]
-    errors = dict(zip(target.channels, min(found.steps, key=lambda step: step.error).errors.tolist(), strict=True))
-    about = (
+    signal, low, high = plant.signal(replication.drive), *target.band
+    errors = dict(
+        zip(target.channels, min(replication.steps, key=lambda step: step.error).errors.tolist(), strict=True)
+    )
+    description = (
         f"{target.source.name}, {low:g} to {high:g} Hz; tyres {run.car.vehicle.driving.words}; "
         f"{run.recording.statistics.engine} engine; error "
-        f"{100.0 * found.error:.3g} % after {last.number} runs"
+        f"{100.0 * replication.error:.3g} % after {replication.steps[-1].number} runs"
     )
-    said = [f"plate displacement found from {target.source.name}", f"{low:g} to {high:g} Hz"]
-    write_whole(folder / FILES["drive"], lambda path: write_signal(path, signal, said))
+    header = [f"plate displacement replicated from {target.source.name}", f"{low:g} to {high:g} Hz"]
+    write_whole(folder / FILES["drive"], lambda path: write_signal(path, signal, header))
     channels: dict[str, np.ndarray] = {}
-    for name, wanted, answered in zip(target.channels, target.values, found.response, strict=True):
-        channels |= {f"target_{name}": wanted, name: answered}
+    for name, wanted, response in zip(target.channels, target.values, replication.response, strict=True):
+        channels |= {f"target_{name}": wanted, name: response}
     record = Record(time=target.time, channels=channels, units=dict.fromkeys(channels, "m/s2"))
-    write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, about))
-    write_text(folder / FILES["iterations"], _table(found, target.channels, about))
+    write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, description))
+    write_text(folder / FILES["iterations"], _table(replication, target.channels, description))
     write_whole(
         folder / FILES["response_plot"],
         lambda path: plot_replication(
             path,
             target.time,
-            {name: (target.values[row], found.response[row]) for row, name in enumerate(target.channels)},
-            dict(zip(plant.wheels, found.drive, strict=True)),
+            {name: (target.values[row], replication.response[row]) for row, name in enumerate(target.channels)},
+            dict(zip(plant.wheels, replication.drive, strict=True)),
             target.band,
-            about,
+            description,
         ),
     )
     write_whole(
         folder / FILES["convergence_plot"],
         lambda path: plot_convergence(
             path,
-            {name: np.array([step.errors[row] for step in found.steps]) for row, name in enumerate(target.channels)},
-            np.array([step.kept for step in found.steps]),
-            f"{about}; {found.outcome}",
+            {
+                name: np.array([step.errors[row] for step in replication.steps])
+                for row, name in enumerate(target.channels)
+            },
+            np.array([step.kept for step in replication.steps]),
+            f"{description}; {replication.outcome}",
         ),
     )
     write_text(folder / FILES["vehicle"], parameters_text(plant.car, "parameters of this drive, as used"))
@@ -103,15 +107,18 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
             "rms_m": {wheel: signal.rms(wheel) for wheel in plant.wheels},
             "largest_m": {wheel: float(np.max(np.abs(signal.displacement[wheel]))) for wheel in plant.wheels},
         },
-        "error": found.error,
+        "error": replication.error,
         "errors": errors,
-        "reached": found.reached,
-        "outcome": found.outcome,
+        "reached": replication.reached,
+        "outcome": replication.outcome,
         "engine": run.recording.statistics.engine,
         "engine_reason": run.engine_reason,
-        "equivalent_damping": {one.name: float(value) for one, value in zip(plant.dampers, plant.damping, strict=True)},
+        "equivalent_damping": {
+            damper.name: float(value) for damper, value in zip(plant.dampers, plant.damping, strict=True)
+        },
         "iterations": [
-            {"number": step.number, "gain": step.gain, "error": step.error, "kept": step.kept} for step in found.steps
+            {"number": step.number, "gain": step.gain, "error": step.error, "kept": step.kept}
+            for step in replication.steps
         ],
         "notices": [*target.notices, *plant.ramp, *run.recording.statistics.warnings],
         "files": FILES | write_own_files(folder, plant.car),
@@ -120,12 +127,13 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
     return summary
 
 
-def _table(found: Replication, channels: tuple[str, ...], about: str) -> str:
+def _table(replication: Replication, channels: tuple[str, ...], description: str) -> str:
+    """Return the table of the iterations as CSV."""
     rows = [
         f"{step.number},{step.gain:g},{int(step.kept)},{step.error:.9g},"
         + ",".join(f"{value:.9g}" for value in step.errors)
-        for step in found.steps
+        for step in replication.steps
     ]
     heads = ",".join(["iteration", "gain", "kept", "error", *(f"error_{name}" for name in channels)])
-    return "\n".join([f"# {about}", "# error: RMS of target minus response over RMS of target, in the band [-]", heads,
-                      *rows, ""])  # fmt: skip
+    error = "error: RMS of target minus response over RMS of target, in the band [-]"
+    return "\n".join([f"# {description}", f"# {error}", heads, *rows, ""])

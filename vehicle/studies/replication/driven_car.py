@@ -1,10 +1,10 @@
-"""The car on the plates that are to be found: its runs, and its FRFs about the motion of the last one."""
+"""Car on driven plates for the replication of a drive: its runs, and its FRFs linearised about the last run."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from vehicle.engines.reduced.equivalent import equivalent_damping, linearised_response
+from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.plausibility import (
     LARGEST_ACCELERATION,
@@ -18,17 +18,17 @@ from vehicle.studies.replication.target import Target
 
 
 class DrivenCar:
-    """Plates of a car, as the iteration asks for them.
+    """Car on driven plates, the `Plant` of the iteration.
 
     Args:
         car: the car.
-        wheels: whose plates move, p.
-        target: what is to be met.
-        engine: as of `Car.run`.
+        wheels: wheels on driven plates, (p,).
+        target: accelerations to be replicated.
+        engine: simulation engine, see `Car.run`.
 
     Attributes:
-        settled: samples in which a drive may rise from rest, and whose errors do not count.
-        damping: equivalent constants of the dampers [N s/m], (d,).
+        settled: number of samples at the beginning in which a drive rises from rest; their errors are excluded.
+        damping: equivalent viscous constants of the dampers [N s/m], (d,).
         last: the last run.
     """
 
@@ -37,29 +37,32 @@ class DrivenCar:
         self.dampers = car.vehicle.composition.dampers
         car.vehicle.require_wheels(wheels)
         car.vehicle.require_channels(target.channels, car.vehicle.acceleration_channels)
-        self.damping = np.array([equivalent_damping(one.law, np.zeros(1), np.zeros(1)) for one in self.dampers])
+        self.damping = np.array([equivalent_damping(damper.law, np.zeros(1), np.zeros(1)) for damper in self.dampers])
         step = float(target.time[1])
         self.settled = round(min(RAMP_S, 0.1 * float(target.time[-1])) / step)
         self.last: Run | None = None
         self.ramp: tuple[str, ...] = ()
 
     def run(self, drive: Vector) -> Vector:
-        """Accelerations (k, n) of a run on plate displacements (p, n)."""
-        moving = [f"{one.name}_{kind}" for one in self.dampers for kind in ("velocity", "force")]
+        """Run the car on plate displacements (p, n) and return its accelerations (k, n)."""
+        moving = [f"{damper.name}_{quantity}" for damper in self.dampers for quantity in ("velocity", "force")]
         channels = dict.fromkeys([*self.target.channels, *moving])
         run = self.car.run(self.signal(drive), engine=self.engine, channels=tuple(channels))
         self.damping = np.array(
-            [equivalent_damping(one.law, run[f"{one.name}_velocity"], run[f"{one.name}_force"]) for one in self.dampers]
+            [
+                equivalent_damping(damper.law, run[f"{damper.name}_velocity"], run[f"{damper.name}_force"])
+                for damper in self.dampers
+            ]
         )
         self.last = run
         return np.array([run[name] for name in self.target.channels])
 
     def frf(self, frequency: Vector) -> Complex:
-        """FRFs (k, p, m) [m/s2 per m] with the dampers as the last run has left them."""
+        """Return FRFs (k, p, m) [m/s2 per m] with the equivalent damping of the last run."""
         return linearised_response(self.car.poles, self.damping, self.target.channels, self.wheels, frequency)
 
     def signal(self, drive: Vector) -> Signal:
-        """Drives (p, n) as a signal."""
+        """Return plate displacements (p, n) as a signal."""
         return Signal(
             time=self.target.time,
             displacement=dict(zip(self.wheels, drive, strict=True)),
@@ -68,19 +71,23 @@ class DrivenCar:
         )
 
     def possible(self, drive: Vector) -> tuple[Vector, str]:
-        """The drive from rest on, and why no shaker can run it; empty where one can."""
+        """Let a drive start from rest and check it against the limits of a shaker.
+
+        Returns:
+            Plate displacements (p, n); a message if a shaker cannot run them, else "".
+        """
         step = float(self.target.time[1])
         columns, self.ramp = start_from_rest(dict(zip(self.wheels, drive, strict=True)), timestep=step)
         for wheel, z in columns.items():
-            for values, limit, unit, what in (
+            for values, limit, unit, motion in (
                 (z, LARGEST_DISPLACEMENT, "m", "displaced by"),
                 (band_limited_acceleration(z, step), LARGEST_ACCELERATION, "m/s2", "accelerated by"),
             ):
                 at = int(np.argmax(np.abs(values)))
                 if abs(values[at]) > limit:
                     return drive, (
-                        f"plate {wheel} would have to be {what} {abs(values[at]):.4g} {unit} at "
-                        f"t = {at * step:.4g} s, a shaker does up to {limit:g} {unit}; look at the unit of the target "
-                        f"(--unit), or give a narrower --band than {self.target.band[0]:g}:{self.target.band[1]:g}"
+                        f"plate {wheel} would have to be {motion} {abs(values[at]):.4g} {unit} at "
+                        f"t = {at * step:.4g} s, a shaker is limited to {limit:g} {unit}; check the unit of the target "
+                        f"(--unit), or use a narrower --band than {self.target.band[0]:g}:{self.target.band[1]:g}"
                     )
         return np.array(list(columns.values())), ""

@@ -1,10 +1,10 @@
-"""The iteration of time waveform replication, for anything that answers a drive.
+"""Iteration of time waveform replication for any plant with responses and FRFs.
 
     U_(k+1) = U_k + G H_k^+ (Y_target - Y_k)
 
-on the lines of the whole record. H_k belongs to the state of the last run: where the system is nonlinear, it is taken
-anew, which makes of the fixed compensation of a test rig a quasi-Newton method. A step that makes the error larger is
-taken back and tried again with half the gain.
+on the spectral lines of the whole record. H_k is the FRF linearised about the last run, updated after each step. For a
+nonlinear plant this is a quasi-Newton method; a test rig uses a fixed H. A step that increases the error is undone and
+repeated with half the gain.
 """
 
 from __future__ import annotations
@@ -19,33 +19,32 @@ import numpy.typing as npt
 from vehicle.studies.replication.inverse import Complex, Lines, Vector, regularised_inverse
 
 HALVINGS = 3
-"""Steps that are taken back one after the other, each with half the gain of the one before, until it is called
-divergence."""
+"""Number of consecutive undone steps, each with half the gain, after which the iteration counts as diverging."""
 
 STALLED = 0.02
-"""Relative gain of a step below which no further one is taken."""
+"""Minimum relative reduction of the error by a step with gain 1; the iteration ends below it."""
 
 
 class Plant(Protocol):
-    """What is driven."""
+    """Driven system: a car on plates, or a test system."""
 
     def run(self, drive: Vector) -> Vector:
-        """Responses (k, n) to drives (p, n)."""
+        """Return responses (k, n) to drives (p, n)."""
 
     def frf(self, frequency: Vector) -> Complex:
-        """FRFs about the state of the last run, at rest before the first: (k, p, m) at lines (m,) [Hz]."""
+        """Return FRFs (k, p, m) at frequencies (m,) [Hz], linearised about the last run; before it about rest."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
-    """One run of the iteration.
+    """Run of the iteration with its error.
 
     Attributes:
-        number: 1 for the first.
-        gain: G of the step that led to it.
-        error: of all responses, root of the mean square of those below [-].
-        errors: RMS of target minus response over that of the target, in the band, (k,) [-].
-        kept: whether it was better than all before.
+        number: number of the run, from 1.
+        gain: gain G of the step before the run [-].
+        error: root of the mean square of `errors` [-].
+        errors: RMS of target minus response over RMS of the target, in the band, (k,) [-].
+        kept: True if the error is below those of all runs before.
     """
 
     number: int
@@ -57,14 +56,14 @@ class Step:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Replication:
-    """The best drive and how it was found.
+    """Result of the iteration: the best drive with its response, and all steps.
 
     Attributes:
-        drive: (p, n).
-        response: what answers it, (k, n).
+        drive: best drive, (p, n).
+        response: response to the best drive, (k, n).
         steps: all runs.
-        reached: whether the error fell below the tolerance.
-        outcome: why it ended.
+        reached: True if the error fell below the tolerance.
+        outcome: reason for the end of the iteration.
     """
 
     drive: Vector
@@ -75,7 +74,7 @@ class Replication:
 
     @property
     def error(self) -> float:
-        """Of the best run [-]."""
+        """Return the error of the best run [-]."""
         return min((step.error for step in self.steps), default=1.0)
 
 
@@ -88,56 +87,58 @@ def replicate(
     gain: float,
     tolerance: float,
     possible: Callable[[Vector], tuple[Vector, str]] = lambda drive: (drive, ""),
-    said: Callable[[Step], None] = lambda step: None,
+    progress: Callable[[Step], None] = lambda step: None,
     settled: int = 0,
 ) -> Replication:
-    """Find the drive that answers with a target.
+    """Find the drive whose response is nearest to a target.
 
     Args:
-        plant: at rest before its first run.
-        target: responses (k, n).
-        lines: of the record, with the band.
-        iterations: runs at most.
-        gain: G, above 0 and up to 1.
-        tolerance: relative error that is good enough [-].
-        possible: makes of a drive the one that can be run, and says why it cannot, if so.
-        said: told every run.
-        settled: first sample whose error counts.
+        plant: driven system, at rest before its first run.
+        target: target responses (k, n).
+        lines: spectral lines of the record, with the band.
+        iterations: maximum number of runs.
+        gain: gain G, above 0 and up to 1 [-].
+        tolerance: relative error at which the iteration ends [-].
+        possible: function that returns a feasible drive for a drive, and a message if there is none, else "".
+        progress: called with the step of each run.
+        settled: index of the first sample whose error is included.
 
     Returns:
-        The best drive; at rest with an error of 1 where nothing was better.
+        The best drive; a drive at rest with an error of 1 if no run has a smaller error.
     """
     wanted = lines.in_band(target)[:, settled:]
     sizes = np.sqrt(np.mean(wanted**2, axis=1))
     drive, response = np.zeros((plant.frf(lines.frequency[:1]).shape[1], target.shape[1])), np.zeros_like(target)
     inverse = regularised_inverse(plant.frf(lines.frequency), lines.frequency, sizes)
-    best, now, failures, steps = 1.0, gain, 0, list[Step]()
-    outcome = f"the {iterations} iterations asked for are done"
+    smallest, current_gain, failures, steps = 1.0, gain, 0, list[Step]()
+    outcome = f"maximum number of {iterations} iterations reached"
     for number in range(1, iterations + 1):
-        tried, why = possible(drive + now * lines.correction(inverse, target - response))
-        if why:
-            outcome = why
+        tried, obstacle = possible(drive + current_gain * lines.correction(inverse, target - response))
+        if obstacle:
+            outcome = obstacle
             break
-        answer = plant.run(tried)
-        left = lines.in_band(target - answer)[:, settled:]
-        errors = np.sqrt(np.mean(left**2, axis=1)) / sizes
+        tried_response = plant.run(tried)
+        residual = lines.in_band(target - tried_response)[:, settled:]
+        errors = np.sqrt(np.mean(residual**2, axis=1)) / sizes
         error = float(np.sqrt(np.mean(errors**2)))
-        kept = error < best
-        steps.append(Step(number=number, gain=now, error=error, errors=errors, kept=kept))
-        said(steps[-1])
+        kept = error < smallest
+        steps.append(Step(number=number, gain=current_gain, error=error, errors=errors, kept=kept))
+        progress(steps[-1])
         if not kept:
-            failures, now = failures + 1, 0.5 * now
+            failures, current_gain = failures + 1, 0.5 * current_gain
             if failures == HALVINGS:
-                outcome = f"diverging: {failures} steps in a row, each of half the gain, made the error larger"
+                outcome = f"diverging: {failures} consecutive steps, each with half the gain, increased the error"
                 break
             continue
-        before, best, failures = best, error, 0
-        drive, response = tried, answer
-        if best <= tolerance:
+        before, smallest, failures = smallest, error, 0
+        drive, response = tried, tried_response
+        if smallest <= tolerance:
             outcome = f"the error fell below {100.0 * tolerance:g} %"
             break
-        if before - best < STALLED * before * now:
-            outcome = f"no further progress: the last step made the error smaller by less than {100 * STALLED:g} %"
+        if before - smallest < STALLED * before * current_gain:
+            outcome = f"no further progress: the last step reduced the error by less than {100 * STALLED:g} %"
             break
         inverse = regularised_inverse(plant.frf(lines.frequency), lines.frequency, sizes)
-    return Replication(drive=drive, response=response, steps=tuple(steps), reached=best <= tolerance, outcome=outcome)
+    return Replication(
+        drive=drive, response=response, steps=tuple(steps), reached=smallest <= tolerance, outcome=outcome
+    )

@@ -1,4 +1,4 @@
-"""Measured accelerations that the car is to answer with, on the samples of its runs."""
+"""Measured accelerations to be replicated, resampled to the rate of the runs."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ from vehicle.signals.records.table import USABLE
 from vehicle.studies.replication.inverse import Lines, Vector
 
 LEAST_PERIODS = 2.0
-"""Periods of the lower edge that a record must hold."""
+"""Minimum length of a record in periods of the lower edge."""
 
 HIGHEST = 100.0
-"""Largest upper edge [Hz]: up to it the recorded accelerations are true within 0.02 %."""
+"""Maximum upper edge [Hz]: up to 100 Hz recorded accelerations are exact within 0.02 %."""
 
 SMALLEST = 1e-6
-"""RMS of an acceleration in the band [m/s2] below which no sensor has seen motion."""
+"""Minimum RMS of an acceleration in the band [m/s2]: a smaller value is below the noise of any sensor."""
 
 OUTSIDE = 0.05
-"""Share of the variance of a target outside the band from which on it is mentioned."""
+"""Maximum share of the variance of a target outside the band without a notice."""
 
 OVERSAMPLING = 20.0
-"""Samples for each period of the upper edge between which a cubic spline is drawn: its error is below 3e-5 there."""
+"""Samples per period of the upper edge for the interpolation by a cubic spline, whose error is then below 3e-5."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Target:
-    """Accelerations to be met.
+    """Accelerations to be replicated.
 
     Attributes:
-        channels: of the car, k.
-        time: [s], (n,), from 0.
-        values: [m/s2], (k, n).
-        lines: of the record, with the band.
-        band: edges [Hz].
-        source: the file.
-        sha256: of its bytes.
-        notices: what was done to them.
+        channels: channels of the car, (k,).
+        time: sampling times from 0 [s], (n,).
+        values: accelerations [m/s2], (k, n).
+        lines: spectral lines of the record, with the band.
+        band: lower and upper edge [Hz].
+        source: measurement file.
+        sha256: digest of the file.
+        notices: messages on the processing of the file.
     """
 
     channels: tuple[str, ...]
@@ -60,18 +60,18 @@ class Target:
 
 
 def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tuple[float, float], rate: float) -> Target:
-    """Read a target.
+    """Read accelerations from a measurement file as a target.
 
     Args:
-        path: a measurement file of any format.
-        names: channel of the car to the number, exact name, or pattern of the one in the file.
-        choice: what else is asked of the file.
-        band: edges [Hz].
-        rate: samples a second of the runs [Hz].
+        path: measurement file of any format.
+        names: channel of the car to number, exact name, or pattern of the channel of the file.
+        choice: units, rate, filters and excerpt of the file.
+        band: lower and upper edge [Hz].
+        rate: sampling rate of the runs [Hz].
 
     Raises:
-        ConfigurationError: a band that the record does not hold.
-        DataError: bad data, another quantity than acceleration, nothing in the band.
+        ConfigurationError: the record does not cover the band.
+        DataError: bad data, another quantity than acceleration, or no vibration in the band.
     """
     measurement = read_record(path, choice.databases)
     times = {role: name for role, name in choice.channels.items() if role == "time"}
@@ -80,35 +80,36 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     for role, quantity in chosen.quantities.items():
         if quantity != "acceleration":
             raise DataError(
-                f"{path}: {role}: found a {quantity}; a drive is found from accelerations; choose another channel, or "
-                f"give --unit {role}=m/s2 or {role}=g if the file is wrong"
+                f"{path}: {role}: found a {quantity}; replication needs accelerations; choose another channel, or "
+                f"set --unit {role}=m/s2 or {role}=g if the file is wrong"
             )
     values, notices = dict(chosen.values), list(chosen.notices)
     if choice.highpass is not None:
-        values, said = filtered(chosen, choice.highpass)
-        notices = list(said)
+        values, messages = filtered(chosen, choice.highpass)
+        notices = list(messages)
     count = chosen.time.size
     if count < MINIMUM_SAMPLES:
-        raise DataError(f"{path}: {count} samples; allowed from {MINIMUM_SAMPLES} on; this is no record of a vibration")
+        raise DataError(f"{path}: {count} samples, must be at least {MINIMUM_SAMPLES}; use a record of a vibration")
     step = float(chosen.time[-1] - chosen.time[0]) / (count - 1)
     _check_band(path, band, step, count, chosen.highest)
-    found, said_of_band = _on_samples(np.array([values[name] for name in names]), step, band, rate)
-    lines = Lines(found.shape[1], 1.0 / rate, band)
+    accelerations, rate_notices = _resampled(np.array([values[name] for name in names]), step, band, rate)
+    lines = Lines(accelerations.shape[1], 1.0 / rate, band)
     notices += [
-        f"{one} and {other} hold the same samples: right for heave alone; else choose another: --channel {other}=NAME"
-        for one, other in copies(chosen.values)
+        f"{first} and {second} have the same samples, as in pure heave; otherwise choose another: "
+        f"--channel {second}=NAME"
+        for first, second in copies(chosen.values)
     ]
-    notices += [*said_of_band, *_outside(names, np.array([values[name] for name in names]), found, lines, band)]
-    for name, inside in zip(names, lines.in_band(found), strict=True):
+    notices += [*rate_notices, *_outside(names, np.array([values[name] for name in names]), accelerations, lines, band)]
+    for name, inside in zip(names, lines.in_band(accelerations), strict=True):
         if float(np.std(inside)) < SMALLEST:
             raise DataError(
-                f"{path}: {name}: RMS {np.std(inside):.3g} m/s2 between {band[0]:g} and {band[1]:g} Hz; needed is at "
+                f"{path}: {name}: RMS {np.std(inside):.3g} m/s2 between {band[0]:g} and {band[1]:g} Hz, must be at "
                 f"least {SMALLEST:g} m/s2; choose another channel or --band"
             )
     return Target(
         channels=tuple(names),
-        time=uniform_time(samples=found.shape[1], timestep=1.0 / rate),
-        values=found,
+        time=uniform_time(samples=accelerations.shape[1], timestep=1.0 / rate),
+        values=accelerations,
         lines=lines,
         band=band,
         source=path,
@@ -118,16 +119,21 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
 
 
 def _check_band(path: Path, band: tuple[float, float], step: float, count: int, held: float) -> None:
+    """Check that a record covers a band; `held` is the highest frequency of its content [Hz]."""
     lowest, highest = LEAST_PERIODS / (step * (count - 1)), min(USABLE / step, held, HIGHEST)
     if not lowest <= band[0] < band[1] <= highest * (1.0 + 1e-9):
         raise ConfigurationError(
-            f"--band {band[0]:g}:{band[1]:g}: {path} holds {step * (count - 1):.4g} s at {1.0 / step:.6g} Hz, so the "
-            f"edges may be {lowest:.3g} to {highest:.4g} Hz, the lower one first"
+            f"--band {band[0]:g}:{band[1]:g}: {path} contains {step * (count - 1):.4g} s at {1.0 / step:.6g} Hz; the "
+            f"edges must be ascending and within {lowest:.3g} to {highest:.4g} Hz"
         )
 
 
-def _on_samples(values: Vector, step: float, band: tuple[float, float], rate: float) -> tuple[Vector, list[str]]:
-    """Records at another rate: their spectrum up to the end of the band, evaluated finely, and splines between."""
+def _resampled(values: Vector, step: float, band: tuple[float, float], rate: float) -> tuple[Vector, list[str]]:
+    """Resample records to a rate: oversampled inverse FFT up to the end of the band, then cubic splines.
+
+    Returns:
+        Records at the rate; a notice if the rate differs from that of the records.
+    """
     if abs(rate * step - 1.0) < 1e-9:
         return values, []
     count = values.shape[1]
@@ -138,18 +144,20 @@ def _on_samples(values: Vector, step: float, band: tuple[float, float], rate: fl
     fine = finer * scipy.fft.irfft(spectrum, finer * lines.size)[:, : finer * count]
     samples = int(np.floor(step * (count - 1) * rate * (1.0 + 1e-9))) + 1
     at = np.minimum(np.arange(samples) / rate, step * (count - 1))
-    found = scipy.interpolate.CubicSpline(np.arange(fine.shape[1]) * (step / finer), fine, axis=1)(at)
-    return found, [f"target brought from {1.0 / step:.6g} Hz to the {rate:g} Hz of the runs, up to {band[1]:g} Hz"]
+    resampled = scipy.interpolate.CubicSpline(np.arange(fine.shape[1]) * (step / finer), fine, axis=1)(at)
+    return resampled, [
+        f"target resampled from {1.0 / step:.6g} Hz to the {rate:g} Hz of the runs, up to {band[1]:g} Hz"
+    ]
 
 
 def _outside(
     names: Sequence[str] | Mapping[str, str], as_found: Vector, values: Vector, lines: Lines, band: tuple[float, float]
 ) -> list[str]:
-    """A notice for each target of which a part lies outside the band and is left out."""
+    """Return a notice for each target with a significant part outside the band, which is not replicated."""
     shares = 1.0 - np.var(lines.in_band(values), axis=1) / np.maximum(np.var(as_found, axis=1), 1e-300)
     return [
-        f"{name}: {100.0 * share:.0f} % of the variance of the target lies outside {band[0]:g} to {band[1]:g} Hz and "
-        "is not replicated"
+        f"{name}: {100.0 * share:.0f} % of the variance of the target is outside {band[0]:g} to {band[1]:g} Hz and not "
+        "replicated"
         for name, share in zip(names, shares, strict=True)
         if share > OUTSIDE
     ]

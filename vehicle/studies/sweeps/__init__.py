@@ -1,1 +1,1 @@
-"""Many runs of the car: tables of variations over any executor, and what comfort answers to."""
+"""Sweeps: many runs of a car on any executor, tables of values, and global sensitivity indices."""

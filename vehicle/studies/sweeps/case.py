@@ -1,4 +1,4 @@
-"""One run of a sweep: a car with changed parameters on an input."""
+"""Case of a sweep: a car with modified parameters on an input."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from vehicle.signals.excitation.signal_file import read_signal
 
 
 class Input(Protocol):
-    """What excites the car in a case: small, picklable, hashable."""
+    """Excitation of the car in a case: small, picklable, hashable."""
 
     @property
     def name(self) -> str:
-        """Name in tables."""
+        """Return the name in tables."""
 
     def signal(self) -> Signal:
-        """Make or read the signal."""
+        """Generate or read the signal."""
 
     def identity(self) -> dict[str, object]:
-        """Plain data that tell the signal from every other."""
+        """Return plain data that identify the signal."""
 
     def __hash__(self) -> int:
-        """Equal inputs are made once per process."""
+        """Return a hash; the signals of equal inputs are generated once per process."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,9 +40,9 @@ class SignalFile:
     """Signal file as an input.
 
     Attributes:
-        path: the file, resolved where the sweep is started.
-        wheel: driven by a signal that names no wheel; `Vehicle.shaker_wheel` is that of a car.
-        accept_implausible: accept levels that no shaker has.
+        path: absolute path of the file.
+        wheel: driven wheel for a file without wheel names; `Vehicle.shaker_wheel` of the car.
+        accept_implausible: accept levels above those of any shaker.
     """
 
     path: Path
@@ -51,7 +51,7 @@ class SignalFile:
 
     @property
     def name(self) -> str:
-        """Name in tables."""
+        """Return the name in tables."""
         return self.path.stem
 
     def signal(self) -> Signal:
@@ -59,33 +59,33 @@ class SignalFile:
         return read_signal(self.path, wheel=self.wheel, accept_implausible=self.accept_implausible)
 
     def identity(self) -> dict[str, object]:
-        """What the runs depend on: the content of the file."""
+        """Return digest of the file, wheel and option: all data that the runs depend on."""
         try:
             content = self.path.read_bytes()
         except OSError as error:
-            raise ConfigurationError(f"{self.path}: cannot be read: {error.strerror}; give another input") from None
+            raise ConfigurationError(f"{self.path}: cannot be read: {error.strerror}; use another input") from None
         digest = hashlib.sha256(content).hexdigest()
         return {"sha256": digest, "wheel": self.wheel, "accept_implausible": self.accept_implausible}
 
 
-# A worker meets the same few inputs in thousands of cases.
+# Thousands of cases of a worker share a few inputs.
 @lru_cache(maxsize=8)
 def signal_of(source: Input) -> Signal:
-    """Signal of an input, made once per process."""
+    """Return the signal of an input, cached in the process."""
     return source.signal()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Case:
-    """A run.
+    """Case of a sweep: an input, a car and an engine.
 
     Attributes:
-        source: the input; a `Signal` is one.
-        overrides: texts "path=value" as `Car.load` takes them, applied in this order.
-        engine: as of `Car.run`.
-        vehicle: vehicle file; the car of Bommer 2006 by default.
-        shared: how many of the overrides, from the first, the whole study has: its cars are varied from the one with
-            these, which is quick where only laws and masses vary. The numbers may move in the ninth digit.
+        source: the input, for example a `Signal`.
+        overrides: texts "path=value" for `Car.load`, applied in this order.
+        engine: simulation engine, see `Car.run`.
+        vehicle: vehicle file; by default the Focus of Bommer 2006.
+        shared: number of leading overrides common to the whole study: the car is modified from the car with these
+            overrides, which is fast if only laws and masses vary. Values may change in the ninth digit.
     """
 
     source: Input
@@ -96,7 +96,7 @@ class Case:
 
     @property
     def label(self) -> str:
-        """The case in words."""
+        """Return the name of the input and the overrides."""
         return ", ".join([self.source.name, *self.overrides])
 
 
@@ -109,14 +109,14 @@ def table_cases(
     vehicle: Path | None = None,
     fixed: Sequence[str] = (),
 ) -> list[Case]:
-    """A case for every row of parameter values on every input.
+    """Return a case for every row of parameter values on every input.
 
     Args:
         paths: parameter paths, the columns.
         rows: values.
         inputs: the inputs, varying slowest.
-        engine, vehicle: as of `Case`.
-        fixed: overrides of every case, before those of its input and the varied ones.
+        engine, vehicle: see `Case`.
+        fixed: overrides of every case, before those of the input and of the row.
     """
     changes = [tuple(f"{path}={value}" for path, value in zip(paths, row, strict=True)) for row in rows]
     return varied_cases(changes, inputs, engine=engine, vehicle=vehicle, fixed=fixed)
@@ -134,47 +134,47 @@ def varied_cases(
 
     Args:
         changes: texts "path=value" of each variation.
-        inputs, engine, vehicle, fixed: as in `table_cases`.
+        inputs, engine, vehicle, fixed: see `table_cases`.
     """
-    found = []
-    for one in inputs:
-        shared = (*fixed, *overrides_of(one))
-        found += [
-            Case(source=one, overrides=(*shared, *each), engine=engine, vehicle=vehicle, shared=len(shared))
-            for each in changes
+    cases = []
+    for source in inputs:
+        shared = (*fixed, *overrides_of(source))
+        cases += [
+            Case(source=source, overrides=(*shared, *change), engine=engine, vehicle=vehicle, shared=len(shared))
+            for change in changes
         ]
-    return found
+    return cases
 
 
 def overrides_of(source: Input) -> tuple[str, ...]:
-    """What an input asks of the car: tyres that roll at the speed of a road."""
-    asked: tuple[str, ...] = getattr(source, "overrides", ())
-    return asked
+    """Return the overrides that an input sets in the car: the speed of tyres that roll on a road."""
+    overrides: tuple[str, ...] = getattr(source, "overrides", ())
+    return overrides
 
 
 def drivings(cases: Sequence[Case]) -> Mapping[str, tuple[Driving, ...]]:
-    """Return how the cars of cases drive, by the names of their inputs; cars that cannot be made are left out."""
-    # Thousands of cases share a few speeds; all else in their overrides leaves the speed as it is.
-    asked: dict[tuple[str, Path | None, tuple[str, ...]], None] = {}
+    """Return name of the input to the driving states of its cars; invalid cars are left out."""
+    # Thousands of cases share a few speeds; no other override changes the speed.
+    combinations: dict[tuple[str, Path | None, tuple[str, ...]], None] = {}
     for case in cases:
         speeds = tuple(text for text in case.overrides if text.partition("=")[0].strip().endswith("speed"))
-        asked[case.source.name, case.vehicle, speeds] = None
-    found: dict[str, tuple[Driving, ...]] = {}
-    for name, vehicle, speeds in asked:
+        combinations[case.source.name, case.vehicle, speeds] = None
+    states: dict[str, tuple[Driving, ...]] = {}
+    for name, vehicle, speeds in combinations:
         try:
             driving = driving_of(overridden(vehicle or FOCUS_FILE, speeds))
         except ConfigurationError:
-            continue  # the row of the case says why
-        found[name] = (*found.get(name, ()), driving)
-    return found
+            continue  # the row of the case contains the reason
+        states[name] = (*states.get(name, ()), driving)
+    return states
 
 
 def all_tyre_words(cases: Sequence[Case]) -> str:
-    """Return what the tyres do in all cases, see `tyre_words`."""
+    """Return a description of the state of the tyres in all cases, see `tyre_words`."""
     return tyre_words(car for cars in drivings(cases).values() for car in cars)
 
 
 def digest(parts: object) -> str:
-    """Short digest of plain data; equal data, equal digest."""
+    """Return a short digest of plain data; equal data have equal digests."""
     text = json.dumps(parts, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:20]

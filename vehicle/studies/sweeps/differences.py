@@ -1,9 +1,9 @@
-"""Comfort of the cars of a sweep against the first one, with the error of the difference on the same roads.
+"""Difference in comfort between each car of a sweep and the first car, with the standard error on the same roads.
 
-The cars of a sweep drive on the same road, so what chance does to the comfort of one it does to the others too. The
-error of a difference (`vehicle.signals.analysis.comfort_error`) is therefore far below the errors of both. It is that
-over Gaussian roads of the class; the seeds of a generated road, whose lines have fixed amplitudes, scatter less. With
-two or more seeds of a road the mean over them is given too, with the error found from their scatter.
+All cars drive on the same road, so the random errors of their comfort values are correlated, and the error of a
+difference (`vehicle.signals.analysis.comfort_error`) is far below the errors of both values. It is the standard error
+over Gaussian roads of the class; seeds of a generated road, whose lines have fixed amplitudes, scatter less. For a road
+with two or more seeds the mean over the seeds is also given, with the error estimated from the scatter.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.measure import WAVE_NAMES
-from vehicle.studies.sweeps.table import SweepTable, changes
+from vehicle.studies.sweeps.sweep_table import SweepTable, changes
 
 DIFFERENCES = "differences.csv"
-"""Name of the file of a sweep."""
+"""Name of the file in the folder of a sweep."""
 
 CLASS, SEEDS = "Gaussian roads of this class", "seeds of the generated road"
 """Populations for which an error is stated."""
@@ -40,31 +40,31 @@ HEADS = (
 
 
 def differences_text(table: SweepTable) -> str:
-    """Return the comfort of every car against the first one on the same road, as CSV.
+    """Return the difference in comfort between every car and the first car on the same road, as CSV.
 
     Args:
-        table: of `ComfortMeasure`.
+        table: table of a sweep with `ComfortMeasure`.
 
     Returns:
-        The text; empty where the sweep has one car, or another measure.
+        The text; empty for a sweep with a single car or another measure.
     """
-    if "comfort_overall" not in table.units or not any(WAVE_NAMES[0] in one.values for one in table.results):
+    if "comfort_overall" not in table.units or not any(WAVE_NAMES[0] in result.values for result in table.results):
         return ""
     paths = table.paths()
     comfort, relative = table.column("comfort_overall"), table.column("comfort_error")
-    parts = np.array([[one.values.get(name, math.nan) for name in WAVE_NAMES] for one in table.results])
+    parts = np.array([[result.values.get(name, math.nan) for name in WAVE_NAMES] for result in table.results])
     waves = parts[:, 0::2] + 1j * parts[:, 1::2]
-    # What a road sets, the speed of rolling tyres, makes no other car.
+    # An override of a road, the speed of rolling tyres, does not make another car.
     if len({case.overrides[case.shared :] for case in table.cases}) < 2:
         return ""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(["input", *paths, *HEADS])
 
-    def write(name: str, case: Case, what: str, numbers: Sequence[float]) -> None:
+    def write(name: str, case: Case, population: str, numbers: Sequence[float]) -> None:
         changed = changes(case)
-        cells = [f"{one:.6g}" if math.isfinite(one) else "" for one in numbers]
-        writer.writerow([name, *(changed.get(path, "") for path in paths), what, *cells])
+        cells = [f"{number:.6g}" if math.isfinite(number) else "" for number in numbers]
+        writer.writerow([name, *(changed.get(path, "") for path in paths), population, *cells])
 
     first: dict[Input, int] = {}
     base = np.array([first.setdefault(case.source, row) for row, case in enumerate(table.cases)])
@@ -78,7 +78,9 @@ def differences_text(table: SweepTable) -> str:
         for rows_of_car in rows.values():
             count = len(rows_of_car)
             apart = comfort[rows_of_car] - comfort[base_rows]
-            error, spread = (float(np.std(one, ddof=1)) / math.sqrt(count) for one in (comfort[rows_of_car], apart))
+            error, spread = (
+                float(np.std(values, ddof=1)) / math.sqrt(count) for values in (comfort[rows_of_car], apart)
+            )
             width = float(scipy.stats.t.ppf(0.975, count - 1)) * spread
             numbers = [float(np.mean(comfort[rows_of_car])), error, float(np.mean(apart)), spread, width]
             write(f"{name}, mean of {count} seeds", table.cases[rows_of_car[0]], SEEDS, numbers)
@@ -86,10 +88,10 @@ def differences_text(table: SweepTable) -> str:
 
 
 def _seeds(cases: Sequence[Case]) -> dict[str, dict[tuple[str, ...], list[int]]]:
-    """Return road to car to the rows of its seeds, of roads with two seeds or more."""
-    found: dict[str, dict[tuple[str, ...], list[int]]] = {}
+    """Return road to car to rows of the seeds, for roads with two or more seeds."""
+    rows: dict[str, dict[tuple[str, ...], list[int]]] = {}
     for row, case in enumerate(cases):
         if isinstance(case.source, RoadDrive) and case.source.tagged:
             road = replace(case.source, tagged=False).name
-            found.setdefault(road, {}).setdefault(case.overrides, []).append(row)
-    return found
+            rows.setdefault(road, {}).setdefault(case.overrides, []).append(row)
+    return rows

@@ -1,4 +1,4 @@
-"""Where the runs of a sweep are carried out: processes here, a Dask cluster, or any executor of your own."""
+"""Executors of a sweep: processes on this machine, a Dask cluster, or a user-defined executor."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ DASK = "dask://"
 WATCH = "parent watch"
 
 FIRST_WORKER_S = 60
-"""Time in which a cluster must have a worker [s]: a batch system starts them one after the other."""
+"""Maximum time until a cluster has a worker [s]: a batch system starts workers successively."""
 
 
 def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
-    """How to make the executor of a sweep, again if its workers have died.
+    """Return a function that creates the executor of a sweep; called again after the death of a worker.
 
     Args:
         text: None for processes on this machine; "dask://host:port" for an existing Dask cluster;
@@ -33,8 +33,8 @@ def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
         jobs: number of processes on this machine.
 
     Raises:
-        ConfigurationError: the text is none of these, or `jobs` is below 1.
-        MissingPartError: Dask is asked for and not installed.
+        ConfigurationError: the text has another form, or `jobs` is below 1.
+        MissingPartError: Dask is required and not installed.
     """
     if jobs < 1:
         raise ConfigurationError(f"--jobs {jobs}: must be at least 1")
@@ -44,38 +44,38 @@ def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
         return _dask(text.removeprefix(DASK))
     if text.count(":") == 1 and all(text.split(":")):
         return _own(*text.split(":"))
-    raise ConfigurationError(f"--executor {text!r}: allowed are dask://host:port and module:factory")
+    raise ConfigurationError(f"--executor {text!r}: must be dask://host:port or module:factory")
 
 
 def process_pool(jobs: int) -> ProcessPoolExecutor:
-    """Processes on this machine with one thread each: sums are rounded alike whatever the number of workers."""
+    """Return a pool of processes with one thread each, so that rounding does not depend on the number of workers."""
     with one_thread_each():
         pool = ProcessPoolExecutor(jobs, mp_context=get_context("spawn"), initializer=_ready)
-        # The processes inherit the environment when they start, which is now and not at the first run.
+        # The processes inherit the environment when they start, so start them now and not at the first run.
         try:
             for future in [pool.submit(_ready) for _ in range(jobs)]:
                 future.result()
         except BrokenExecutor:
             pool.shutdown(wait=False)
             raise ConfigurationError(
-                "the worker processes do not start; their own error stands above. A script that sweeps needs "
-                'if __name__ == "__main__": around what it does, since each process reads it again'
+                "the worker processes do not start; see their error above. A script with a sweep needs "
+                'if __name__ == "__main__": around its statements, because each process imports the script'
             ) from None
     return pool
 
 
 def workers_of(executor: Executor) -> int | None:
-    """How many runs an executor carries out at once; None where it does not tell."""
+    """Return the number of workers of an executor; None if unknown."""
     client = getattr(executor, "_client", None)
     if client is not None:
         return sum(client.nthreads().values()) or None
-    # Both executors of the standard library keep it under this name, and neither has a public one.
+    # Both executors of the standard library have this attribute, and no public one.
     count = getattr(executor, "_max_workers", None)
     return count if isinstance(count, int) and count > 0 else None
 
 
 def _ready() -> None:
-    """Load what every run needs; leave an interruption to the parent, and end when it is gone."""
+    """Initialise a worker: import the modules of a run, ignore interrupts, and end with the parent process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     importlib.import_module("vehicle.runs.car")
     parent = parent_process()
@@ -84,35 +84,35 @@ def _ready() -> None:
 
 
 def _end_with(sentinel: int) -> None:
-    """End this process with its parent, which may have been killed and then tells nobody."""
+    """Wait for the end of the parent process, which may be killed, and exit."""
     connection.wait([sentinel])
     os._exit(1)
 
 
 def _dask(address: str) -> Callable[[], Executor]:
-    """Executor of an existing cluster."""
+    """Return a function that creates an executor of an existing cluster."""
     try:
         distributed: Any = importlib.import_module("distributed")
     except ImportError:
         raise MissingPartError(
-            "--executor dask://...: needs Dask, of the extra 'cluster' (pip install distributed)"
+            "--executor dask://...: needs Dask of the extra 'cluster' (pip install distributed)"
         ) from None
 
     def make() -> Executor:
-        # Its loggers write tracebacks about what is told here in one sentence.
+        # The loggers of Dask write tracebacks for errors that have a message here.
         for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             client = distributed.Client(address, timeout="10s", set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
-            raise ConfigurationError(f"--executor dask://{address}: no scheduler answers there ({error})") from None
+            raise ConfigurationError(f"--executor dask://{address}: no response from a scheduler ({error})") from None
         try:
             client.wait_for_workers(1, timeout=FIRST_WORKER_S)
         except TimeoutError:
             client.close()
             raise ConfigurationError(
-                f"--executor dask://{address}: no worker joined within {FIRST_WORKER_S} s; start some, as: dask worker "
-                f"{address} --nthreads 1"
+                f"--executor dask://{address}: no worker joined within {FIRST_WORKER_S} s; start workers, as: dask "
+                f"worker {address} --nthreads 1"
             ) from None
         executor: Executor = client.get_executor(pure=False)
         return executor
@@ -121,7 +121,7 @@ def _dask(address: str) -> Callable[[], Executor]:
 
 
 def _own(module: str, name: str) -> Callable[[], Executor]:
-    """Executor of a function of the user's."""
+    """Return a function that calls a user-defined factory and checks its result."""
     # Code of the user's, in which anything may go wrong.
     try:
         factory = getattr(importlib.import_module(module), name)
@@ -133,12 +133,11 @@ def _own(module: str, name: str) -> Callable[[], Executor]:
             executor = factory()
         except Exception as error:
             raise ConfigurationError(
-                f"--executor {module}:{name}: {type(error).__name__}: {error}; needed is a function without arguments"
+                f"--executor {module}:{name}: {type(error).__name__}: {error}; must be a function without arguments"
             ) from None
         if not isinstance(executor, Executor):
             raise ConfigurationError(
-                f"--executor {module}:{name}: returned {type(executor).__name__}, needed is a "
-                "concurrent.futures.Executor"
+                f"--executor {module}:{name}: returned {type(executor).__name__}, must be a concurrent.futures.Executor"
             )
         return executor
 

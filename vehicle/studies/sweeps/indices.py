@@ -1,7 +1,8 @@
 """Global sensitivity: variance-based indices (Sobol) and elementary effects (Morris); samples and effects by SALib.
 
-First-order index S1: share of the variance of y that x_i explains alone, Var(E[y|x_i]) / Var(y). Total index ST: share
-with all interactions of x_i. Elementary effect: change of y over a step of x_i, mu* its mean size, sigma its scatter.
+First-order index S1: share of the variance of y due to x_i without interactions, Var(E[y|x_i]) / Var(y). Total index
+ST: share with all interactions of x_i. Elementary effect: change of y over a step of x_i, mu* its mean absolute value,
+sigma its standard deviation.
 
 With base points a and b, ab_i = a with coordinate i of b, y centred at its mean and V its variance,
 
@@ -35,11 +36,11 @@ Vector = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
 RESAMPLES = 200
-"""Bootstrap samples of the interval of an elementary effect: its half width is then known to about 5 %."""
+"""Bootstrap samples for the interval of an elementary effect: the half width is then exact to about 5 %."""
 SCRAMBLINGS = 16
 """Maximum number of independent scramblings. With 15 degrees of freedom an interval is 9 % wider than with many."""
 POINTS = 4
-"""Minimum number of base points of a scrambling, where there are enough for two."""
+"""Minimum number of base points of a scrambling, if there are enough for two scramblings."""
 LEAST_LEFT = 0.5
 """Minimum share of the base points without a failed run."""
 MORRIS_LEVELS = 6
@@ -47,16 +48,16 @@ MORRIS_LEVELS = 6
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SobolIndices:
-    """Sobol indices of one number.
+    """Sobol indices of a quantity.
 
     Attributes:
-        paths: parameters.
+        paths: paths of the parameters.
         first, total: S1 and ST [-]; (p,).
         first_error, total_error: half widths of their 95 % intervals (jackknife over the scramblings); (p,).
         drift: largest change of a total index from the first half of the scramblings to the whole sample [-].
         scramblings: number of independent scramblings.
         base: number of base points.
-        left_out: number of base points with a failed run, which do not count.
+        left_out: number of excluded base points, which have a failed run.
     """
 
     paths: tuple[str, ...]
@@ -72,14 +73,14 @@ class SobolIndices:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MorrisEffects:
-    """Elementary effects of one number, over the whole range of each parameter.
+    """Elementary effects of a quantity, over the whole range of each parameter.
 
     Attributes:
-        paths: parameters.
-        mean_size: mu* [unit of the number]; (p,).
-        mean_size_error: half width of its 95 % interval; (p,).
-        mean: mu, with its sign; (p,).
-        scatter: sigma; (p,).
+        paths: paths of the parameters.
+        mean_size: mean absolute effect mu* [unit of the quantity]; (p,).
+        mean_size_error: half width of the 95 % interval of mu*; (p,).
+        mean: mean effect mu; (p,).
+        scatter: standard deviation sigma of the effects; (p,).
     """
 
     paths: tuple[str, ...]
@@ -93,9 +94,9 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
     """Return Saltelli's sample for `sobol_indices`, one scrambling after the other; (base (p + 2), p).
 
     Args:
-        ranges: the parameters.
+        ranges: parameters with bounds.
         base: number of base points, a power of two.
-        seed: of the scramblings.
+        seed: seed of the scramblings.
 
     Raises:
         ConfigurationError: `base` is no power of two.
@@ -103,14 +104,17 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
     """
     if base < 2 or base & (base - 1):
         raise ConfigurationError(
-            f"base points: found {base}, must be a power of two (Sobol's sequence is balanced there)"
+            f"base points: found {base}, must be a power of two (a Sobol sequence of this length is balanced)"
         )
     draw = _salib("sample.sobol").sample
     count = _scramblings(base)
     # Children of one seed are independent of each other and of those of every other seed.
     seeds = np.random.SeedSequence(seed).generate_state(count)
     return np.concatenate(
-        [draw(_problem(ranges), base // count, calc_second_order=False, scramble=True, seed=int(one)) for one in seeds]
+        [
+            draw(_problem(ranges), base // count, calc_second_order=False, scramble=True, seed=int(child))
+            for child in seeds
+        ]
     )
 
 
@@ -124,24 +128,24 @@ def sobol_indices(ranges: Sequence[Range], values: npt.ArrayLike) -> SobolIndice
 
     Args:
         ranges: the parameters.
-        values: one number for each point, NaN for a failed run.
+        values: value of the quantity at each point, NaN for a failed run.
 
     Raises:
         DataError: too many values are missing, or all are equal.
     """
     y = _table(values, len(ranges) + 2)
     base, count = len(y), _scramblings(len(y))
-    known = np.isfinite(y).all(axis=1)
+    finite = np.isfinite(y).all(axis=1)
     group = np.repeat(np.arange(count), base // count)
-    left = base - int(np.count_nonzero(known))
-    if left > (1.0 - LEAST_LEFT) * base or len(np.unique(group[known])) < 2:
+    left = base - int(np.count_nonzero(finite))
+    if left > (1.0 - LEAST_LEFT) * base or len(np.unique(group[finite])) < 2:
         raise DataError(
-            f"values: {left} of {base} base points have a failed run, allowed is half of them; look at the reasons in "
+            f"values: {left} of {base} base points have a failed run, must be at most half; see the reasons in "
             "table.csv, narrow the ranges, or repeat with --retry-failed"
         )
-    y, group = y[known], group[known]
+    y, group = y[finite], group[finite]
     whole = _indices(y)
-    without = np.array([_indices(y[group != one]) for one in np.unique(group)])
+    without = np.array([_indices(y[group != excluded]) for excluded in np.unique(group)])
     replicates = len(without)
     deviation = np.sqrt((replicates - 1) / replicates * np.sum((without - without.mean(axis=0)) ** 2, axis=0))
     width = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, replicates - 1) * deviation
@@ -171,7 +175,7 @@ def _indices(y: Vector) -> Vector:
 
 
 def morris_sample(ranges: Sequence[Range], trajectories: int, *, seed: int = 0) -> Vector:
-    """Morris's trajectories for `morris_effects`; (trajectories (p + 1), p).
+    """Return the trajectories of Morris for `morris_effects`; (trajectories (p + 1), p).
 
     Raises:
         MissingPartError: SALib is not installed.
@@ -183,7 +187,7 @@ def morris_sample(ranges: Sequence[Range], trajectories: int, *, seed: int = 0) 
 def morris_effects(
     ranges: Sequence[Range], points: npt.ArrayLike, values: npt.ArrayLike, *, seed: int = 0
 ) -> MorrisEffects:
-    """Elementary effects from the values at the points of `morris_sample`.
+    """Return the elementary effects from the values at the points of `morris_sample`.
 
     Raises:
         DataError: a value is missing or all are equal.
@@ -191,7 +195,7 @@ def morris_effects(
     """
     y = _checked(values, len(ranges) + 1)
     analyze = _salib("analyze.morris").analyze
-    found: Any = analyze(
+    effects: Any = analyze(
         _problem(ranges),
         np.asarray(points, dtype=float),
         y,
@@ -203,39 +207,38 @@ def morris_effects(
     )
     return MorrisEffects(
         paths=tuple(r.path for r in ranges),
-        mean_size=np.asarray(found["mu_star"], dtype=float),
-        mean_size_error=np.asarray(found["mu_star_conf"], dtype=float),
-        mean=np.asarray(found["mu"], dtype=float),
-        scatter=np.asarray(found["sigma"], dtype=float),
+        mean_size=np.asarray(effects["mu_star"], dtype=float),
+        mean_size_error=np.asarray(effects["mu_star_conf"], dtype=float),
+        mean=np.asarray(effects["mu"], dtype=float),
+        scatter=np.asarray(effects["sigma"], dtype=float),
     )
 
 
 def latin_hypercube(ranges: Sequence[Range], count: int, *, seed: int = 0) -> Vector:
-    """Points that fill the box of the ranges evenly, (count, ranges); arguments as of `sobol_sample`.
-
-    Source: scipy.stats.qmc.
-    """
+    """Return a Latin hypercube sample within the ranges, (count, ranges), by scipy.stats.qmc."""
     points = scipy.stats.qmc.LatinHypercube(d=len(ranges), rng=np.random.default_rng(seed)).random(count)
-    return np.asarray(scipy.stats.qmc.scale(points, [one.low for one in ranges], [one.high for one in ranges]))
+    return np.asarray(
+        scipy.stats.qmc.scale(points, [bounds.low for bounds in ranges], [bounds.high for bounds in ranges])
+    )
 
 
 def _table(values: npt.ArrayLike, group: int) -> Vector:
-    """Return values in rows of `group`, checked; (rows, group)."""
+    """Check values and reshape them to rows of `group` values; (rows, group)."""
     y = np.asarray(values, dtype=float)
     if y.ndim != 1 or not y.size or y.size % group:
-        raise DataError(f"values: found {y.size}, needed is a multiple of {group}: one for each point of the sample")
+        raise DataError(f"values: found {y.size}, must be a multiple of {group}: one value for each point")
     if np.any(np.isfinite(y)) and float(np.nanmax(y) - np.nanmin(y)) == 0.0:
-        raise DataError("values: all are equal; none of the parameters changes them")
+        raise DataError("values: all values are equal; vary a parameter with an effect")
     return y.reshape(-1, group)
 
 
 def _checked(values: npt.ArrayLike, group: int) -> Vector:
-    """Return values of which none is missing."""
+    """Check that no value is missing, and return the values as an array."""
     y = _table(values, group).ravel()
     missing = int(np.count_nonzero(~np.isfinite(y)))
     if missing:
         raise DataError(
-            f"values: {missing} of {y.size} are missing (failed runs), and the effects need every point; look at the "
+            f"values: {missing} of {y.size} are missing (failed runs), and the effects need every point; see the "
             "reasons in table.csv, narrow the ranges, or repeat with --retry-failed"
         )
     return y
@@ -254,5 +257,5 @@ def _salib(part: str) -> Any:
         return importlib.import_module(f"SALib.{part}")
     except ImportError:
         raise MissingPartError(
-            "global sensitivity: needs SALib, of the extra 'sensitivity' (pip install SALib)"
+            "global sensitivity: needs SALib of the extra 'sensitivity' (pip install SALib)"
         ) from None

@@ -1,4 +1,4 @@
-"""A sweep of a car: parameters to vary, inputs, and what is measured, checked before anything is computed."""
+"""Sweep of a car: check of parameters, inputs and measure before the first run."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.model.parameters.whole_body import body_rules
 from vehicle.runs.car import Car
 from vehicle.studies.sweeps.case import Case, all_tyre_words, varied_cases
-from vehicle.studies.sweeps.inputs import Source, common_start, file_of, inputs_of
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
 from vehicle.studies.sweeps.sweep import Progress, sweep
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Variations = Mapping[str, Sequence[Any]] | Sequence[Iterable[str] | Mapping[str, Any]]
-"""Path to values, for every combination; or a list of variations, each path to value or texts "path=value"."""
+"""Path to values, run in every combination; or a list of variations, each path to value or texts "path=value"."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SweepPlan:
-    """A sweep that can be run.
+    """Checked sweep, ready to run.
 
     Attributes:
         cases: the runs.
-        measure: turns a run into values.
+        measure: measure of each run.
         skip: start of the evaluation [s].
-        notes: messages on what the varied parameters imply.
+        notes: messages on side effects of the varied parameters.
     """
 
     cases: Sequence[Case]
@@ -44,7 +44,7 @@ class SweepPlan:
 
     @property
     def tyres(self) -> str:
-        """What the tyres do in all runs."""
+        """Return a description of the state of the tyres in all runs: standing or rolling at a speed."""
         return all_tyre_words(self.cases)
 
     def run(
@@ -56,7 +56,7 @@ class SweepPlan:
         retry_failed: bool = False,
         progress: Progress | None = None,
     ) -> SweepTable:
-        """Run the sweep; arguments, result and errors of `vehicle.studies.sweeps.sweep.sweep`."""
+        """Run the sweep; arguments, result and errors as in `vehicle.studies.sweeps.sweep.sweep`."""
         return sweep(
             self.cases,
             self.measure,
@@ -77,7 +77,7 @@ def plan_sweep(
     skip: float | None = None,
     measure: Measure | None = None,
 ) -> SweepPlan:
-    """Check a sweep; arguments and errors of `run_sweep`."""
+    """Check the arguments of a sweep and return the sweep; arguments and errors as in `run_sweep`."""
     changes = changes_of(vary)
     vehicle = file_of(car)
     require_paths(vehicle, car.overrides, changes[0])
@@ -107,22 +107,22 @@ def run_sweep(
 ) -> SweepTable:
     """Run a car with varied parameters on one or several inputs, and tabulate comfort and slip.
 
-    The runs go to processes, so a script calls this below `if __name__ == "__main__":`.
+    The runs are distributed to processes, so a script must call this function below `if __name__ == "__main__":`.
 
     Args:
-        car: loaded by `Car.load`; its own overrides hold in every run.
+        car: car loaded by `Car.load`; its overrides apply to every run.
         vary: path to values, as {"damper.coulomb_friction": [62.5, 125]}, for every combination; or a list of
             variations, each path to value.
         inputs: files or names of shipped ones, roads, signals; one or several.
         engine: as in `Car.run`.
         skip: start of the evaluation [s]; 2 by default, on a road see `Car.run`.
-        measure: turns a run into values; comfort and slip shares by default.
+        measure: measure of each run; by default comfort and slip shares.
         jobs: number of processes; the table does not depend on it.
-        folder: existing folder in which finished rows are stored, and found again by the next call; None stores none.
+        folder: existing folder in which finished rows are stored, for the next call to reuse; None stores no rows.
         progress: called with the finished fraction.
 
     Returns:
-        A row for each run, the inputs varying slowest; a failed run is a row with its reason.
+        A row for each run, the inputs varying slowest; a failed run is a row with an error message.
 
     Raises:
         ConfigurationError: a path does not exist, an input is missing, or `skip` is out of range.
@@ -136,7 +136,7 @@ def changes_of(vary: Variations) -> list[tuple[str, ...]]:
     """Return the texts "path=value" of each variation, the last path varying fastest.
 
     Raises:
-        ConfigurationError: there is no variation, or a value of a type that no parameter has.
+        ConfigurationError: no variation, or a value of an invalid type.
     """
     if isinstance(vary, Mapping):
         columns = [[text for value in each for text in assignments({path: value})] for path, each in vary.items()]
@@ -144,22 +144,22 @@ def changes_of(vary: Variations) -> list[tuple[str, ...]]:
     else:
         changes = [tuple(assignments(each)) for each in vary]
     if not changes or not changes[0]:
-        raise ConfigurationError("vary: no variation; give {PATH: [VALUE, ...]}, as {'damper.viscous': [1500, 2000]}")
+        raise ConfigurationError("vary: no variation; pass {PATH: [VALUE, ...]}, as {'damper.viscous': [1500, 2000]}")
     return changes
 
 
 def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Sequence[str]) -> None:
-    """Refuse a misspelt parameter before anything is computed: it would fail in every row.
+    """Check before the first run that all parameters exist: a misspelt parameter would fail in every row.
 
-    An impossible value is left to its row: another row may be possible.
+    An invalid value fails only in its row.
 
     Args:
-        vehicle: vehicle file; that of the Focus by default.
-        overrides: texts of every run.
-        changes: texts of the first variation.
+        vehicle: vehicle file; by default that of the Focus.
+        overrides: texts "path=value" of every run.
+        changes: texts "path=value" of the first variation.
 
     Raises:
-        ConfigurationError: a path does not exist, or its value is none.
+        ConfigurationError: a path does not exist, or a value cannot be parsed.
     """
     file = FOCUS_FILE if vehicle is None else vehicle_file(vehicle)
     overridden(file, overrides)
@@ -170,7 +170,7 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
 
 
 def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """Return a message for each varied parameter without effect; none where laws vary, which may turn it on."""
+    """Return a message for each varied parameter without effect; empty if laws vary, which may switch it on."""
     for column in zip(*changes, strict=True):
         values = {text.partition("=")[2].strip() for text in column}
         if len(values) > 1 and any(value[:1].isalpha() for value in values):
@@ -178,4 +178,4 @@ def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[S
     try:
         return idle_parameters(load_vehicle(file, [*overrides, *changes[0]]), changes[0])
     except ConfigurationError:
-        return ()  # the row says why
+        return ()  # the row contains the reason

@@ -1,4 +1,4 @@
-"""Which program makes the rows of a sweep: other sources or libraries, other rows."""
+"""Digest of the program that computes the rows of a sweep: sources and library versions."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 
 LIBRARIES = ("mujoco", "numpy", "scipy", "numba")
-"""What computes the numbers; without numba, "auto" is another engine."""
+"""Libraries that affect the values; without numba, "auto" selects another engine."""
 
 
 @cache
 def libraries() -> dict[str, str]:
-    """Versions of the libraries, empty where one is missing."""
-    found = {}
+    """Return library to version, empty for a missing library."""
+    versions = {}
     for name in LIBRARIES:
         try:
-            found[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
-            found[name] = ""
-    return found
+            versions[name] = ""
+    return versions
 
 
 @cache
 def program_digest() -> str:
-    """Digest of the sources of this package and the versions of its libraries."""
+    """Return a digest of the sources of this package and the versions of its libraries."""
     content = hashlib.sha256(repr(libraries()).encode())
     root = Path(__file__).parents[2]
     for path in sorted(root.rglob("*.py")):
@@ -37,7 +37,7 @@ def program_digest() -> str:
 
 
 def class_source(instance: object) -> str:
-    """Source text of the class of an object, which may be the user's own; empty where it has none."""
+    """Return the source text of the class of an object; empty if there is no source."""
     try:
         return inspect.getsource(type(instance))
     except (OSError, TypeError):
@@ -45,13 +45,15 @@ def class_source(instance: object) -> str:
 
 
 def require_same_program(digest: str) -> None:
-    """Refuse to compute rows for another program: a cluster may have another version installed.
+    """Check that this process has the same program as the process of the sweep.
+
+    A cluster may have another version installed.
 
     Raises:
-        ConfigurationError: this process has other sources or libraries than the one that started the sweep.
+        ConfigurationError: sources or libraries differ.
     """
     if digest != program_digest():
         raise ConfigurationError(
             f"the workers have another program ({program_digest()} with {libraries()}) than this sweep ({digest}): "
-            "install the same version of this package and its libraries there, and do not change it during a sweep"
+            "install the same version of this package and its libraries on them; do not change it during a sweep"
         )

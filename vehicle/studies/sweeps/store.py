@@ -1,4 +1,4 @@
-"""Finished rows on disk: one line of JSON each, written as they arrive, read again when a sweep goes on."""
+"""Finished rows of a sweep on disk: a line of JSON each, read again when the sweep is continued."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 from vehicle.errors import DataError, OutputError
 from vehicle.runs.output.written_files import note
-from vehicle.studies.sweeps.result import Result
+from vehicle.studies.sweeps.case_result import Result
 
 ROWS = "rows.jsonl"
 
@@ -18,10 +18,10 @@ FIELDS = tuple(field.name for field in fields(Result))
 
 
 class Store:
-    """The file `rows.jsonl` of a sweep.
+    """File `rows.jsonl` of a sweep.
 
     Args:
-        path: the file; its folder must exist. Lines that are there are kept.
+        path: the file in an existing folder; existing rows are kept.
 
     Raises:
         DataError: a line in the middle of the file is damaged.
@@ -35,18 +35,21 @@ class Store:
             note(path)
             self._file = path.open("a", encoding="utf-8")
         except OSError as error:
-            raise OutputError(f"{path}: cannot be written: {error.strerror}; give another folder") from None
+            raise OutputError(f"{path}: cannot be written: {error.strerror}; use another folder") from None
 
     def add(self, rows: Mapping[str, tuple[str, Result]]) -> None:
-        """Keep rows, key to label and result; when this returns they are on the disk.
+        """Append rows to the file and flush them to the disk.
+
+        Args:
+            rows: key to label and result.
 
         Raises:
-            OutputError: the disk refuses it.
+            OutputError: the file cannot be written.
         """
         lines = []
         for key, (label, result) in rows.items():
             self.finished[key] = result
-            # JSON writes a float with all its digits, so that a row read again is the same row; NaN is its own word.
+            # JSON writes floats with all digits, so rows read again are identical; NaN is written as NaN.
             row = {name: getattr(result, name) for name in FIELDS}
             lines.append(json.dumps({"key": key, "case": label, **row}) + "\n")
         try:
@@ -54,7 +57,9 @@ class Store:
             self._file.flush()
             os.fsync(self._file.fileno())
         except OSError as error:
-            raise OutputError(f"{self.path}: cannot be written: {error.strerror}; {len(self.finished)} rows") from None
+            raise OutputError(
+                f"{self.path}: cannot be written after {len(self.finished)} rows: {error.strerror}"
+            ) from None
 
     def close(self) -> None:
         """Close the file."""
@@ -62,12 +67,12 @@ class Store:
 
 
 def _read(path: Path) -> dict[str, Result]:
-    """Rows of a file by key; a last line that was cut off in the middle is dropped, and cut from the file."""
+    """Read the rows of a file by key; remove an incomplete last line from the file."""
     if not path.exists():
         return {}
     finished = {}
     content = path.read_bytes()
-    whole, _, rest = content.rpartition(b"\n")
+    whole, _, incomplete = content.rpartition(b"\n")
     for number, line in enumerate(whole.split(b"\n") if whole else [], start=1):
         try:
             row = json.loads(line)
@@ -79,8 +84,10 @@ def _read(path: Path) -> dict[str, Result]:
                 seconds=float(row["seconds"]),
             )
         except (ValueError, KeyError, TypeError, AttributeError) as error:
-            raise DataError(f"{path}, line {number}: not a row of a sweep ({error}); start anew with --force") from None
-    if rest:
+            raise DataError(
+                f"{path}, line {number}: not a row of a sweep ({error}); start again with --force"
+            ) from None
+    if incomplete:
         with path.open("r+b") as file:
-            file.truncate(len(content) - len(rest))
+            file.truncate(len(content) - len(incomplete))
     return finished

@@ -1,4 +1,4 @@
-"""A table of runs over any executor: kept as they finish, taken up again after an interruption."""
+"""Sweep: run cases on any executor, store finished rows, and continue after an interruption."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from vehicle.model.parameters.template import SHIPPED as TEMPLATES
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.folder import folder_lock, write_text
 from vehicle.studies.sweeps.case import Case, digest, drivings
-from vehicle.studies.sweeps.crew import Crew
+from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.differences import DIFFERENCES, differences_text
+from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import process_pool
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
 from vehicle.studies.sweeps.program import class_source, libraries, program_digest
-from vehicle.studies.sweeps.result import Result
 from vehicle.studies.sweeps.store import ROWS, Store
-from vehicle.studies.sweeps.table import SweepTable
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Progress = Callable[[float], None]
 
@@ -40,31 +40,31 @@ def sweep(
     retry_failed: bool = False,
     progress: Progress | None = None,
 ) -> SweepTable:
-    """Carry out runs and tabulate what is measured of them.
+    """Run cases and tabulate their measured values.
 
-    A run that fails is a row with its reason. Workers take tasks of many runs, about a second of work; one that dies
-    takes no finished row with it: the executor is made again, the tasks in hand are repeated one at a time, the runs of
-    the task that kills its worker again one by one, and the run that does is a failed row. With a folder, rows are on
-    the disk as their tasks finish, and rows found there are not computed again while car, input, measure and program
-    are the same. The table depends neither on the number of workers nor on the sizes of the tasks, to the last digit.
+    A failed run is a row with an error message. Workers get tasks of many runs, about a second of work. If a worker
+    dies, no finished row is lost: a new executor is created and the submitted tasks are repeated one at a time. The
+    runs of a task that kills its worker again are repeated one at a time, and the run that kills its worker is a failed
+    row. With a folder, rows are stored as their tasks finish, and stored rows are not computed again if car, input,
+    measure and program are equal. The table is bitwise independent of the number of workers and the sizes of the tasks.
 
     Args:
         cases: the runs.
-        measure: turns a run into numbers; comfort and slip shares by default.
-        executor: makes the executor, as of `executor_factory`; or an executor itself, which stays open and cannot be
-            made again if it breaks; processes on this machine by default.
-        jobs: number of processes where no executor is given.
-        folder: an existing folder for the rows; None keeps them in memory only.
-        retry_failed: compute rows again that failed before.
-        progress: called with the finished fraction of the runs that are computed here.
+        measure: measure of each run; by default comfort and slip shares.
+        executor: function that returns an executor, see `executor_factory`; or an executor, which stays open and is not
+            replaced if it breaks; by default processes on this machine.
+        jobs: number of processes without `executor`.
+        folder: existing folder for the rows; None stores no rows.
+        retry_failed: compute failed rows again.
+        progress: called with the finished fraction of the runs computed by this call.
 
     Returns:
         The table, in the order of the cases.
 
     Raises:
-        ConfigurationError, DataError: an input or a vehicle file cannot be read, or another process writes there.
+        ConfigurationError, DataError: an input or vehicle file cannot be read, or another process uses the folder.
         OutputError: a row cannot be written.
-        SimulationError: the executor is lost and cannot be made again; finished rows are kept.
+        SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
     chosen = ComfortMeasure() if measure is None else measure
     keys = case_keys(cases, chosen)
@@ -92,7 +92,7 @@ def sweep(
         done: set[str] = set()
         try:
             if todo:
-                Crew(executor or partial(process_pool, jobs), chosen).work(todo, keep)
+                Dispatcher(executor or partial(process_pool, jobs), chosen).work(todo, keep)
         finally:
             if store is not None:
                 store.close()
@@ -110,22 +110,22 @@ def sweep(
 
 
 def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:
-    """A digest for each case of all that its numbers depend on: car, input, engine, measure and program."""
-    made = [program_digest(), repr(measure), class_source(measure)]
-    # Thousands of cases share a few inputs and cars; reading each of them once per case would take half a minute.
+    """Return a digest for each case of all data that its values depend on: car, input, engine, measure and program."""
+    common = [program_digest(), repr(measure), class_source(measure)]
+    # Thousands of cases share a few inputs and cars; reading them for every case would take half a minute.
     sources = {id(case.source): case.source for case in cases}
     inputs = {key: digest(source.identity()) for key, source in sources.items()}
     cars = {vehicle: _car_digest(vehicle) for vehicle in dict.fromkeys(case.vehicle for case in cases)}
     return [
-        digest([*made, cars[case.vehicle], inputs[id(case.source)], case.engine, case.shared, case.overrides])
+        digest([*common, cars[case.vehicle], inputs[id(case.source)], case.engine, case.shared, case.overrides])
         for case in cases
     ]
 
 
 def _car_digest(vehicle: Path | None) -> str:
-    """Digest of a vehicle file and of the superelements and templates it may name."""
+    """Return a digest of a vehicle file and of all superelements and templates that it may refer to."""
     file = FOCUS_FILE if vehicle is None else vehicle
-    load_vehicle(file)  # a bad file is refused here, in the words that it always is
+    load_vehicle(file)  # raises the usual error for a bad file
     content = hashlib.sha256(file.read_bytes())
     for folder in dict.fromkeys([file.parent, file.parent / "templates", PACKAGE_FOLDER, TEMPLATES]):
         for path in sorted(folder.glob("*.toml")):
@@ -134,7 +134,7 @@ def _car_digest(vehicle: Path | None) -> str:
 
 
 def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
-    """What `sweep.json` says."""
+    """Return the content of `sweep.json`."""
     sources = {id(case.source): case.source for case in cases}
     return {
         "runs": len(cases),

@@ -1,4 +1,4 @@
-"""Parameters of a car fitted to measurements."""
+"""Fit of parameters of a car to measured FRFs and time histories."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from vehicle.model.parameters.paths import full_path, overrides_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Car
-from vehicle.studies.tuning.fit import fit
+from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.least_squares import fit
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
-from vehicle.studies.tuning.result import TuningResult
 
 Bounds = Sequence[float]
-"""Lower and upper bound of a parameter in its unit, and where given the start of the fit."""
+"""Lower bound, upper bound and optionally start value of a parameter, in the unit of the parameter."""
 
 
 def tune_car(
@@ -37,61 +37,64 @@ def tune_car(
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
 
     Returns:
-        Values with standard errors and correlation, what the data cannot identify, and residual statistics.
+        Values with standard errors and correlation, unidentifiable parameters, and residual statistics.
 
     Raises:
-        ConfigurationError: a parameter that the car does not have or that does nothing, or bounds out of order.
-        DataError: a measurement that no run can be compared with.
-        SimulationError: a run gives no finite residuals.
+        ConfigurationError: the car lacks a parameter, a parameter has no effect, or bounds are out of order.
+        DataError: a measurement cannot be compared with a run.
+        SimulationError: a run gives residuals that are not finite.
     """
     ranges = ranges_of(car.vehicle, parameters)
     require_fittable(ranges, car.vehicle)
-    targets = [one.target if isinstance(one, MeasuredTarget) else one for one in measurements]
+    targets = [
+        measurement.target if isinstance(measurement, MeasuredTarget) else measurement for measurement in measurements
+    ]
     return fit(ranges, targets, lambda values: car.varied(overrides_of(car.vehicle, values)), progress=progress)
 
 
 def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Range]) -> tuple[Range, ...]:
-    """Return the parameters of a fit with their starts.
+    """Return the fitted parameters with bounds and start values.
 
     Args:
-        vehicle: the car, whose values are the default starts.
-        parameters: as in `tune_car`.
+        vehicle: vehicle with the default start values.
+        parameters: path to bounds, see `tune_car`.
 
     Raises:
-        ConfigurationError: a path that is no number of the car, or bounds out of order.
+        ConfigurationError: a path is not a numeric parameter of the vehicle, or bounds are out of order.
     """
     if not isinstance(parameters, Mapping):
         return tuple(parameters)
-    found = []
+    ranges = []
     for path, bounds in parameters.items():
         if len(bounds) not in (2, 3):
             raise ConfigurationError(
                 f"parameter {path}: found {bounds}, must be (lower, upper) or (lower, upper, start)"
             )
-        overrides_of(vehicle, {path: bounds[0]})  # refuses what is no number of the car
+        overrides_of(vehicle, {path: bounds[0]})  # raises if the path is not a numeric parameter of the car
         start = bounds[2] if len(bounds) == 3 else value_of(vehicle, path)
-        found.append(Range(path=path, low=bounds[0], high=bounds[1], start=start))
-    return tuple(found)
+        ranges.append(Range(path=path, low=bounds[0], high=bounds[1], start=start))
+    return tuple(ranges)
 
 
 def require_fittable(parameters: Sequence[Range], vehicle: Vehicle) -> None:
-    """Refuse parameters that do nothing, and bounds within which no such damper can be.
+    """Check that every parameter has an effect and that static friction cannot fall below sliding friction.
 
     Args:
-        parameters: to be fitted.
-        vehicle: the car.
+        parameters: parameters of the fit with bounds.
+        vehicle: the vehicle to be fitted.
 
     Raises:
-        ConfigurationError: a parameter of a law that is off, or a friction at rest that may fall below that of sliding.
+        ConfigurationError: a parameter belongs to a law that is switched off, or the bounds of static and sliding
+            friction overlap.
     """
-    idle = idle_parameters(vehicle, [f"{one.path}={one.start!r}" for one in parameters])
+    idle = idle_parameters(vehicle, [f"{parameter.path}={parameter.start!r}" for parameter in parameters])
     if idle:
-        raise ConfigurationError(f"--fit {idle[0]}; give --set with it")
-    whole = {full_path(vehicle.table, one.path): one for one in parameters}
+        raise ConfigurationError(f"--fit {idle[0]}; add --set")
+    whole = {full_path(vehicle.table, parameter.path): parameter for parameter in parameters}
     for path, static in whole.items():
         sliding = whole.get(path.removesuffix("stribeck_friction") + "coulomb_friction")
         if path.endswith(".stribeck_friction") and sliding is not None and static.low < sliding.high:
             raise ConfigurationError(
-                f"--fit {static.path}={static.low:g}:{static.high:g}: the friction at rest must stay at or above that "
-                f"of sliding, {sliding.path}={sliding.low:g}:{sliding.high:g}; give bounds that do not overlap"
+                f"--fit {static.path}={static.low:g}:{static.high:g}: static friction must not be below sliding "
+                f"friction, {sliding.path}={sliding.low:g}:{sliding.high:g}; set bounds that do not overlap"
             )

@@ -1,4 +1,4 @@
-"""The last steps of a fit with the full simulation: what the fast models left wrong is found and taken out."""
+"""Final steps of a fit with the full simulation, which remove the error of the fast models from the values."""
 
 from __future__ import annotations
 
@@ -10,28 +10,27 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.runs.car import Run
-from vehicle.studies.tuning.fit import Target
-from vehicle.studies.tuning.result import TuningResult, target_statistics
+from vehicle.studies.tuning.fit_result import TuningResult, target_statistics
+from vehicle.studies.tuning.least_squares import Target
 
 Vector = npt.NDArray[np.float64]
 
 SMALL = 0.3
-"""Step in standard errors below which the values stay: taking it would change no statement about them."""
+"""Maximum step in standard errors that is left out: it would not change any conclusion about the values."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FullSteps:
-    """A fit after its last steps.
+    """Result of a fit after its final steps.
 
     Attributes:
-        result: with the values, errors and residuals of the full simulation.
+        result: the fit with values, errors and residuals of the full simulation.
         first: root of the mean square of the weighted residuals of the full simulation at the values of the fast
             models [-].
-        moved: path to the way from the values of the fast models, in standard errors: what the model error of the fast
-            models had done to the value.
-        largest_steps: largest step of each round in standard errors; the last one is the final check, and is not taken
-            where it is small.
-        settled: whether it is.
+        moved: path to change of the value in standard errors: the effect of the error of the fast models.
+        largest_steps: largest step of each round in standard errors; the last step is the final check, and is left out
+            if it is small.
+        settled: True if the last step was small.
     """
 
     result: TuningResult
@@ -48,21 +47,21 @@ def full_steps(
     *,
     most_rounds: int = 4,
 ) -> FullSteps:
-    """Go on with the full simulation, Gauss-Newton steps with the Jacobian of the fast models:
+    """Continue a fit with the full simulation by Gauss-Newton steps with the Jacobian of the fast models.
 
         d u = -(J' J)^-1 J' r(full simulation at u)
 
-    Where the steps end, the gradient of the full simulation is zero: the fast models lend their derivatives alone, and
-    their errors do not enter the values. What is left of them stands in the last step.
+    At convergence the gradient of the full simulation is zero: only derivatives come from the fast models, so the
+    errors of the fast models do not enter the values. The last step is the remaining error.
 
     Args:
-        result: of `fit`.
-        targets: all that it was fitted to, in their order.
-        simulate: path to value -> a run of that car on the signal of each target.
-        most_rounds: of full simulations.
+        result: result of `fit`.
+        targets: targets of the fit, in the same order.
+        simulate: function of {path: value} that returns a run of that car on the signal of each target.
+        most_rounds: maximum number of full simulations.
 
     Returns:
-        The fit with the values that it led to.
+        The fit with the values of the full simulation.
 
     Source: Bandler et al., Space mapping: the state of the art, IEEE Transactions on Microwave Theory and Techniques
     52, 2004: a coarse model for the derivatives, the fine one for the residuals.

@@ -1,4 +1,4 @@
-"""Which parameters data can tell: the singular values of the weighted Jacobian."""
+"""Identifiability of parameters from the singular values of the weighted Jacobian."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ from vehicle.model.parameters.ranges import Range
 Vector = npt.NDArray[np.float64]
 
 WIDEST = 0.5 / np.sqrt(3.0)
-"""Largest standard error of a direction in parameter space, in half widths of the bounds: half the standard deviation
-1/sqrt(3) of a value of which only the bounds are known. Data that do not even halve it do not tell the direction."""
+"""Maximum standard error of an identifiable direction in parameter space, in half widths of the bounds: half the
+standard deviation 1/sqrt(3) of a value of which only the bounds are known."""
 
 PARTNER = 0.3
-"""Least component of a direction that makes a parameter a part of it."""
+"""Minimum component of a parameter in a direction for the parameter to be named as a partner."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Unidentified:
-    """A parameter that the data cannot tell, and that is held.
+    """Parameter that the data cannot identify, held at its start value.
 
     Attributes:
-        path: of the parameter.
-        held_at: its start value.
-        partners: parameters that can only be told together with it; none where it acts on nothing.
-        spread: standard error of their common direction, in half widths of the bounds [-]; infinite where the data say
-            nothing at all.
+        path: path of the parameter.
+        held_at: start value of the parameter.
+        partners: parameters that are identifiable only in combination with this parameter; empty for a parameter
+            without effect.
+        spread: standard error of the common direction, in half widths of the bounds [-]; infinite for data without any
+            information on the direction.
     """
 
     path: str
@@ -37,31 +38,31 @@ class Unidentified:
     partners: tuple[str, ...]
     spread: float
 
-    def sentence(self) -> str:
-        """The finding in words."""
+    def message(self) -> str:
+        """Return a message that names the parameter, its partners and the standard error."""
         other = f" apart from {', '.join(self.partners)}" if self.partners else ""
         return (
-            f"{self.path}: the data cannot tell it{other} (standard error of that direction {self.spread:.3g} half "
-            f"widths of the bounds, allowed {WIDEST:.2g}); held at {self.held_at:g}"
+            f"{self.path}: the data do not identify this parameter{other} (standard error of the direction "
+            f"{self.spread:.3g} half widths of the bounds, maximum {WIDEST:.2g}); held at {self.held_at:g}"
         )
 
 
 def worst_direction(jacobian: Vector, parameters: Sequence[Range]) -> Unidentified | None:
-    """The parameter to hold, where the data leave a direction open.
+    """Return the parameter to hold if the data leave a direction in parameter space undetermined.
 
-    With residuals of unit variance and columns d r / d (u / half width), a singular value s is one over the standard
-    error of its direction in half widths of the bounds. In the worst direction the parameter with the largest component
-    is held; the others with a component of at least 0.3 are its partners.
+    With residuals of unit variance and columns d r / d (u / half width), a singular value s is 1 over the standard
+    error of its direction in half widths of the bounds. In the direction with the largest error the parameter with the
+    largest component is held; parameters with a component of at least `PARTNER` are named as partners.
 
     Args:
         jacobian: d r / d u, u = ln(value / start), residuals of unit variance; (n, p).
-        parameters: of its columns.
+        parameters: parameters of the columns.
 
     Returns:
-        The parameter, or None where every direction is known within `WIDEST`.
+        The parameter, or None if the error of every direction is at most `WIDEST`.
 
-    Source: Belsley, Kuh, Welsch, Regression Diagnostics, 1980, chapter 3, with columns scaled by what is known before
-    in place of their length.
+    Source: Belsley, Kuh, Welsch, Regression Diagnostics, 1980, chapter 3, with columns scaled by the bounds in place of
+    their length.
     """
     widths = np.array([parameter.half_width for parameter in parameters])
     _, singular, directions = np.linalg.svd(jacobian * widths, full_matrices=False)
@@ -82,6 +83,6 @@ def worst_direction(jacobian: Vector, parameters: Sequence[Range]) -> Unidentifi
 
 
 def covariance(jacobian: Vector) -> Vector:
-    """(J' J)^-1 of residuals of unit variance, (p, p), from the triangular factor of J."""
+    """Return the covariance (J' J)^-1 for residuals of unit variance, (p, p), from the triangular factor of J."""
     inverse = np.linalg.inv(np.linalg.qr(jacobian, mode="r"))
     return np.asarray(inverse @ inverse.T)

@@ -1,4 +1,4 @@
-"""Targets of a fit from measurement files: frequency responses and time histories, with the signals behind them."""
+"""Targets of a fit from measurement files: FRFs and time histories, with their plate signals."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.record_target import RecordTarget
 
 BAND = (3.0, 45.0)
-"""Default band of a fit [Hz]: shaker signals drive the car well from 3 Hz on, and its body model ends at 43 Hz."""
+"""Default band of a fit [Hz]: shaker signals excite the car well above 3 Hz, and the body model ends at 43 Hz."""
 
 SPACING = 0.3
-"""Default distance of the fitted frequencies [Hz]: 17 lines of 1/60 Hz, from which an estimate of 60 s is made."""
+"""Default distance of the fitted frequencies [Hz]: a record of 60 s has 17 lines of 1/60 Hz in this distance, from
+which the FRF is estimated."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MeasuredTarget:
-    """Target of a fit, the signal it was measured with, and messages on the file."""
+    """Target of a fit with the plate signal of the measurement and the notices on the file."""
 
     target: FrfTarget | RecordTarget
     signal: Signal
@@ -55,41 +56,41 @@ def measured_responses(
     """Read measured FRFs of one excitation level as a target of a fit.
 
     Args:
-        car: its channels are the names of the model.
-        file: FRFs, or accelerations with their plate as time histories, of any format.
-        signal: displacement that they were measured with; a file, or the name of a shipped one.
+        car: the car, with the channel names of the model.
+        file: measurement file of any format, with FRFs, or with time histories of accelerations and their plate.
+        signal: plate displacement of the measurement: a signal, a file, or the name of a shipped file.
         channels: channel of the model to channel of the file; by default equal names.
-        stuck: the dampers stick at this level: the linear car is compared, straight from its matrices.
+        stuck: True if the dampers stick at this level: the FRFs of the linear car follow from its matrices.
         choice: units, rate and excerpt of the file.
-        turned: channels that were measured in the other direction.
-        fitted: channels that count; by default all of `channels`.
+        turned: channels measured with the opposite sign.
+        fitted: channels to be fitted; by default all of `channels`.
         band: lowest and highest frequency [Hz].
         spacing: minimum distance of the frequencies [Hz].
         window: length of the Hann windows of the estimate [s]; by default the local rational model.
 
     Returns:
-        The target; without a measured coherence all lines count alike.
+        The target; without a measured coherence all lines have equal weights.
 
     Raises:
-        ConfigurationError: no such file, or a channel that the model does not have.
+        ConfigurationError: the file does not exist, or the model lacks a channel.
         DataError: bad data, no FRF, or too few frequencies.
     """
     path = Path(file)
     measured = _read(car, path, channels, choice, turned, window)
-    found = measured.frf
-    if found is None:
+    frf = measured.frf
+    if frf is None:
         raise DataError(
-            f"{path}: holds no FRFs, and no plate beside accelerations to estimate them from; for time histories give "
+            f"{path}: contains no FRFs, and no plate with accelerations to estimate FRFs from; for time histories use "
             "--record FILE --signal FILE"
         )
-    data = found.select(tuple(fitted) or found.channels, band=band, spacing=spacing)
+    data = frf.select(tuple(fitted) or frf.channels, band=band, spacing=spacing)
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
-    given = _signal(signal, car)
-    target = FrfTarget(name=path.stem, data=data, signal=given, window=window, wheel=given.wheels[0])
+    plate_signal = _signal(signal, car)
+    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=plate_signal.wheels[0])
     if stuck:
         target = replace(target, signal=None)
-    return MeasuredTarget(target=target, signal=given, notices=_notices(path, measured, []))
+    return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
 
 
 def measured_histories(
@@ -110,35 +111,35 @@ def measured_histories(
     """Read measured time histories as a target of a fit, at the times of a run.
 
     Args:
-        car: car at the start of the fit; it tells wrong clocks, signs and units of the file.
-        file: time histories, of any format.
-        signal: displacement of the plate; a file, or the name of a shipped one.
-        channels, choice, turned: as in `measured_responses`.
-        fitted: channels that count; by default all but those of plates.
-        delay: the record began this long after the signal [s].
-        drift: the clock of the record is slow by this share [-].
-        stretch: part of the signal that counts, from and to [s]; by default all that was measured.
-        lowpass: model and measurement are compared below this frequency [Hz].
-        window: as in `measured_responses`, where the file has FRFs too.
+        car: car at the start of the fit; a run of this car shows wrong clocks, signs and units of the file.
+        file: measurement file of any format with time histories.
+        signal: plate displacement: a signal, a file, or the name of a shipped file.
+        channels, choice, turned: see `measured_responses`.
+        fitted: channels to be fitted; by default all except plates.
+        delay: start of the record after the start of the signal [s].
+        drift: relative lag of the clock of the record [-].
+        stretch: begin and end of the included part of the signal [s]; by default the measured part.
+        lowpass: maximum frequency of the comparison of model and measurement [Hz].
+        window: see `measured_responses`; used if the file also contains FRFs.
 
     Returns:
         The target.
 
     Raises:
-        ConfigurationError: no such file, a channel that the model does not have, or a low-pass out of range.
-        DataError: bad data, no time history, or nothing in common with the signal.
+        ConfigurationError: the file does not exist, the model lacks a channel, or the low-pass is out of range.
+        DataError: bad data, no time history, or no overlap with the signal.
     """
     path, source = Path(file), signal
     measured, signal = _read(car, path, channels, choice, turned, window), _signal(source, car)
     held = None if measured.record is None else measured.record
-    names = [] if held is None else [one for one in held.channels if not one.startswith("plate_")]
+    names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
-        raise DataError(f"{path}: holds no time history beside that of a plate; choose with --map CHANNEL=NAME")
+        raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
     if fitted:
         there = ", ".join(names)
-        names = [one for one in names if one in fitted]
+        names = [channel for channel in names if channel in fitted]
         if not names:
-            raise DataError(f"{path}: holds no time history of --channel {' '.join(fitted)}; found {there}")
+            raise DataError(f"{path}: contains no time history of --channel {' '.join(fitted)}; found {there}")
     step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
     times = run_times(held, delay, drift, measured.start)
@@ -147,22 +148,22 @@ def measured_histories(
         name = source if isinstance(source, str) else signal.source
         raise DataError(
             f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {name}, which ends at "
-            f"{signal.duration:.6g} s: nothing in common; give --delay S, which is added to the measured times"
+            f"{signal.duration:.6g} s: no overlap; set --delay S, which is added to the measured times"
         )
     histories = {}
-    for one in names:
-        values = at_times(times, held.channels[one], grid[inside], step)
-        histories[one] = np.interp(np.arange(grid.size), inside, values)  # constant beyond: it does not count
+    for channel in names:
+        values = at_times(times, held.channels[channel], grid[inside], step)
+        histories[channel] = np.interp(np.arange(grid.size), inside, values)  # constant outside the window: excluded
     window_s = (float(grid[inside[0]]), float(grid[inside[-1]]))
     if stretch is not None:
         window_s = (max(stretch[0], window_s[0]), min(stretch[1], window_s[1]))
-    units = {one: held.units[one] for one in names}
+    units = {channel: held.units[channel] for channel in names}
     record = Record(time=grid, channels=histories, units=units)
     target = RecordTarget(name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass)
-    # The car where the fit begins tells the clock, the signs and the units of the measurement.
+    # A run with the start values shows errors of clock, signs and units of the measurement.
     run = car.run(signal, engine="reduced", channels=names)
     parts = counterparts(
-        Record(time=held.time, channels={one: held.channels[one] for one in names}, units=units),
+        Record(time=held.time, channels={channel: held.channels[channel] for channel in names}, units=units),
         Record(time=run.time, channels=run.recording.channels, units=run.recording.units),
         times,
     )
@@ -179,19 +180,19 @@ def _read(
     window: float | None,
 ) -> Measured:
     """Return the chosen channels of a file under the names of the model."""
-    known = (*car.vehicle.channels, *car.vehicle.load_channels)
+    model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
-    return read_measured(file, known, asked, turned=turned, window=window)
+    return read_measured(file, model_channels, asked, inverted=turned, window=window)
 
 
 def _signal(source: Signal | Path | str, car: Car) -> Signal:
-    """Return a signal, a file of one plate under the shaker wheel; a name without an ending is a shipped file."""
+    """Return a signal; read a file with one plate for the shaker wheel; a name without suffix is a shipped file."""
     if isinstance(source, Signal):
         return source
     return read_signal(find_input(source if "." in str(source) else f"{source}.csv"), wheel=car.vehicle.shaker_wheel)
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:
-    """Return the messages on a file, with its name."""
+    """Return the notices on a file, each with the file name."""
     return tuple(f"{file.name}: {text}" for text in (*measured.notices, *more))

@@ -1,4 +1,4 @@
-"""Measured time histories that the car shall meet."""
+"""Measured time histories as a target of a fit."""
 
 from __future__ import annotations
 
@@ -17,25 +17,25 @@ from vehicle.signals.records.table import Record
 Vector = npt.NDArray[np.float64]
 
 KEPT = 2.0
-"""Samples kept for each period of the low-pass frequency: white noise then stays nearly white."""
+"""Samples per period of the low-pass frequency after decimation: white noise then stays nearly white."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RecordTarget:
-    """Time histories of one signal.
+    """Target of a fit: time histories on one signal.
 
-    Residuals, one row for each channel: (y - ym) over the RMS of y in the window, both after the same low-pass filter.
-    How large the noise of a channel really is the fit finds from the residuals. Without the filter the jumps of an
-    acceleration at the end of stick are edges between two samples: most of what the record seems to tell would come
-    from single samples, and the sum of squares would be rough where an edge moves across one.
+    Residuals have one row for each channel: (y - ym) over the RMS of y in the window, both after the same low-pass
+    filter. The fit estimates the noise of a channel from the residuals. Without the filter an acceleration jumps
+    between two samples at the end of stick: single samples would dominate the sum of squares, which would be rough
+    where a jump moves across a sample.
 
     Attributes:
-        name: of the record, for reports.
+        name: name of the record, for reports.
         signal: plate displacement.
         record: the measured channels, in the units and at the times of the recording of the car.
-        window: begin and end of the part that counts [s].
-        lowpass: Butterworth low-pass of order 4 forwards and backwards, -6 dB at this frequency [Hz]; two samples are
-            kept for each of its periods, so that the noise of neighbours stays nearly independent.
+        window: begin and end of the included part [s].
+        lowpass: -6 dB frequency of a Butterworth low-pass of order 4, forwards and backwards [Hz]; two samples are kept
+            for each period, so that the noise of neighbouring samples stays nearly independent.
     """
 
     name: str
@@ -48,11 +48,11 @@ class RecordTarget:
         count, step = self.record.time.size, self.record.step
         if not 0.0 < self.lowpass <= 0.4 / step:
             raise ConfigurationError(
-                f"{self.name}: found a low-pass of {self.lowpass:g} Hz for {count} samples; allowed is up to 0.4 times "
+                f"{self.name}: found a low-pass of {self.lowpass:g} Hz for {count} samples, must be at most 0.4 times "
                 "the sampling rate"
             )
         if not self.record.channels:
-            raise DataError(f"{self.name}: no time history; give at least one channel")
+            raise DataError(f"{self.name}: no time history; specify at least one channel")
         for channel, values in self.record.channels.items():
             channel_units([channel])
             if not np.any(values[self.inside]):
@@ -60,29 +60,29 @@ class RecordTarget:
 
     @property
     def kept(self) -> npt.NDArray[np.int64]:
-        """Indices of the samples that count after the filter."""
+        """Return the indices of the samples in the window after decimation."""
         every = max(int(1.0 / (KEPT * self.lowpass * self.record.step) + 1e-9), 1)
         return np.flatnonzero(self.inside)[::every]
 
     @property
     def inside(self) -> npt.NDArray[np.bool_]:
-        """Which samples count, (n,)."""
+        """Return the mask of the samples in the window, (n,)."""
         return np.asarray((self.record.time >= self.window[0]) & (self.record.time <= self.window[1]))
 
     @property
     def rows(self) -> tuple[str, ...]:
-        """What each row of the residuals is."""
+        """Return the names of the rows of the residuals."""
         return tuple(f"{self.name}, {channel}" for channel in self.record.channels)
 
     def measured(self) -> Vector:
-        """The filtered data in the window, (channels, samples)."""
+        """Return the filtered measured data in the window, (channels, samples)."""
         return self._filtered(np.array(list(self.record.channels.values())))
 
     def model_histories(self, model: Car | Run) -> Vector:
-        """Those of a car by the reduced engine, or of a run of the signal, filtered, (channels, samples).
+        """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, samples).
 
         Raises:
-            DataError: the run is not sampled as the data.
+            DataError: the run has other sampling times than the data.
         """
         names, time = tuple(self.record.channels), self.record.time
         run = model if isinstance(model, Run) else model.run(self.signal, engine="reduced", channels=names)
@@ -94,7 +94,7 @@ class RecordTarget:
         return self._filtered(np.array([run[name] for name in names]))
 
     def residuals(self, model: Car | Run) -> Vector:
-        """(y - ym) over the RMS of y, (channels, samples); ym as of `model_histories`."""
+        """Return (y - ym) over the RMS of y, (channels, samples), with ym from `model_histories`."""
         measured = self.measured()
         return np.asarray(
             (measured - self.model_histories(model)) / np.sqrt(np.mean(measured**2, axis=1, keepdims=True))

@@ -1,0 +1,110 @@
+"""Batches of cases: values independent of the other cases of a batch, single failures, and reruns with MuJoCo."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.seat_value import weighted_rms_of
+from vehicle.signals.excitation.bump import bump_shape
+from vehicle.signals.excitation.signal import Signal, uniform_time
+from vehicle.studies.sweeps.case import Case
+from vehicle.studies.sweeps.case_evaluation import evaluate
+from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
+
+MEASURE = ComfortMeasure(skip=0.2)
+ROADS = [ShortRoad(name="one"), ShortRoad(name="two", seed=2)]
+
+
+def numbers(results):
+    return [repr((result.values, result.engine, result.reason)) for result in results]  # with all digits, and NaN
+
+
+@pytest.fixture(scope="module")
+def cases():
+    """Return nine cars, more than a SIMD vector holds, on a road, and five of the cars on another road."""
+    cars = grid({"damper.coulomb_friction": [62.5, 125.0, 250.0], "damper.viscous": [900.0, 2250.0, 4000.0]}, ROADS)
+    return cars[:14]
+
+
+@pytest.fixture(scope="module")
+def batch_results(cases):
+    return evaluate(cases, MEASURE)
+
+
+def test_a_row_is_independent_of_the_batch(cases, batch_results):
+    # Bitwise equal as a single case, in another order, and in a small batch.
+    assert not any(result.reason for result in batch_results)
+    for subset in ([3], [13], [12, 0, 5], list(reversed(range(14)))):
+        assert numbers(evaluate([cases[i] for i in subset], MEASURE)) == numbers([batch_results[i] for i in subset])
+
+
+def test_rows_are_those_of_single_runs(cases, batch_results):
+    for case, result in list(zip(cases, batch_results, strict=True))[::5]:
+        run = Car.load(None, case.overrides).run(case.source.signal(), engine="reduced", channels=MEASURE.channels)
+        for name, value in MEASURE(run).items():
+            # Error of the longer step. A second of road has 800 samples after the lead: a share changes by one sample.
+            slack = {"rel": 2e-3} if "comfort" in name or "weighted" in name else {"abs": 1.5 / 800}
+            if name in WAVE_NAMES:  # parts of a complex number, which may be near zero
+                slack = {"abs": 2e-3 * result.values["comfort_overall"]}
+            assert result.values[name] == pytest.approx(value, nan_ok=True, **slack)
+        weighted = weighted_rms_of(
+            run.recording.timestep, [run[f"seat_rail_acc_{axis}"] for axis in "xyz"], skip=MEASURE.skip
+        )
+        assert result.values["seat_rail_weighted_overall"] == pytest.approx(weighted[3], rel=2e-3)
+        fine = replace(MEASURE, timestep=1.25e-4)
+        (near,) = evaluate([case], fine)
+        assert near.values["comfort_overall"] == pytest.approx(fine(run)["comfort_overall"], rel=2e-4)
+
+
+@dataclass(frozen=True)
+class Picky(ComfortMeasure):
+    """Measure that raises an error for runs with much slip, and returns infinity for runs with little slip."""
+
+    def of(self, runs):
+        values = super().of(runs)
+        if (values["slip_share_fr"] > 0.25).any():
+            raise ValueError("slips too much")
+        return values | {"comfort_x": np.where(values["slip_share_fr"] < 0.1, math.inf, values["comfort_x"])}
+
+
+def test_only_the_run_that_fails_fails(cases, batch_results):
+    shares = [result.values["slip_share_fr"] for result in batch_results]
+    assert min(shares) < 0.1 and max(shares) > 0.25
+    bad = [
+        Case(source=ROADS[0], overrides=("damper.viscous=-1",)),
+        Case(source=ROADS[0], overrides=("damper.viscosity=1",)),
+        Case(source=Signal(time=uniform_time(samples=501, timestep=1e-3), displacement={"rr": np.zeros(501)})),
+    ]
+    results = evaluate([*bad, *cases], Picky(skip=0.2))
+    assert "viscous: found -1.0" in results[0].reason and "viscosity" in results[1].reason
+    for share, result, before in zip(shares, results[3:], batch_results, strict=True):
+        if share > 0.25:
+            assert result.reason == "ValueError: slips too much" and not result.values
+        elif share < 0.1:
+            assert result.reason.startswith("SimulationError: comfort_x: infinite")
+        else:
+            assert numbers([result]) == numbers([before])
+
+
+def test_only_a_car_outside_the_valid_range_runs_in_mujoco():
+    # A bump of 40 mm rotates the stabilizer beyond the limit; a bump of 5 mm does not.
+    time = uniform_time(samples=601, timestep=1e-3)
+    bumps = [Signal(time=time, displacement={"fr": bump_shape(time, amplitude=a, start=0.1)}) for a in (0.04, 0.005)]
+    results = evaluate([Case(source=bump, engine=engine) for bump in bumps for engine in ("auto", "reduced")], MEASURE)
+    assert [result.engine for result in results] == ["mujoco", "reduced", "reduced", "reduced"]
+    run = Car.load().run(bumps[0], engine="auto", channels=MEASURE.channels)
+    assert run.recording.statistics.engine == "mujoco"
+    assert results[0].values == pytest.approx(MEASURE(run), rel=1e-12, nan_ok=True)
+    assert results[2].values == results[3].values
+
+
+def test_a_measure_of_single_runs(cases):
+    (result,) = evaluate(cases[:1], Peak())
+    run = Car.load(None, cases[0].overrides).run(cases[0].source.signal(), engine="reduced")
+    assert result.values["peak"] == pytest.approx(float(abs(run["seat_rail_acc_z"]).max()), rel=1e-9)

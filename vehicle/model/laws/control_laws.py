@@ -1,0 +1,125 @@
+"""Control laws of semi-active dampers, with the dynamics between sensor and valve: period, delay, rate.
+
+A law demands a force F along the damper (positive: attraction of body and wheel); vb and vw are the absolute
+velocities of its ends on the body and on the wheel, v = vb - vw is the rate of extension. A damper only dissipates: its
+force is c v with cmin <= c <= cmax.
+
+    skyhook     F = c_sky vb       a damper between body and sky
+    groundhook  F = -c_ground vw   a damper between wheel and ground
+    hybrid      F = share [c_sky vb] + (1 - share) [-c_ground vw],   [F] = F where F v > 0, else 0
+
+Continuous laws approximate F within the limits. On-off laws switch to cmax if F v > 0, otherwise to cmin; the hybrid
+law switches by share and 1 - share of the range. Without the brackets the hybrid law would demand c v / 2 if both gains
+are c and the share is a half: a passive damper.
+
+Once a period the controller reads both velocities and holds its demand until the next reading. The damper receives the
+demand after the delay, and follows with its maximum rate; c v opposes v at every instant.
+
+The functions accept scalars and arrays, for the complete car and for batches of lumped models.
+
+Source: Karnopp, Crosby, Harwood (1974) for skyhook; Ahmadian (1997) for groundhook and hybrid.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.compiler import jitable
+from vehicle.model.parameters.semi_active_damper import AT_ONCE, SemiActiveDamper
+
+SETTING = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            "softest",  # cmin [N s/m]
+            "firmest",  # cmax [N s/m]
+            "sky",  # F over vb [N s/m]; for an on-off law the share of the range [-]
+            "ground",  # -F over vw, likewise
+            "on_off",  # 1 for an on-off law
+            "period",  # steps between two readings of the sensors
+            "lag",  # steps from reading to setting
+            "change",  # largest change of the coefficient in a step [N s/m]
+        )
+    ],
+    align=True,
+)
+"""Record of a controlled damper for a given time step."""
+
+HELD, REACHED, PRESENT, RING = 0, 1, 2, 3
+"""Indices in the memory of a damper: demand, coefficient at the end of the step, its mean over the step, demands of the
+past steps."""
+
+
+def pack(control: SemiActiveDamper) -> npt.NDArray[np.float64]:
+    """Return the parameters of a controlled damper, in the order of `SETTING`, but with times [s] and a rate; (8,)."""
+    family = control.law.removesuffix("_on_off")
+    share = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": control.skyhook_share}[family]
+    sky, ground = share, 1.0 - share
+    if family == control.law:
+        sky, ground = sky * control.skyhook_damping, ground * control.groundhook_damping
+    limits, times = (control.minimum_damping, control.maximum_damping), (control.control_period, control.delay)
+    return np.array([*limits, sky, ground, float(family != control.law), *times, control.rate])
+
+
+def in_steps(numbers: npt.ArrayLike, timestep: float) -> npt.NDArray[Any]:
+    """Return the records of controlled dampers for a time step.
+
+    Args:
+        numbers: parameters from `pack`, (..., 8).
+        timestep: time step [s]; period and delay are rounded to whole steps, the period to at least one.
+
+    Returns:
+        Records of `SETTING`, (...).
+    """
+    records = np.array(numbers, dtype=float)
+    records[..., 5:7] = np.rint(records[..., 5:7] / timestep)
+    records[..., 5] = np.maximum(records[..., 5], 1.0)
+    records[..., 7] = np.where(records[..., 7] < AT_ONCE, records[..., 7] * timestep, np.inf)
+    return records.view(SETTING)[..., 0]
+
+
+def at_rest(numbers: npt.NDArray[Any], *shape: int) -> npt.NDArray[np.float64]:
+    """Return the memory of dampers before the first step, filled with the softest setting; (3 + lag + 1, ...)."""
+    return np.full((RING + int(numbers["lag"]) + 1, *shape), float(numbers["softest"]))
+
+
+@jitable
+def demanded(numbers: Any, body: Any, wheel: Any) -> Any:
+    """Return the coefficient c [N s/m] that a law demands.
+
+    Args:
+        numbers: record from `in_steps`.
+        body, wheel: vb and vw [m/s].
+    """
+    speed, way = np.abs(body - wheel), np.sign(body - wheel)
+    softest, firmest, sky, ground = numbers["softest"], numbers["firmest"], numbers["sky"], numbers["ground"]
+    if numbers["on_off"] > 0.0:
+        return softest + (firmest - softest) * (sky * (body * way > 0.0) + ground * (wheel * way < 0.0))
+    force = sky * np.maximum(body * way, 0.0) + ground * np.maximum(-wheel * way, 0.0)
+    # Limit the force before the division: the quotient stays finite, and at rest the damper is soft.
+    near = np.minimum(np.maximum(force, softest * speed), firmest * speed)
+    return np.minimum(np.maximum(near / (speed + (speed == 0.0)), softest), firmest)
+
+
+@jitable
+def act(numbers: Any, step: int, body: Any, wheel: Any, past: Any) -> None:
+    """Advance a controlled damper by one time step; `past[PRESENT]` is then its mean coefficient over the step.
+
+    Args:
+        numbers: record from `in_steps`.
+        step: number of the step, from 0.
+        body, wheel: vb and vw at the beginning of the step [m/s].
+        past: memory from `at_rest`, changed in place.
+    """
+    if step % int(numbers["period"]) == 0:
+        past[HELD] = demanded(numbers, body, wheel)
+    length = int(numbers["lag"]) + 1
+    past[RING + step % length] = past[HELD]
+    wanted, change, before = past[RING + (step + 1) % length], numbers["change"], past[REACHED] + 0.0
+    past[REACHED] = np.minimum(np.maximum(wanted, before - change), before + change)
+    # The change takes the share |moved| / change of the step, with half of it as its mean.
+    moved = past[REACHED] - before
+    past[PRESENT] = past[REACHED] - 0.5 * moved * np.abs(moved) / change

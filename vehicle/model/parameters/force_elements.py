@@ -1,0 +1,233 @@
+"""Force elements: bushings, hydromount, main spring, stabilizer, damper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.curves import require_curve
+from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
+
+STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
+STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
+MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on a shaker move by 1e-6 to a few m/s"}
+RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "a seal rubs with 50 to 500 N, and 1e5 N lock a damper for good"}
+TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
+
+FRICTION_LAWS = ("coulomb", "stribeck")
+"""Names of the friction laws; each is a module of `vehicle.model.laws`."""
+
+NUMBERS = {
+    "linear": {"viscous": "N s/m"},
+    "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},
+    "stribeck": {"stribeck_friction": "N", "stribeck_velocity": "m/s", "stribeck_exponent": "-"},
+}
+"""Parameters of a damper that only one law requires, with their units."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ForceTable:
+    """Force over displacement through points, positive in extension; outer segments are extrapolated."""
+
+    displacement: tuple[float, ...] = quantity("m", "displacements, compression negative", at_least=-2.0, at_most=2.0)
+    force: tuple[float, ...] = quantity("N", "forces, compression negative", at_least=-1e7, at_most=1e7)
+
+    def __post_init__(self) -> None:
+        validate(self)
+        require_curve("ForceTable", "displacement", self.displacement, self.force)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bushing:
+    """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle.
+
+    A table of an axis replaces its K: force over the displacement of the moving part, without load at F = 0.
+    """
+
+    stiffness: Point = quantity("N/m", "Kx, Ky, Kz", at_least=0.0, length=3, **STIFFEST)
+    damping: Point = quantity("N s/m", "Dx, Dy, Dz", at_least=0.0, length=3, **STRONGEST)
+    rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
+    table_x: ForceTable | None = None
+    table_y: ForceTable | None = None
+    table_z: ForceTable | None = None
+    one_sided: bool = False
+    """for a contact with the ground: the vertical force is max(0, load - K r - D r'), so that it never pulls"""
+
+    def __post_init__(self) -> None:
+        validate(self)
+        if self.one_sided and self.table_z is not None:
+            raise ConfigurationError(
+                f"{type(self).__name__}.one_sided: found true together with table_z; a one-sided contact "
+                "needs a stiffness; remove one of both"
+            )
+
+
+SLIPPING: dict[str, Any] = {"at_least": 1e3, "at_most": 1e7, "why": "a car tyre has 2e4 to 2e5 per unit of slip"}
+CARCASS: dict[str, Any] = {"at_least": 1e4, "at_most": 1e7, "why": "a car tyre has 5e4 to 8e5 N/m"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Tyre(Bushing):
+    """Tyre between hub and plate: a bushing at rest; if it rolls, its horizontal force comes from slip.
+
+    K and D along x and y and the rotational stiffness describe the tyre at rest and do not act on a rolling tyre.
+    """
+
+    slip_stiffness: float | None = quantity(
+        "N", "C_kappa, force over longitudinal slip of the rolling tyre at its static load", default=None, **SLIPPING
+    )
+    cornering_stiffness: float | None = quantity(
+        "N/rad", "C_alpha, force over slip angle of the rolling tyre at its static load", default=None, **SLIPPING
+    )
+    carcass_longitudinal: float | None = quantity(
+        "N/m", "stiffness of the carcass along x; C_kappa over it is the relaxation length", default=None, **CARCASS
+    )
+    carcass_lateral: float | None = quantity(
+        "N/m", "stiffness of the carcass along y; C_alpha over it is the relaxation length", default=None, **CARCASS
+    )
+    trail: float = quantity(
+        "m", "pneumatic trail, by which the side force acts behind the middle of the contact patch", at_least=0.0,
+        at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Hydromount:
+    """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s."""
+
+    stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
+    damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3, **STRONGEST)
+    rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
+    maxwell_stiffness: float = quantity(
+        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, **STIFFEST
+    )
+    maxwell_damping: float = quantity(
+        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, **STRONGEST
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MainSpring:
+    """Spring between the lower spring seat and the strut top, along the line between both.
+
+    A table over the extension from the unloaded length replaces the stiffness."""
+
+    stiffness: float = quantity(
+        "N/m", "stiffness", above=0.0, at_least=1e3, at_most=1e6, why="1e4 N/m in a micro car, 2e5 N/m in a van"
+    )
+    table: ForceTable | None = None
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Stabilizer:
+    """Torsion spring between the two halves of the stabilizer bar."""
+
+    torsional_stiffness: float = quantity(
+        "N m/rad", "torque over relative angle of the halves", at_least=0.0, **TWISTED
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SlideSpring:
+    """Spring and damper along a slide: f = -k q - d q'."""
+
+    stiffness: float = quantity("N/m", "stiffness", at_least=0.0, **STIFFEST)
+    damping: float = quantity("N s/m", "damping", at_least=0.0, default=0.0, **STRONGEST)
+
+    def __post_init__(self) -> None:
+        validate(self)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Damper:
+    """F = D v + clamp(c v, limit(v)), plus (Ddeg - D) v up to Vdeg and (Ddeg - D) Vdeg above, if degressive.
+
+    With the table law, D v is replaced by straight lines through points of velocity and force, positive in extension
+    and extrapolated. The gas force extends the damper; in static equilibrium the preload of the springs balances it.
+    The stop is a parallel spring, bump and rebound stop in one: force over the displacement from the design position.
+    Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
+    the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
+    The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
+    Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law.
+    """
+
+    viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
+    viscous_law: str = quantity("-", "law of the damping", choices=("linear", "degressive", "table"))
+    degressive_viscous: float | None = quantity(
+        "N s/m", "Ddeg, slope of the degressive law below Vdeg", at_least=0.0, default=None, **STRONGEST
+    )
+    degressive_velocity: float | None = quantity(
+        "m/s", "Vdeg, where the degressive law turns flatter", above=0.0, default=None, **MOVING
+    )
+    velocity: tuple[float, ...] = quantity(
+        "m/s", "velocities of the table law, bump negative", default=(), at_least=-10.0, at_most=10.0
+    )
+    force: tuple[float, ...] = quantity(
+        "N", "forces of the table law, bump negative", default=(), at_least=-1e6, at_most=1e6
+    )
+    gas_force: float = quantity(
+        "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
+    )
+    stop: ForceTable | None = None
+    control: SemiActiveDamper | None = None
+    friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
+    coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
+    smoothing: float = quantity(
+        "s/m",
+        "eps: friction has the slope (2/pi) Fd eps at rest",
+        above=0.0,
+        at_least=10.0,
+        at_most=1e8,
+        why="friction is full at a few times 1/eps; beyond 1e9 the integration drowns in round-off",
+    )
+    stribeck_friction: float | None = quantity(
+        "N", "Fs, friction at rest of the Stribeck law", at_least=0.0, default=None, **RUBBED
+    )
+    stribeck_velocity: float | None = quantity(
+        "m/s", "vs, critical velocity of the Stribeck law", above=0.0, default=None, **MOVING
+    )
+    stribeck_exponent: float | None = quantity(
+        "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual", default=None
+    )
+    slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0, **MOVING)
+
+    def __post_init__(self) -> None:
+        validate(self)
+        for key, law in (("viscous_law", self.viscous_law), ("friction_law", self.friction_law)):
+            for name, unit in NUMBERS.get(law, {}).items():
+                if getattr(self, name) is None:
+                    raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
+        if self.static_friction < self.coulomb_friction:
+            raise ConfigurationError(
+                f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
+                f"coulomb_friction ({self.coulomb_friction!r} N)"
+            )
+        if self.viscous_law == "table":
+            require_curve("Damper", "velocity", self.velocity, self.force)
+        if self.viscous_law == "degressive" and (self.degressive_viscous or 0.0) < (self.viscous or 0.0):
+            raise ConfigurationError(
+                f"Damper.degressive_viscous: found {self.degressive_viscous!r} N s/m, must be at least "
+                f"viscous ({self.viscous!r} N s/m)"
+            )
+
+    @property
+    def controlled(self) -> SemiActiveDamper | None:
+        """Control of a semi-active damper; None for a passive damper."""
+        return None if self.control is None or self.control.law == PASSIVE else self.control
+
+    @property
+    def static_friction(self) -> float:
+        """Friction limit at rest [N]: Fs for the Stribeck law, Fd for the Coulomb law."""
+        return (self.stribeck_friction or 0.0) if self.friction_law == "stribeck" else self.coulomb_friction

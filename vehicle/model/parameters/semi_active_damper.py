@@ -1,0 +1,59 @@
+"""Damper with a controlled coefficient: limits, gains of the control laws, delay and rate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.quantity import quantity, validate
+
+PASSIVE = "passive"
+"""Name of the law of an uncontrolled damper."""
+
+LAWS = ("skyhook_on_off", "skyhook", "groundhook_on_off", "groundhook", "hybrid_on_off", "hybrid")
+"""Names of the laws of `vehicle.model.laws.control_laws`."""
+
+AT_ONCE = 1e12
+"""Rate of the coefficient [N s/m per s] that means no limit."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SemiActiveDamper:
+    """Limits of an adjustable damper and gains of its control law; without effect if the law is "passive".
+
+    The coefficient replaces the viscous law of the damper: F = c v, cmin <= c <= cmax. Friction, gas force and stop
+    remain.
+    """
+
+    law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS), default=PASSIVE)
+    minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
+    maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0, at_most=1e6)
+    skyhook_damping: float = quantity("N s/m", "damper between body and sky", at_least=0.0)
+    groundhook_damping: float = quantity("N s/m", "damper between wheel and ground", at_least=0.0)
+    skyhook_share: float = quantity(
+        "-", "share of skyhook in the hybrid law, the rest is groundhook", at_least=0.0, at_most=1.0
+    )
+    control_period: float = quantity("s", "time between two settings of the dampers", above=0.0, at_most=1.0)
+    delay: float = quantity(
+        "s",
+        "from the reading of the sensors to the setting of the damper",
+        default=0.0,
+        at_least=0.0,
+        at_most=1.0,
+        why="electronics and valve take 5 to 30 ms",
+    )
+    rate: float = quantity(
+        "N s/m per s",
+        "fastest change of the coefficient; 1e12 is none",
+        default=AT_ONCE,
+        above=0.0,
+        at_most=AT_ONCE,
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        if self.maximum_damping < self.minimum_damping:
+            raise ConfigurationError(
+                f"SemiActiveDamper.maximum_damping: found {self.maximum_damping!r} N s/m, "
+                f"must be at least minimum_damping {self.minimum_damping!r} N s/m"
+            )

@@ -1,0 +1,135 @@
+"""Differences of a car from the shipped car, and between several runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.base_car import vehicle_table
+from vehicle.model.parameters.shipped import CARS, vehicle_file
+from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.names import side_of
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.signals.records.run_summary import slip_shares
+
+LARGEST_SHARE = 0.5
+"""Largest share of other or further parameters in a car that was made from a shipped one: above it a car counts
+as a new car. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
+
+
+def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, object]]:
+    """Yield the full path and the value of every parameter of a vehicle file."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from flattened(value, f"{path}{key}.")
+        else:
+            yield path + key, value
+
+
+def shipped_origin(vehicle: Vehicle) -> Vehicle | None:
+    """Return the shipped car of the same name, else the shipped car with the fewest different parameters.
+
+    Args:
+        vehicle: the car.
+
+    Returns:
+        The shipped car; None if every shipped car differs in more than `LARGEST_SHARE` of the parameters.
+    """
+    if vehicle.name in CARS:
+        return load_vehicle(vehicle_file(vehicle.name))
+    parameters, shares = dict(flattened(vehicle.table)), dict[str, float]()
+    for name in CARS:
+        other = dict(flattened(vehicle_table(vehicle_file(name))))
+        paths = {*parameters, *other}
+        shares[name] = sum(parameters.get(path) != other.get(path) for path in paths) / len(paths)
+    nearest = min(shares, key=lambda name: shares[name])
+    return load_vehicle(vehicle_file(nearest)) if shares[nearest] <= LARGEST_SHARE else None
+
+
+def changed_parameters(vehicles: Sequence[Vehicle]) -> list[tuple[str, str, list[str]]]:
+    """Return the parameters in which cars differ.
+
+    Args:
+        vehicles: cars.
+
+    Returns:
+        Path, unit, and the value of each car as text ("–" for a missing parameter), in the order of the first car.
+    """
+    tables = [dict(flattened(vehicle.table)) for vehicle in vehicles]
+    paths = dict.fromkeys(path for table in tables for path in table)
+    changes = []
+    for path in paths:
+        values = [table.get(path) for table in tables]
+        if any(value != values[0] for value in values[1:]):
+            owner = vehicles[next(i for i, value in enumerate(values) if value is not None)]
+            changes.append((path, _unit(owner, path), [_text(value) for value in values]))
+    return changes
+
+
+def _unit(vehicle: Vehicle, path: str) -> str:
+    try:
+        return str(vehicle.quantity_of(path).get("unit", ""))
+    except (ConfigurationError, KeyError):
+        return ""
+
+
+def _text(value: object) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(_text(item) for item in value)}]"
+    return str(value)
+
+
+def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
+    """Return the key figures for the comparison of runs, by name and unit.
+
+    Args:
+        run: the run.
+    """
+    summary = run.summary
+    figures: dict[tuple[str, str], float | None] = {}
+    for point, value in summary["comfort"].items():
+        label = point.replace("_", " ")
+        figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"][
+            "weighted_rms"
+        ]
+        figures |= {
+            (f"{label}: unweighted RMS, 2 to 50 Hz, {axis}", "m/s²"): rms for axis, rms in value["rms_2_50_hz"].items()
+        }
+    shares = slip_shares(summary)
+    for wheel, share in shares.items():
+        figures[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
+        figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
+    for channel in (f"knuckle_{run.wheel}_acc_z", "seat_rail_acc_z"):
+        peaks = summary["peaks"].get(channel)
+        if peaks:
+            top = max(peaks, key=lambda peak: peak["magnitude"])
+            figures[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
+            figures[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
+    return figures
+
+
+DIFFERENCES = {"s": "s", "%": "percentage points"}
+"""Units compared by a difference instead of a ratio, with the unit of the difference: a time counts from the start of
+the record, and a share may be near zero."""
+
+
+def difference(first: float | None, other: float | None, unit: str = "") -> str:
+    """Return the change between two values: a difference for the units of `DIFFERENCES`, else in percent; or a dash.
+
+    Args:
+        first, other: values; None if missing.
+        unit: unit of both.
+    """
+    if first is None or other is None:
+        return "–"
+    if unit in DIFFERENCES:
+        return f"{other - first:+.3g} {DIFFERENCES[unit]}"
+    if first == 0.0:
+        return "–"
+    change = 100.0 * (other / first - 1.0)
+    return f"{change:+.0f} %" if abs(change) >= 10.0 else f"{change:+.1f} %"

@@ -1,0 +1,60 @@
+"""Plots of `rendering` as compact SVG elements of a page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from vehicle.runs.report.markup import Markup, tag
+
+FONTS = "'DejaVu Sans', Verdana, sans-serif"
+"""Fonts of the figures: the layout uses the first, and the second has equal widths; the page contains no fonts."""
+
+
+def drawing(plot: Callable[[Path], object], label: str) -> Markup:
+    """Return a figure as an HTML element.
+
+    Args:
+        plot: function that writes the figure to a path.
+        label: alternative text of the figure.
+
+    Returns:
+        A `figure` element with the SVG in it.
+    """
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "figure.svg"
+        plot(path)
+        text = path.read_text(encoding="utf-8")
+    return tag("figure", Markup(small(text, label)))
+
+
+def small(svg: str, label: str) -> str:
+    """Return an SVG file as a compact element: coordinates rounded to 0.01 points, no unused names.
+
+    Args:
+        svg: SVG text of matplotlib.
+        label: label of the figure.
+    """
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
+    svg = re.sub(r'<g id="[^"]*"', "<g", svg)
+    svg = re.sub(r"<!--.*?-->", "", svg, flags=re.S)
+    svg = re.sub(r"""font: ([^;"']*)'DejaVu Sans'[^;"]*""", lambda match: f"font: {match[1]}{FONTS}", svg)
+    svg = re.sub(r'(?<= d=")[^"]*(?=")', lambda match: _short(match[0]), svg)
+    svg = re.sub(r'(?<= [xy]=")-?\d+\.\d+(?=")', lambda match: _rounded(match[0]), svg)
+    svg = re.sub(r">\s+<", ">\n<", svg)
+    head, content = svg.split(">", 1)
+    view = re.search(r'viewBox="[^"]*"', head)
+    assert view is not None
+    label = tag("title", label)
+    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{label}{content.strip()}'
+
+
+def _short(path: str) -> str:
+    return " ".join(re.sub(r"-?\d+\.\d+", lambda match: _rounded(match[0]), path).split())
+
+
+def _rounded(text: str) -> str:
+    return f"{float(text):.2f}".rstrip("0").rstrip(".")

@@ -1,0 +1,181 @@
+"""Plate signals that make a car respond with measured accelerations (time waveform replication)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.names import CORNERS, in_order
+from vehicle.runs.car import Car, Run
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.records.choice import Choice
+from vehicle.signals.records.reader import read_record
+from vehicle.studies.replication.driven_car import DrivenCar
+from vehicle.studies.replication.iteration import Replication, Step, replicate
+from vehicle.studies.replication.target import Target, read_target
+
+BAND = (1.0, 50.0)
+"""Default band of the replicated response [Hz]."""
+
+MOST_ITERATIONS = 1000
+"""Maximum number of iterations."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class FoundDrive:
+    """Plate signals found from a measured response.
+
+    Attributes:
+        replication: drive, response and all iterations.
+        plant: the car with its target and its last run.
+    """
+
+    replication: Replication
+    plant: DrivenCar
+
+    def __repr__(self) -> str:
+        """Return wheels, error and outcome in a line."""
+        count = len(self.replication.steps)
+        return (
+            f"FoundDrive({', '.join(self.plant.wheels)}, error {100.0 * self.error:.3g} % after {count} runs; "
+            f"{self.replication.outcome})"
+        )
+
+    @property
+    def signal(self) -> Signal:
+        """Return the plate signals [m], as `Car.run` takes them."""
+        return self.plant.signal(self.replication.drive)
+
+    @property
+    def error(self) -> float:
+        """Return RMS of target minus response over RMS of the target, in the band [-]."""
+        return self.replication.error
+
+    @property
+    def run(self) -> Run:
+        """Return the last run of the iteration."""
+        assert self.plant.last is not None
+        return self.plant.last
+
+
+def replicate_drive(
+    car: Car,
+    target: Path | str,
+    channels: Mapping[str, str] | Sequence[str],
+    *,
+    choice: Choice | None = None,
+    wheels: Sequence[str] | None = None,
+    band: tuple[float, float] = BAND,
+    iterations: int = 15,
+    gain: float = 0.8,
+    target_error: float = 1e-3,
+    engine: str = "auto",
+    progress: Callable[[Step], None] = lambda step: None,
+) -> FoundDrive:
+    """Find the plate signals that make the car respond with measured accelerations.
+
+    Args:
+        car: the car.
+        target: measured accelerations, of any format.
+        channels: channel of the car to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}; or a list of channels
+            of the car if the file uses the same names or has a single channel. At least as many channels as plates.
+        choice: units, rate and excerpt of the file.
+        wheels: wheels whose plates are driven, as ("fr",); by default the wheels in the names of the channels, or the
+            wheel on the shaker.
+        band: frequency band in which the response is replicated [Hz]; begin above the noise of the sensor.
+        iterations: maximum number of runs.
+        gain: share of the correction that a step makes [-], above 0 and up to 1.
+        target_error: relative RMS error at which the iteration ends [-].
+        engine: as in `Car.run`.
+        progress: called with each step of the iteration.
+
+    Returns:
+        The best drive with its error; `save_drive` writes all files.
+
+    Raises:
+        ConfigurationError: a channel, wheel or number out of range.
+        DataError: bad data, another quantity than acceleration, or nothing in the band.
+        SimulationError: no drive responds better than plates at rest.
+    """
+    require_iteration(band, iterations, gain, target_error)
+    path, options = Path(target), choice or Choice()
+    names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, options)
+    car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
+    wanted = read_target(path, names, options, band, car.vehicle.solver.record_rate)
+    plant = DrivenCar(car, driven_wheels(wheels, wanted, car.vehicle.shaker_wheel), wanted, engine)
+    replication = replicate(
+        plant,
+        wanted.values,
+        wanted.lines,
+        iterations=iterations,
+        gain=gain,
+        tolerance=target_error,
+        possible=plant.possible,
+        settled=plant.settled,
+        progress=progress,
+    )
+    if not any(step.kept for step in replication.steps):
+        raise SimulationError(f"{path}: no drive has a smaller error than plates at rest; {replication.outcome}")
+    return FoundDrive(replication=replication, plant=plant)
+
+
+def require_iteration(band: tuple[float, float], iterations: int, gain: float, target_error: float) -> None:
+    """Check the settings of an iteration.
+
+    Args:
+        band: lower and upper edge [Hz].
+        iterations: maximum number of runs.
+        gain: share of the correction [-].
+        target_error: relative error at which the iteration ends [-].
+
+    Raises:
+        ConfigurationError: a setting is out of range.
+    """
+    if not 0.0 < band[0] < band[1]:
+        raise ConfigurationError(
+            f"--band {band[0]:g}:{band[1]:g}: must be two frequencies above 0 Hz, the lower one first: 1:50"
+        )
+    if not 1 <= iterations <= MOST_ITERATIONS:
+        raise ConfigurationError(f"--iterations {iterations}: must be 1 to {MOST_ITERATIONS}")
+    if not 0.0 < gain <= 1.0:
+        raise ConfigurationError(f"--gain {gain:g}: must be above 0 and up to 1")
+    if not 0.0 < target_error < 1.0:
+        raise ConfigurationError(f"--target-error {100.0 * target_error:g} %: must be above 0 and below 100")
+
+
+def named_channels(file: Path, names: Sequence[str], choice: Choice) -> dict[str, str]:
+    """Return channel of the car to channel of the file: of the same name, or the only channel of the file.
+
+    Args:
+        file: measurement file of any format.
+        names: channels of the car.
+        choice: databases to decode the log of a CAN bus.
+    """
+    if isinstance(names, str):
+        names = (names,)
+    if len(names) == 1 and len(read_record(file, choice.databases).channels) == 1:
+        return {names[0]: "1"}
+    return {name: name for name in names}
+
+
+def driven_wheels(asked: Sequence[str] | None, target: Target, shaker_wheel: str) -> tuple[str, ...]:
+    """Return the wheels whose plates are driven.
+
+    Args:
+        asked: names of wheels; None for the wheels in the names of the channels, or else the wheel on the shaker.
+        target: accelerations to be replicated.
+        shaker_wheel: wheel on the shaker of the car.
+
+    Raises:
+        ConfigurationError: more plates than channels.
+    """
+    named = {part for name in target.channels for part in name.split("_") if part in CORNERS.values()}
+    driven = in_order(set(asked) if asked else named or {shaker_wheel})
+    if len(driven) > len(target.channels):
+        raise ConfigurationError(
+            f"{len(driven)} plates ({', '.join(driven)}) and {len(target.channels)} channel: use at least as many "
+            "channels as plates"
+        )
+    return driven

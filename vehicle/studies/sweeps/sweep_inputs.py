@@ -1,0 +1,96 @@
+"""Inputs of a sweep from files, names of shipped files, roads and signals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.runs.car import Car
+from vehicle.runs.car.road import Road
+from vehicle.signals.excitation.evaluation_start import evaluation_start
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.signal import Signal
+from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
+
+Source = Input | Road | Path | str
+"""Input of a run: a file, the name of a shipped file, a road, a signal, or a user-defined input."""
+
+START_S = 2.0
+"""Default start of the evaluation on plate signals [s]: the car starts at rest."""
+
+
+def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
+    """Return the inputs of the runs of a car.
+
+    Args:
+        car: the car, with the positions of its wheels on a road.
+        sources: one or several sources.
+
+    Returns:
+        Inputs in the order of the sources; the name of a road contains the seed if the road appears with several seeds.
+
+    Raises:
+        ConfigurationError: no input, a missing file, or a road that the car cannot drive on.
+        DataError: an input cannot be read, or was sampled below 125 Hz.
+    """
+    listed = list(sources) if isinstance(sources, Sequence) and not isinstance(sources, str) else [sources]
+    if not listed:
+        raise ConfigurationError("inputs: no input; pass a file, or a road, as Road('C', speed=80)")
+    inputs: list[Input] = []
+    for source in listed:
+        if isinstance(source, Road):
+            inputs.append(source.under(car.vehicle, car.overrides))
+        elif isinstance(source, str | Path):
+            inputs.append(SignalFile(path=find_input(source).resolve(), wheel=car.vehicle.shaker_wheel))
+        else:
+            inputs.append(source)
+    for entry in inputs:
+        if isinstance(entry, SignalFile | Signal) and (highest := signal_of(entry).highest) is not None:
+            raise DataError(
+                f"{entry.name}: contains vibration only up to {highest:g} Hz, comfort in 2 to 50 Hz needs a record of "
+                "at least 125 Hz; run `python -m vehicle shaker`, whose results end at that frequency"
+            )
+    return [_tagged(entry, inputs) for entry in inputs]
+
+
+def _tagged(source: Input, others: Sequence[Input]) -> Input:
+    """Return an input; add the seed to the name of a road if the same road appears with several seeds."""
+    if not isinstance(source, RoadDrive):
+        return source
+    seeds = {other.seed for other in others if isinstance(other, RoadDrive) and other.name == source.name}
+    return replace(source, tagged=True) if len(seeds) > 1 else source
+
+
+def common_start(inputs: Sequence[Input], skip: float | None) -> float:
+    """Return the common start of the evaluation for all inputs [s].
+
+    Args:
+        inputs: the inputs.
+        skip: requested start [s]; None for the latest default start of the roads, or `START_S` without a road.
+
+    Raises:
+        ConfigurationError: the start is negative, not finite, or not before the end of every input.
+        DataError: an input cannot be read.
+    """
+    defaults = [float(start) for source in inputs if (start := getattr(source, "skip", None)) is not None]
+    durations = {source.name: signal_of(source).duration for source in inputs}
+    return evaluation_start(durations, skip, max(defaults, default=START_S))
+
+
+def file_of(car: Car) -> Path | None:
+    """Return the vehicle file of a car, which workers load again; None for the Focus.
+
+    Raises:
+        ConfigurationError: the car was not loaded from a file, or modified after loading.
+    """
+    file = car.origin["file"]
+    path = None if file is None else Path(str(file))
+    if load_vehicle(path, car.overrides).table != car.vehicle.table:
+        raise ConfigurationError(
+            f"{car.vehicle.name}: a sweep needs a car loaded from a file; load the car with Car.load(FILE)"
+        )
+    return path

@@ -1,0 +1,153 @@
+"""Result of a fit: values, standard errors, correlation, and residual statistics row by row."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.model.parameters.ranges import Range
+from vehicle.studies.tuning.identifiability import Unidentified
+
+Vector = npt.NDArray[np.float64]
+
+
+SURE = 2.0
+"""Minimum significant correlation of neighbours, in standard errors 1/sqrt(n) of the correlation, n values of all rows.
+"""
+
+LEAST_VALUES = 8
+"""Minimum number of values from which the scale of a row is estimated; a shorter row uses the assumed deviation."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RowStatistics:
+    """Statistics of the residuals of one row over the assumed standard deviation.
+
+    Attributes:
+        name: name of the row.
+        count: number of included values.
+        mean: mean of the residuals [-].
+        rms: RMS of the residuals, corrected for the degrees of freedom of the parameters; 1 if the assumed deviation
+            was right [-].
+        neighbours: correlation of neighbouring samples, 0 for independent samples [-].
+        inflation: samples per independent value, (1 + rho) / (1 - rho) for a significant correlation rho of all rows of
+            the target, else 1 [-].
+    """
+
+    name: str
+    count: int
+    mean: float
+    rms: float
+    neighbours: float
+    inflation: float
+
+    @property
+    def scale(self) -> float:
+        """Return the factor on the assumed standard deviation that weights a row by its independent values [-]."""
+        return float(self.rms * np.sqrt(self.inflation))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TuningResult:
+    """Fitted parameters with standard errors, correlation and residual statistics.
+
+    Attributes:
+        parameters: all parameters with bounds and start values.
+        values: path to fitted value; the start value of a held parameter.
+        standard_errors: path to standard error, in the unit of the value; NaN for a parameter held or at a bound.
+        free: paths that were fitted and are not at a bound: rows of `correlation`.
+        correlation: correlation of the free parameters, (p, p).
+        unidentified: unidentifiable parameters, held at their start values.
+        at_bound: paths whose value ended at a bound: wrong bounds, or a model that cannot reproduce the data.
+        condition: largest over smallest singular value of the weighted Jacobian, columns in half widths [-].
+        rows: statistics of the residuals, row by row.
+        before: root of the mean square of the weighted residuals at the start [-].
+        after: root of the mean square at the fitted values [-]; 1 if the residuals are as large as the estimated noise.
+        cost: half the sum of squares of the weighted residuals.
+        evaluations: number of model evaluations, including those for the Jacobians.
+        converged: True if the iteration ended at a minimum.
+        message: message of the optimiser.
+        sensitivity: -(J' J)^-1 J' of the free parameters, (p, residuals): d ln(value) / d (weighted residuals).
+        weights: weights of the residuals, (residuals,): 1 over the scale of the row.
+    """
+
+    parameters: tuple[Range, ...]
+    values: Mapping[str, float]
+    standard_errors: Mapping[str, float]
+    free: tuple[str, ...]
+    correlation: Vector
+    unidentified: tuple[Unidentified, ...]
+    at_bound: tuple[str, ...]
+    condition: float
+    rows: tuple[RowStatistics, ...]
+    before: float
+    after: float
+    cost: float
+    evaluations: int
+    converged: bool
+    message: str
+    sensitivity: Vector
+    weights: Vector
+
+    def deviation(self, path: str, value: float) -> float:
+        """Return (fitted - value) of a parameter over its standard error [-]."""
+        return (self.values[path] - value) / self.standard_errors[path]
+
+    def shift(self, residuals: Vector) -> dict[str, float]:
+        """Return the Gauss-Newton step of the free parameters for given residuals.
+
+        Args:
+            residuals: unweighted residuals in the order of the targets and their rows, (residuals,).
+
+        Returns:
+            Path to step of ln(value).
+        """
+        step = self.sensitivity @ (residuals * self.weights)
+        return {path: float(component) for path, component in zip(self.free, step, strict=True)}
+
+
+def target_statistics(names: Sequence[str], rows: Sequence[Vector], freedom: float) -> tuple[RowStatistics, ...]:
+    """Return the statistics of the rows of one target.
+
+    The residuals are modelled as a first-order autoregression, whose mean over n values varies like the mean of
+    n (1 - rho) / (1 + rho) independent values. All rows share one rho, because one estimator or filter made all rows;
+    the rho of a single short row would scatter, and so would the weights.
+
+    Args:
+        names: names of the rows.
+        rows: residuals, zero where a value is excluded; (n,) each.
+        freedom: degrees of freedom of all residuals over their number [-].
+
+    Returns:
+        Statistics of each row; `neighbours` is computed from the row, `inflation` from all rows.
+
+    Source: Bartlett, On the theoretical specification and sampling properties of autocorrelated time-series, Journal of
+    the Royal Statistical Society B 8, 1946.
+    """
+    values = [row[row != 0.0] for row in rows]
+    correlations = [
+        float(np.sum(residuals[1:] * residuals[:-1]) / np.sum(residuals**2)) if residuals.size >= LEAST_VALUES else 0.0
+        for residuals in values
+    ]
+    counts = np.array([residuals.size if residuals.size >= LEAST_VALUES else 0 for residuals in values])
+    total = int(counts.sum())
+    inflation = 1.0
+    if total:
+        shared = float(counts @ correlations) / total
+        if shared * np.sqrt(total) > SURE:
+            shared = min(shared, 0.98)
+            inflation = (1.0 + shared) / (1.0 - shared)
+    return tuple(
+        RowStatistics(
+            name=name,
+            count=int(residuals.size),
+            mean=float(np.mean(residuals)) if residuals.size else 0.0,
+            rms=float(np.sqrt(np.mean(residuals**2) / freedom)) if residuals.size >= LEAST_VALUES else 1.0,
+            neighbours=rho,
+            inflation=inflation if residuals.size >= LEAST_VALUES else 1.0,
+        )
+        for name, residuals, rho in zip(names, values, correlations, strict=True)
+    )

@@ -1,0 +1,330 @@
+"""Weighted least squares over any number of measurements, with standard errors and identifiability.
+
+    minimise  sum over rows of  (r / scale)^2,   r = residuals over their assumed deviation,  u = ln(value / start)
+
+A first, coarse iteration uses the assumed deviations. Then the scale of each row is estimated from the residuals of the
+row (RMS, and correlation of neighbouring samples) and the fit is repeated with these scales: assumed deviations only
+have to be right within a row. The covariance of u is (J' J)^-1 C (J' J)^-1 with the residuals over their scale and
+C = sum rho_ij J_i' J_j, where rho_ij is the correlation of rows i and j of a measurement. It covers the identifiable
+parameters; the other parameters are held at their start.
+
+Source of the covariance: Zellner, Journal of the American Statistical Association 57 (1962): equations whose errors are
+correlated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.model.parameters.ranges import Range, checked_ranges
+from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, target_statistics
+from vehicle.studies.tuning.identifiability import Unidentified, covariance, worst_direction
+
+Vector = npt.NDArray[np.float64]
+
+COARSE_STEP, STEP = 0.1, 1e-3
+"""Steps of ln(value) for difference quotients. The coarse step is for values far from the minimum, where slips that
+appear and vanish make the sum of squares rough. The fine step leaves a second-order error of a thousandth."""
+
+COARSE, FINE = 1e-2, 1e-5
+"""Relative changes of the sum of squares at which an iteration ends. The coarse iteration only estimates the sizes of
+the residuals. In a fine iteration the sum of squares then changes by far less than 1, the change due to one standard
+error, for the thousands of values of a measurement."""
+
+STEADY = 1.3
+"""Maximum factor by which the scales of the rows may change in the last iteration."""
+
+MOST_ROUNDS = 8
+"""Maximum number of iterations with new scales."""
+
+REGULARISATION = 1e-3
+"""Weight of |u| in half widths of the bounds during the iterations. It moves an identifiable value by a millionth of
+the standard error, and keeps an unidentifiable value from running away."""
+
+AT_BOUND = 1e-4
+"""Distance from a bound, in half widths, below which a value counts as at the bound."""
+
+
+class Target(Protocol):
+    """Measurement that a model is compared with."""
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """Return the names of the rows of the residuals."""
+
+    def residuals(self, model: Any, /) -> Vector:
+        """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded."""
+
+
+def fit(
+    parameters: Sequence[Range],
+    targets: Sequence[Target],
+    build: Callable[[Mapping[str, float]], Any],
+    *,
+    most_iterations: int = 40,
+    progress: Callable[[int, float], None] | None = None,
+) -> TuningResult:
+    """Fit parameters to measurements by weighted least squares.
+
+    Args:
+        parameters: parameters with bounds and start values.
+        targets: measurements; the weights are estimated from the residuals of each row.
+        build: function of {path: value} that returns the model for `Target.residuals`.
+        most_iterations: maximum number of iterations of each solution. There are at least two solutions: one to
+            estimate the sizes of the residuals, one with these sizes; and one more each time parameters are held.
+        progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
+
+    Returns:
+        Fitted values with standard errors, correlation and residual statistics.
+
+    Raises:
+        ConfigurationError: no parameter or target, a parameter twice, or more parameters than values.
+        SimulationError: the model gives residuals that are not finite.
+    """
+    problem = _Problem(checked_ranges(parameters), targets, build, progress)
+    start = problem.residuals(np.zeros(len(parameters)))
+    problem.weights = np.ones(start.size)
+    point, answer = problem.solve(np.zeros(len(parameters)), COARSE, most_iterations)
+    held: list[Unidentified] = []
+    problem.step = STEP
+    rounds = 0
+    while True:
+        raw = problem.residuals(point)
+        before = problem.weights
+        problem.use_scales(problem.statistics(raw, len(problem.free)))
+        steady = rounds > 0 and bool(np.max(np.abs(np.log(problem.weights / before))) < np.log(STEADY))
+        inner = problem.inside(point)
+        jacobian = problem.jacobian(point, inner)
+        undetermined = _open_directions(jacobian, [problem.parameters[index] for index in inner])
+        if (steady or rounds >= MOST_ROUNDS) and not undetermined:
+            break
+        held += undetermined
+        problem.hold([parameter.path for parameter in undetermined], point)
+        if not problem.free:
+            raise ConfigurationError(
+                "the data identify no parameter: " + "; ".join(parameter.message() for parameter in held)
+            )
+        point, answer = problem.solve(point, FINE, most_iterations)
+        rounds += 1
+    return problem.result(point, start, raw, inner, jacobian, tuple(held), answer)
+
+
+def _open_directions(jacobian: Vector, parameters: list[Range]) -> list[Unidentified]:
+    """Return parameters to hold, in the order of selection, so that all remaining directions are identifiable."""
+    held: list[Unidentified] = []
+    left = list(range(len(parameters)))
+    while left:
+        worst = worst_direction(jacobian[:, left], [parameters[index] for index in left])
+        if worst is None:
+            break
+        held.append(worst)
+        left = [index for index in left if parameters[index].path != worst.path]
+    return held
+
+
+class _Problem:
+    """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations.
+
+    Args:
+        parameters: parameters with bounds and start values.
+        targets: measurements.
+        build: function of {path: value} that returns a model.
+        progress: callback, see `fit`.
+    """
+
+    def __init__(
+        self,
+        parameters: tuple[Range, ...],
+        targets: Sequence[Target],
+        build: Callable[[Mapping[str, float]], Any],
+        progress: Callable[[int, float], None] | None,
+    ) -> None:
+        if not targets:
+            raise ConfigurationError("targets: no measurement to fit to; specify at least one")
+        self.parameters, self.targets, self.progress = parameters, targets, progress
+        self.build = build
+        self.step = COARSE_STEP
+        self.free = list(range(len(parameters)))
+        self.lengths: list[int] = []
+        self.weights = np.ones(1)
+        self.scaled: tuple[RowStatistics, ...] = ()
+        self.evaluations = 0
+        self.last: tuple[bytes, Vector] | None = None
+
+    def values(self, point: Vector) -> dict[str, float]:
+        """Return path to value at a point u."""
+        return {parameter.path: parameter.value(float(u)) for parameter, u in zip(self.parameters, point, strict=True)}
+
+    def residuals(self, point: Vector) -> Vector:
+        """Return the residuals of all rows before scaling, (n,)."""
+        if self.last is not None and self.last[0] == point.tobytes():
+            return self.last[1]
+        model = self.build(self.values(point))
+        rows = [row for target in self.targets for row in target.residuals(model)]
+        self.evaluations += 1
+        self.lengths = [row.size for row in rows]
+        joined = np.concatenate(rows)
+        if not np.isfinite(joined).all():
+            text = ", ".join(f"{path}={value:.5g}" for path, value in self.values(point).items())
+            raise SimulationError(f"residuals are not finite at {text}; narrow the bounds")
+        if joined.size < len(self.parameters):
+            raise ConfigurationError(
+                f"{joined.size} values for {len(self.parameters)} parameters; use more data or fewer parameters"
+            )
+        self.last = (point.tobytes(), joined)
+        return joined
+
+    def statistics(self, raw: Vector, parameters: int) -> tuple[RowStatistics, ...]:
+        """Return the statistics of all rows, with the degrees of freedom reduced by the number of parameters."""
+        freedom = max(1.0 - parameters / max(int(np.count_nonzero(raw)), parameters + 1), 1e-3)
+        rows, first = np.split(raw, np.cumsum(self.lengths)[:-1]), 0
+        row_statistics: list[RowStatistics] = []
+        for target in self.targets:
+            last = first + len(target.rows)
+            row_statistics += target_statistics(target.rows, rows[first:last], freedom)
+            first = last
+        return tuple(row_statistics)
+
+    def use_scales(self, statistics: tuple[RowStatistics, ...]) -> None:
+        """Set the weights of the rows to the inverse of their estimated scales."""
+        scales = np.array([row.scale for row in statistics])
+        nonzero = scales[scales > 0.0]
+        minimum = 1e-6 * float(np.max(nonzero)) if nonzero.size else 1.0
+        self.scaled = statistics
+        self.weights = np.repeat(1.0 / np.maximum(scales, minimum), self.lengths)
+
+    def jacobian(self, point: Vector, columns: Sequence[int]) -> Vector:
+        """Return d (weighted residuals) / d u, (n, columns), by forward differences; backward near an upper bound."""
+        base = self.residuals(point)
+        table = np.empty((base.size, len(columns)))
+        for column, index in enumerate(columns):
+            step = self.step if point[index] + self.step < self.bounds(index)[1] else -self.step
+            moved = point.copy()
+            moved[index] += step
+            table[:, column] = (self.residuals(moved) - base) / step * self.weights
+            self.last = (point.tobytes(), base)
+        return table
+
+    def information(self, jacobian: Vector, weighted: Vector) -> Vector:
+        """Return sum over i, j of rho_ij J_i' J_j over the rows of each target, (columns, columns).
+
+        Noise in one signal of a measurement, for example the input, appears in all rows of the measurement. rho_ij is
+        the correlation of the residuals of two rows, sample by sample. For uncorrelated rows the sum is J' J.
+
+        Args:
+            jacobian: Jacobian of the weighted residuals, (n, columns).
+            weighted: weighted residuals, (n,).
+        """
+        weighted_sum = np.zeros((jacobian.shape[1], jacobian.shape[1]))
+        ends = np.cumsum(self.lengths)
+        row = 0
+        for target in self.targets:
+            rows = range(row, row + len(target.rows))
+            row = rows.stop
+            begin, end = ends[rows.start] - self.lengths[rows.start], ends[rows[-1]]
+            # (rows, samples): all rows of a target have the same number of samples.
+            residuals = weighted[begin:end].reshape(len(rows), -1)
+            columns = jacobian[begin:end].reshape(*residuals.shape, -1)
+            sizes = np.sqrt(np.sum(residuals**2, axis=1))
+            related = residuals @ residuals.T / np.maximum(np.outer(sizes, sizes), 1e-300)
+            np.fill_diagonal(related, 1.0)
+            weighted_sum += np.einsum("ij,isp,jsq->pq", related, columns, columns, optimize=True)
+        return weighted_sum
+
+    def bounds(self, index: int) -> tuple[float, float]:
+        """Return lower and upper bound of u of a parameter."""
+        parameter = self.parameters[index]
+        return float(np.log(parameter.low / parameter.start)), float(np.log(parameter.high / parameter.start))
+
+    def inside(self, point: Vector) -> list[int]:
+        """Return the indices of the free parameters that are not at a bound."""
+        return [
+            index
+            for index in self.free
+            if min(abs(point[index] - bound) for bound in self.bounds(index))
+            > AT_BOUND * self.parameters[index].half_width
+        ]
+
+    def hold(self, paths: Sequence[str], point: Vector) -> None:
+        """Remove parameters from the fit and reset them to their start values in `point`."""
+        for index, parameter in enumerate(self.parameters):
+            if parameter.path in paths:
+                self.free.remove(index)
+                point[index] = 0.0
+
+    def solve(self, start: Vector, tolerance: float, most_iterations: int) -> tuple[Vector, tuple[bool, str]]:
+        """Minimise from a point with the present scales; return the final point, (converged, message)."""
+
+        def whole(free: Vector) -> Vector:
+            point = start.copy()
+            point[self.free] = free
+            return point
+
+        def function(free: Vector) -> Vector:
+            weighted = self.residuals(whole(free)) * self.weights
+            if self.progress is not None:
+                self.progress(self.evaluations, float(np.sqrt(np.mean(weighted**2))))
+            return np.concatenate([weighted, regularisation * free])
+
+        widths = np.array([self.parameters[index].half_width for index in self.free])
+        regularisation = REGULARISATION / widths
+        low, high = np.array([self.bounds(index) for index in self.free]).T
+        margin = 1e-9 * (high - low)
+        answer = scipy.optimize.least_squares(
+            function,
+            np.clip(start[self.free], low + margin, high - margin),
+            jac=lambda free: np.vstack([self.jacobian(whole(free), self.free), np.diag(regularisation)]),
+            bounds=(low, high),
+            x_scale=widths,
+            ftol=tolerance,
+            xtol=tolerance,
+            gtol=None,
+            max_nfev=most_iterations,
+        )
+        return whole(answer.x), (answer.status > 0, str(answer.message))
+
+    def result(
+        self,
+        point: Vector,
+        start: Vector,
+        raw: Vector,
+        inner: list[int],
+        jacobian: Vector,
+        held: tuple[Unidentified, ...],
+        answer: tuple[bool, str],
+    ) -> TuningResult:
+        """Return the result of the fit at its final point."""
+        values = self.values(point)
+        errors = dict.fromkeys(values, float("nan"))
+        inverse = covariance(jacobian) if inner else np.zeros((0, 0))
+        weighted = raw * self.weights
+        spread = inverse @ self.information(jacobian, weighted) @ inverse
+        deviations = np.sqrt(np.diag(spread))
+        free = tuple(self.parameters[index].path for index in inner)
+        errors.update({path: float(deviation * values[path]) for path, deviation in zip(free, deviations, strict=True)})
+        widths = np.array([self.parameters[index].half_width for index in inner])
+        return TuningResult(
+            parameters=self.parameters,
+            values=values,
+            standard_errors=errors,
+            free=free,
+            correlation=spread / np.outer(deviations, deviations),
+            unidentified=held,
+            at_bound=tuple(self.parameters[index].path for index in self.free if index not in inner),
+            condition=float(np.linalg.cond(jacobian * widths)) if inner else float("inf"),
+            rows=self.scaled,
+            before=float(np.sqrt(np.mean((start * self.weights) ** 2))),
+            after=float(np.sqrt(np.mean(weighted**2))),
+            cost=0.5 * float(np.sum(weighted**2)),
+            evaluations=self.evaluations,
+            converged=answer[0],
+            message=answer[1],
+            sensitivity=-inverse @ jacobian.T,
+            weights=self.weights,
+        )
