@@ -1,6 +1,7 @@
 # make shaker   set everything up and run the main job with a film
 # make test     set everything up, check and test
 # make check    format, lint and types only
+# make docs     build the documentation -> docs/_build/html/index.html
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
@@ -8,7 +9,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check setup mjcf benchmark clean
+.PHONY: shaker test check docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -19,12 +20,16 @@ shaker: setup
 	fi
 
 test: setup .stamps/for-tests check
+	$(BIN)/python -m tests.compile_first
 	$(BIN)/python -m pytest -n 2
 
 check: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+docs: setup
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
 
 mjcf: setup
 	$(BIN)/python -m vehicle.mjcf --force
@@ -52,4 +57,4 @@ setup: .stamps/system .stamps/python
 	@touch $@
 
 clean:
-	rm -rf $(VENV) .stamps runs build *.egg-info .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) .stamps runs build docs/_build *.egg-info .pytest_cache .mypy_cache .ruff_cache

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle

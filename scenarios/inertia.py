@@ -21,7 +21,7 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.inputs.make_inputs import level_signal
 from scenarios.levels import TOO_SHORT
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.force_elements import Hydromount
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf import FrequencyResponse

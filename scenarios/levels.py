@@ -21,7 +21,7 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.frf_claims import axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.names import across
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.frf import FrequencyResponse

@@ -245,7 +245,7 @@ def words(points: Points) -> list[str]:
         f"%, the rest by {remainder:+.1f} %, the whole by {100.0 * (hooked['tyre'] / passive['tyre'] - 1.0):+.1f} %. "
         "It damps the wheel against ground at rest and "
         "leaves the body to swing: a quarter car with an ideal groundhook "
-        "does the same (docs/theory.md, semi-active dampers)."
+        "does the same (docs/theory/elements.md, semi-active dampers)."
     )
     return sentences
 

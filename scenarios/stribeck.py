@@ -22,7 +22,7 @@ from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES

@@ -70,9 +70,10 @@ def check_page(test: str, *, passed: bool = True) -> None:
             file.writelines(json.dumps(asdict(row)) + "\n" for row in rows)
     if os.environ.get(FOLDER) or not passed:
         return
-    there = {row.claim: row for row in committed().get(test, [])}
-    stale = [row.claim for row in rows if row.claim not in there or not alike(row, there[row.claim])]
-    stale += [claim for claim in there if claim not in {row.claim for row in rows}]
+    there = {(row.subject, row.claim): row for row in committed().get(test, [])}
+    here = {(row.subject, row.claim): row for row in rows}
+    stale = [row.claim for key, row in here.items() if key not in there or not alike(row, there[key])]
+    stale += [claim for subject, claim in there.keys() - here.keys()]
     command = f"python -m tests.validation {test.split('::')[0]}"
     assert not stale, f"docs/validation.md: outdated are {'; '.join(stale)}; run {command}"
 

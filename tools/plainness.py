@@ -152,6 +152,18 @@ def examine(path: Path) -> tuple[collections.Counter[str], list[tuple[str, int, 
     return collections.Counter(kind for kind, _, _ in hits), hits
 
 
+def rates(total: collections.Counter[str]) -> dict[str, float]:
+    """Return the counts of the examined files as rates, which do not depend on the amount of code."""
+    names = sum(count for kind, count in total.items() if kind.startswith("name:"))
+    functions, first_lines = max(WORDS["functions"], 1), max(WORDS["first lines"], 1)
+    return {
+        "phrases per 1000 words of prose": 1000 * (sum(total.values()) - names) / max(WORDS["prose"], 1),
+        "vague names per 100 functions": 100 * names / functions,
+        "first lines of functions without a verb [%]": 100 * total["sentence without verb"] / functions,
+        "riddles among first lines [%]": 100 * total["riddle: pronouns for nouns"] / first_lines,
+    }
+
+
 def main() -> None:
     """Print counts by kind and by package."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -184,14 +196,7 @@ def main() -> None:
     for kind, count in sorted(rest.items(), key=lambda i: -i[1]):
         print(f"{count:6} {kind}")
     print(f"{sum(total.values()):6} in all, {1000 * sum(total.values()) / max(lines, 1):.1f} per 1 000 lines")
-    print(
-        f"phrases {1000 * sum(rest.values()) / max(WORDS['prose'], 1):.1f} per 1 000 words of prose ({WORDS['prose']} words); "
-        f"names {100 * sum(names.values()) / max(WORDS['functions'], 1):.1f} per 100 functions"
-    )
-    print(
-        f"first lines of functions without a verb {100 * total['sentence without verb'] / max(WORDS['functions'], 1):.1f} %; "
-        f"riddles {100 * total['riddle: pronouns for nouns'] / max(WORDS['first lines'], 1):.1f} % of first lines"
-    )
+    print("; ".join(f"{name} {value:.1f}" for name, value in rates(total).items()) + f" ({WORDS['prose']} words)")
     for name, (count, size) in sorted(per_file.items(), key=lambda i: -i[1][0] / max(i[1][1], 40))[: options.worst]:
         print(f"  {1000 * count / max(size, 1):6.0f} per 1 000 lines  {name}")
     for kind in sorted(examples):

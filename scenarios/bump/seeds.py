@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import changes
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Car
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ

@@ -47,7 +47,7 @@ from scenarios.comfort_sensitivity.histories import (
 )
 from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 

@@ -11,7 +11,7 @@ from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIO
 from scenarios.damper_choice.response_features import crossing, last_peak, local_peaks, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
 from scenarios.places import placed
-from vehicle.engines.lumped.half_car_rider import ENDS
+from vehicle.engines.lumped.half_car_rider_model import ENDS
 from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 

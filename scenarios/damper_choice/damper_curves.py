@@ -17,10 +17,10 @@ from scenarios.charts import chart, lines
 from scenarios.claims import NOT_TESTABLE, Claim
 from scenarios.places import placed
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.linear.parts import ROAD, Network, masses_of
+from vehicle.engines.linear.network import ROAD, Network, masses_of
 from vehicle.engines.linear.system import Slide
-from vehicle.engines.lumped.half_car_rider import axle_links
-from vehicle.engines.lumped.marched_solution import marched_solution
+from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
+from vehicle.engines.lumped.half_car_rider_model import axle_links
 from vehicle.engines.lumped.road_holding import exponential_density, quarter_car_model
 from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 
@@ -132,7 +132,7 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
         slides=(Slide(row=travel, friction=law(stacked)),),
     )
     roads = np.array([_road(frequency, density * line, seed, duration) for seed in SEEDS])
-    history = marched_solution(network.first_order(), STEP, np.tile(roads, (len(NAMES), 1)).T)
+    history = fixed_step_solution(network.first_order(), STEP, np.tile(roads, (len(NAMES), 1)).T)
     late = history.time >= SETTLED
     shape = (len(NAMES), len(SEEDS), -1)
     moved = {name: history.displacement(name)[late].T.reshape(shape) for name in ("wheel", "body")}

@@ -11,7 +11,7 @@ from scenarios.charts import chart, lines
 from scenarios.damper_choice.optimum import Fluctuation
 from scenarios.damper_choice.runs import READ_OFF, SPEED, START_REAR, RoadHolding, TradeOff
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.lumped.half_car_rider import ENDS
+from vehicle.engines.lumped.half_car_rider_model import ENDS
 
 Array = npt.NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.rendering.recorded_run import hub_channel
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.first_order import first_order
-from vehicle.engines.linear.modes import Mode
 from vehicle.engines.linear.response import frequency_response
 from vehicle.names import AXES
 from vehicle.runs.car import Car

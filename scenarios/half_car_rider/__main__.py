@@ -18,7 +18,7 @@ from scenarios.half_car_rider.claims import base_case_claims, dose_claims, matri
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.study import VERTICAL_TYRES, lumped_study
-from vehicle.engines.lumped.half_car_rider import ENDS
+from vehicle.engines.lumped.half_car_rider_model import ENDS
 from vehicle.model.parameters.half_car_rider_parameters import (
     PUBLISHED,
     HalfCarRiderParameters,

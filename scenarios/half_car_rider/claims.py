@@ -21,7 +21,7 @@ from scenarios.half_car_rider.runs import (
     varied,
 )
 from scenarios.half_car_rider.settling_claims import settling_claims
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.engines.lumped.history import Array, History
 from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
@@ -75,7 +75,7 @@ def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Clai
         ("acceleration", "m/s2", 1.0, 6),
     )
     for quantity, unit, factor, figure in shown:
-        upper, lower = (factor * peak(history.of(name, quantity)) for name in ("upper_limb", "lower_limb"))
+        upper, lower = (factor * peak(history.motion(name, quantity)) for name in ("upper_limb", "lower_limb"))
         rows.append(
             PREDICTED.statement(
                 f"peak {quantity} of the upper body above that of the lower body",

@@ -12,7 +12,7 @@ from scenarios.charts import chart, lines
 from scenarios.half_car_rider.claims import TRAVEL_DIRECTIONS, Study
 from scenarios.half_car_rider.runs import SPEEDS, VARIED, Motion, Outcome
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.lumped.half_car_rider import linear_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import linear_tyre_load
 from vehicle.engines.lumped.history import History
 from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
@@ -43,7 +43,7 @@ def time_figures(folder: Path, histories: Mapping[str, History], speed: float) -
         with chart(folder / f"{name}.png", caption, rows=len(shown), size=(9.0, 3.0 + 2.2 * len(shown))) as panels:
             for panel, shown_history in zip(panels, shown, strict=True):
                 for (law, history), color in zip(histories.items(), COLOURS, strict=False):
-                    curve = (law, factor * history.of(shown_history, quantity), color, LINE_STYLES[law])
+                    curve = (law, factor * history.motion(shown_history, quantity), color, LINE_STYLES[law])
                     lines(
                         panel,
                         history.time,

@@ -11,7 +11,7 @@ import numpy as np
 
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import ENDS, half_car_rider, lift_off, linear_tyre_load, places
+from vehicle.engines.lumped.half_car_rider_model import ENDS, half_car_rider, lift_off, linear_tyre_load, output_points
 from vehicle.engines.lumped.history import Array, History
-from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
@@ -188,4 +188,6 @@ def base_case_table(car: HalfCarRiderParameters, history: History) -> dict[str, 
         settling = {f"{band:g}": settling_time(history.time, signal, band) for band in BANDS}
         return {"peak": peak(signal), "settling_s": settling}
 
-    return {name: {quantity: row(history.of(name, quantity)) for quantity in quantities} for name in places(car)}
+    return {
+        name: {quantity: row(history.motion(name, quantity)) for quantity in quantities} for name in output_points(car)
+    }

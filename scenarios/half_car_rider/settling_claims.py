@@ -48,7 +48,7 @@ def settling_claims(car: HalfCarRiderParameters, history: History) -> list[Claim
 
 
 def _time(history: History, point: str, quantity: Motion, printed: float, limit: bool, figure: int) -> Claim:
-    motion = history.of(point, quantity)
+    motion = history.motion(point, quantity)
     settling = settling_time(history.time, motion, SETTLING_BAND)
     ours = float(history.time[-1]) if settling is None else settling
     others = ", ".join(f"{100.0 * b:g} %: {_seconds(settling_time(history.time, motion, b))}" for b in BANDS[1:])
@@ -74,7 +74,7 @@ def _needed(time: Array, motion: Array, printed: float) -> str:
 
 def _order(history: History, delay: float, late: str, early: str, quantity: Motion, figure: int) -> Claim:
     times = {
-        band: [settling_time(history.time, history.of(point, quantity), band) for point in (late, early)]
+        band: [settling_time(history.time, history.motion(point, quantity), band) for point in (late, early)]
         for band in BANDS
     }
     pairs = "; ".join(f"{100.0 * band:g} %: {_seconds(a)}, {_seconds(b)}" for band, (a, b) in times.items())

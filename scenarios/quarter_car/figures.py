@@ -24,7 +24,7 @@ from scenarios.quarter_car.runs import (
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.lumped.history import History
-from vehicle.engines.lumped.quarter_car import elastomer
+from vehicle.engines.lumped.quarter_car_network import elastomer
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.signals.analysis.spectra import power_spectral_density
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scenarios.claims import OWN_CHECK, Claim
 from scenarios.quarter_car.runs import STEP, Runs, rms
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model

@@ -9,7 +9,7 @@ from scenarios.places import placed
 from scenarios.quarter_car.runs import Runs
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.quarter_car import elastomer
+from vehicle.engines.lumped.quarter_car_network import elastomer
 
 ABOUT = "printed with 'about', read from a figure: 5 %"
 

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.drive import Sampled, Sine
+from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
 from vehicle.engines.lumped.history import History
-from vehicle.engines.lumped.marched_solution import marched_solution
-from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
+from vehicle.engines.lumped.input_signals import Sampled, Sine
+from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.model.assembly.quarter_car_spec import WHEEL
 from vehicle.model.laws.coulomb import Coulomb
@@ -226,7 +226,7 @@ class Runs:
         }
         roads = np.concatenate([profiles[level] for level, _ in cases]).T
         vary["body.mass"] = np.full(roads.shape[1], self.car.body.mass)  # one model for each road
-        history = marched_solution(
+        history = fixed_step_solution(
             self.model(vary, damper="friction", **family.parts),
             self.march_step,
             roads,
@@ -285,7 +285,7 @@ class Runs:
             initial = np.zeros((phase.size, model.state.shape[-1]))
             initial[:, model.velocities.start] = speed  # the body is the first coordinate
             road = LOW * np.sin(2.0 * np.pi * time[:, None] + phase)
-            history = marched_solution(model, self.march_step, road, initial=initial)
+            history = fixed_step_solution(model, self.march_step, road, initial=initial)
             return time, history.acceleration("body")
 
         motion: tuple[Array, Array] = self._once("starts", solve)

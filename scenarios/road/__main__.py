@@ -19,7 +19,7 @@ from scenarios.road.figures import draw_classes, draw_friction
 from scenarios.road.findings import check_table, class_table, friction_claims, friction_table, scaling_claim, words
 from scenarios.road.runs import Ride, RideRuns
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import VEHICLES
 

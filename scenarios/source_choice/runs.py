@@ -23,7 +23,7 @@ from scenarios.source_choice.candidates import (
     Rig,
     vehicle_file,
 )
-from vehicle.engines.reduced.many import COARSE_STEP, simulate_many
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.comfort import comfort_values
@@ -181,7 +181,7 @@ def _march(
     """Simulate cars in batches on a signal; yield the slice of each batch and its channels (cars, n)."""
     for first in range(0, len(cars), TOGETHER):
         batch = cars[first : first + TOGETHER]
-        simulated = simulate_many(
+        simulated = simulate_batch(
             [car.poles for car in batch],
             signal,
             dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in batch],

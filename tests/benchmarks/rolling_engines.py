@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.commands.road import road_drive
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.runs.car import Car
 
 Histories = dict[str, npt.NDArray[np.float64]]

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tests.benchmarks.sweep_case import case_alone_ms, case_ms
-from vehicle.engines.reduced.many import simulate_many
+from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
@@ -170,7 +170,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
 def batch_factor(car: Car, signal: Signal) -> float:
     """Simulated time of all cars of a batch over its computing time, tables and all, channels of comfort and slip."""
     started = time.perf_counter()
-    simulate_many(
+    simulate_batch(
         [car.poles] * BATCH,
         signal,
         dampers=[[damper.law for damper in car.vehicle.composition.dampers]] * BATCH,

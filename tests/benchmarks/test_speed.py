@@ -26,7 +26,9 @@ def same_cores_afterwards():
     os.sched_setaffinity(0, before)
 
 
-def test_benchmark_prints_and_compares(tmp_path, capsys):
+def test_benchmark_prints_and_compares(tmp_path, capsys, monkeypatch):
+    figures = speed.measure(SMALL)
+    monkeypatch.setattr(speed, "measure", lambda effort: figures)
     assert speed.main(["--json"], SMALL) == 0
     text = capsys.readouterr().out
     found = json.loads(text)

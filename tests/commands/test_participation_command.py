@@ -51,10 +51,10 @@ def test_tables_and_files_say_the_same(tmp_path, capsys):
         "wheel": (["--wheel", "rr"], "wheel rr"),
         "place": (
             ["--response", "seat_rail"],
-            "place seat_rail: no acceleration on the body; there are suspension_mount",
+            "channel seat_rail: must be an acceleration of the body: suspension_mount",
         ),
         "mode": (["--mode", "10"], "--mode 10: the body has modes 1 to 9"),
-        "rigid": (["--vehicle", "sedan"], "sedan: its body is rigid; modes that take part need body.flexible = true"),
+        "rigid": (["--vehicle", "sedan"], "sedan: the body is rigid; set body.flexible = true"),
     }.values(),
 )
 def test_refusals(options, message, capsys):

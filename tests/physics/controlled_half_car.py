@@ -1,4 +1,4 @@
-"""The half car of source 2 with controlled dampers in bodies and rows of MuJoCo, without the lumped model."""
+"""The half car with rider, with controlled dampers in bodies and rows of MuJoCo, without the lumped model."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def half_car_spec(car, damper, step):
 
     Args:
         car: parameters of source 2.
-        damper: law of both dampers, controlled, as of the complete car.
+        damper: controlled law of both dampers, as in the complete car.
         step: [s].
     """
     spec = empty_spec(step)

@@ -84,7 +84,7 @@ def rolling_car(
         "hardpoints": {"seat_rail": [2.0, -0.4, 1.0]},
         "outputs": {"seat_rail": {"on": "body", "at": "seat_rail"}},
     }
-    for axle, place in AXLES.items():
+    for axle, position in AXLES.items():
         stiffness = {"knuckle": 0.6, "tyre": 0.55, "brake_disc": 0.6, "caliper": 0.6}
         parts = {
             name: {
@@ -98,7 +98,7 @@ def rolling_car(
         numbers = {**TYRE, "cornering_stiffness": (cornering or CORNERING)[axle], **(tyre or {})}
         table[axle] = {
             "template": "corner",
-            "hardpoints": {"wheel_center": [place, TRACK / 2, RADIUS], "tyre_patch": [place, TRACK / 2, 0.0]},
+            "hardpoints": {"wheel_center": [position, TRACK / 2, RADIUS], "tyre_patch": [position, TRACK / 2, 0.0]},
             "parts": parts,
             "bushings": {
                 "tyre": {"stiffness": [1e5, 1e5, vertical], "damping": [0.0, 0.0, 200.0], "rotational_stiffness": 0.0,
@@ -118,7 +118,7 @@ def pitch_plane(speed: float, hold: Vector, mount: Any = (2e5, 8e5, 4e4), turnin
     Args:
         speed: V [m/s].
         hold: stiffness and damping of the hold along x.
-        mount, turning: as of `rolling_car`.
+        mount, turning: see `rolling_car`.
     """
     kx, _, kz = mount
     damping = 300.0
@@ -127,7 +127,7 @@ def pitch_plane(speed: float, hold: Vector, mount: Any = (2e5, 8e5, 4e4), turnin
     mass[:3] = BODY, BODY, INERTIA[1]
     stiffness[0, 0], drag[0, 0] = hold
     slips = []
-    for number, place in enumerate(AXLES.values()):
+    for number, position in enumerate(AXLES.values()):
         x, z, phi, alpha = range(3 + 4 * number, 7 + 4 * number)
         whole = sum(MASSES.values())
         mass[[x, z]] = 2.0 * whole
@@ -136,7 +136,7 @@ def pitch_plane(speed: float, hold: Vector, mount: Any = (2e5, 8e5, 4e4), turnin
         along, up, turn = np.zeros(size), np.zeros(size), np.zeros(size)
         # A point r of the body moves by theta x r: z along x, -x along z.
         along[[x, 0, 2]] = 1.0, -1.0, -(RADIUS - COG[2])
-        up[[z, 1, 2]] = 1.0, -1.0, place - COG[0]
+        up[[z, 1, 2]] = 1.0, -1.0, position - COG[0]
         turn[[phi, 2]] = 1.0, -1.0
         stiffness += 2.0 * (kx * np.outer(along, along) + kz * np.outer(up, up) + turning * np.outer(turn, turn))
         drag += 2.0 * damping * (np.outer(along, along) + np.outer(up, up))
@@ -168,8 +168,8 @@ def single_track(
         trail: [m].
     """
     stiffness, damping = np.zeros((2, 2)), np.zeros((2, 2))
-    for place, cornering in axles:
-        arm = place - cog
+    for position, cornering in axles:
+        arm = position - cog
         felt = np.array([1.0, arm + trail])
         stiffness += np.outer(felt, [0.0, cornering])
         damping += np.outer(felt, [1.0, arm]) * cornering / speed

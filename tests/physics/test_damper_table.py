@@ -22,7 +22,7 @@ MASS, STIFFNESS = 40.0, 4e4
 
 
 def table_force(velocity):
-    """The table by interpolation, and its outer lines beyond it."""
+    """Interpolate the table, and extrapolate its outer segments."""
     if velocity < VELOCITY[0]:
         return FORCE[0] + 1000.0 * (velocity - VELOCITY[0])
     if velocity > VELOCITY[-1]:
@@ -31,7 +31,7 @@ def table_force(velocity):
 
 
 def strut(step, mass=MASS, stiffness=STIFFNESS):
-    """A mass on the damper and a spring that carries the gas."""
+    """Return a mass on the damper and a spring that carries the gas force."""
     spec = empty_spec(step)
     body = spec.worldbody.add_body(name="mass")
     body.explicitinertial = True
@@ -48,9 +48,9 @@ def test_the_force_is_that_of_the_table_at_the_present_velocity(velocity):
     run.data.qvel[0] = velocity
     run.step(1, run.position)
     e, data = run.rows.layout.dampers, run.data
-    found = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]]))
+    force = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]]))
     validated(
-        "Dampers and friction", f"force of a tabulated damper with gas at {velocity:g} m/s", found,
+        "Dampers and friction", f"force of a tabulated damper with gas at {velocity:g} m/s", force,
         table_force(velocity) + REST, rel=1e-6, abs=1e-4, unit="N",
         source="closed form: linear interpolation of the table",
     )  # fmt: skip
@@ -62,15 +62,15 @@ def test_the_work_of_a_cycle_is_the_area_of_the_table(amplitude):
     omega, heavy, step = 4.0 * np.pi, 1e9, 1e-3
     run = strut(step, mass=heavy, stiffness=heavy * omega**2)
     run.data.qvel[0] = amplitude * omega * np.cos(0.5 * omega * step)
-    e, data, found = run.rows.layout.dampers, run.data, []
+    e, data, samples = run.rows.layout.dampers, run.data, []
 
     def after():
         # Of the step before, at its beginning: MuJoCo's velocity is that of the middle of a step.
         force = -(data.actuator_force[0] + np.sum(data.efc_force[[*e.rows, *e.valves[:, 0]]])) if data.nefc else 0.0
         return force, data.qvel[0] - 0.5 * step * data.qacc[0]
 
-    found = run.step(501, after)[1:]
-    work = np.sum(found[:, 0] * found[:, 1]) * step
+    samples = run.step(501, after)[1:]
+    work = np.sum(samples[:, 0] * samples[:, 1]) * step
     phase = np.linspace(0.0, 2.0 * np.pi, 200001)[:-1]
     speed = amplitude * omega * np.cos(phase)
     expected = np.mean([table_force(v) * v for v in speed]) * 2.0 * np.pi / omega
@@ -129,7 +129,7 @@ def test_the_clamped_lines_are_the_curve():
 
 
 def table_car(folder=None, **law):
-    """The car with this damper."""
+    """Return the `focus` car with a damper table."""
     table = read_table(FOCUS_FILE)
     table["front"]["damper"] |= {"viscous_law": "table", **law}
     return Car(vehicle_of(table, folder or FOCUS_FILE.parent), folder=FOCUS_FILE.parent)
@@ -169,8 +169,8 @@ def test_both_engines_take_the_table(tabled, high_piece):
 def test_a_file_of_a_test_gives_the_same_law(tmp_path, tabled):
     rows = "".join(f"{v},{f}\n" for v, f in zip(VELOCITY, FORCE, strict=True))
     (tmp_path / "test.csv").write_text("velocity [m/s],force [N]\n" + rows, encoding="utf-8")
-    one = table_car(tmp_path, curve="test.csv", gas_force=150.0)
-    assert one.vehicle == tabled.vehicle
+    from_file = table_car(tmp_path, curve="test.csv", gas_force=150.0)
+    assert from_file.vehicle == tabled.vehicle
 
 
 BAD = [

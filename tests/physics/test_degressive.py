@@ -23,7 +23,7 @@ OVERRIDES = ['damper.viscous_law="degressive"']
 
 
 def strut(step, friction=(0.0, 0.0), *, mass=MASS, stiffness=0.0):
-    """A mass on a degressive damper; `friction` are the sliding and the static limit [N]."""
+    """Return a mass on a degressive damper; `friction` are the sliding and the static limit [N]."""
     spec = empty_spec(step)
     body = spec.worldbody.add_body(name="mass")
     body.explicitinertial = True
@@ -34,7 +34,7 @@ def strut(step, friction=(0.0, 0.0), *, mass=MASS, stiffness=0.0):
 
 
 def force_of(velocity, friction=(0.0, 0.0)):
-    """The whole damper force, with the friction straight up to its limit as the rows have it."""
+    """Return the total damper force, with a linear friction law up to its limit like the rows."""
     limit = friction[0] + (friction[1] - friction[0]) * np.exp(-(np.abs(velocity / 0.03) ** 3.5))
     slope = 2.0 / np.pi * limit * SMOOTHING
     return float(LAW.force(velocity)) + float(np.clip(slope * velocity, -limit, limit))
@@ -49,18 +49,18 @@ def test_the_force_is_the_law_at_the_present_velocity(velocity, friction):
     run.step(1, run.position)
     e, data = run.rows.layout.dampers, run.data
     rows = np.concatenate([e.rows, e.frictions, e.valves[:, 0]])
-    found = -(data.actuator_force[0] + np.sum(data.efc_force[rows]))
+    force = -(data.actuator_force[0] + np.sum(data.efc_force[rows]))
     # m v changes by 1e-7 in the step
     validated(
         "Dampers and friction",
-        f"force of the degressive damper at {velocity:g} m/s, friction {friction[0]:g} and {friction[1]:g} N", found,
+        f"force of the degressive damper at {velocity:g} m/s, friction {friction[0]:g} and {friction[1]:g} N", force,
         force_of(velocity, friction), rel=1e-5, unit="N",
         source="closed form: Bommer 2006, appendix C.2, with Coulomb or Stribeck friction",
     )  # fmt: skip
 
 
 def swing(step, friction, duration=0.3):
-    """Positions of a mass that is released on its spring."""
+    """Return the positions of a mass released on its spring."""
     run = strut(step, friction, stiffness=STIFFNESS)
     run.data.qpos[0] = 0.01
     # MuJoCo holds the velocity of half a step before; the mass is at rest at time zero.
@@ -69,7 +69,7 @@ def swing(step, friction, duration=0.3):
 
 
 def exact(friction, duration=0.3):
-    """The same motion by a stiff solver, every 4 ms."""
+    """Return the same motion by a stiff solver, every 4 ms."""
     times = np.linspace(0.0, duration, round(duration / 4e-3) + 1)
     solution = solve_ivp(
         lambda _, y: [y[1], -(STIFFNESS * y[0] + force_of(y[1], friction)) / MASS],
@@ -111,7 +111,7 @@ def test_the_centred_row_is_of_second_order():
         for step in steps
     ]
     order = np.polyfit(np.log(steps), np.log(errors), 1)[0]
-    # A row that answers the velocity at the end of the step, as that of the friction does, would have order 1.
+    # A row with the velocity at the end of the step, like the friction row, would have order 1.
     validated(
         "Dampers and friction", "order of convergence of the degressive damper", order, 2.0, within=(1.7, 2.5),
         source=foreign("scipy", "Radau, tolerance 1e-9"),
@@ -155,7 +155,9 @@ def test_both_forms_agree(degressive_car, high_piece):
     rows = Rows(model, degressive_car.model.static.preload)
     assert difference(rows, compiled_rows(rows)) == ""
     piece = type(high_piece)(time=high_piece.time[:801], displacement={"fr": high_piece.displacement["fr"][:801]})
-    one, other = (form(degressive_car.model, piece) for form in (simulate, python_run))
-    for name, values in other.channels.items():
+    compiled, interpreted = (form(degressive_car.model, piece) for form in (simulate, python_run))
+    for name, values in interpreted.channels.items():
         # As in test_native: rounding, magnified by the ideal joints.
-        np.testing.assert_allclose(one[name], values, rtol=0.0, atol=2e-8 * np.sqrt(np.mean(values**2)), err_msg=name)
+        np.testing.assert_allclose(
+            compiled[name], values, rtol=0.0, atol=2e-8 * np.sqrt(np.mean(values**2)), err_msg=name
+        )

@@ -21,7 +21,7 @@ MASS, SPEED = 40.0, 1.2
 
 
 def stop_force(x):
-    """The table by interpolation, and its outer lines beyond it."""
+    """Interpolate the table, and extrapolate its outer segments."""
     if x < GIVES[0]:
         return FORCES[0] + 4e5 * (x - GIVES[0])
     if x > GIVES[-1]:
@@ -68,7 +68,7 @@ def test_a_mass_is_thrown_back_by_a_bump_stop():
         ).y[0]
         for speed in speeds
     ]
-    # Where in a step a corner is passed is chance: over several flights.
+    # The position of a breakpoint inside a step is random, so use several flights.
     errors = [
         np.mean([np.max(np.abs(dropped(step, speed) - flight)) for speed, flight in zip(speeds, flights, strict=True)])
         for step in steps
@@ -118,7 +118,7 @@ def bent(front):
         "force": [-0.1 * SPRING - 0.2 * 1.5 * SPRING, -0.1 * SPRING, 0.1 * SPRING],
     }
     front["bushings"]["tyre"]["table_z"] = {"displacement": [-0.1, 0.0, 0.1], "force": [-0.1 * TYRE, 0.0, 0.0]}
-    # The point at 0 lies on the line through its neighbours: it is no end of the piece.
+    # The point at 0 is on the line through its neighbours, so it is not an end of the segment.
     stop = {"displacement": [-0.05, -0.002, 0.0, 0.002, 0.05], "force": [-9600.0, 0.0, 0.0, 0.0, 9600.0]}
     front["damper"]["stop"] = stop
 
@@ -137,11 +137,11 @@ def bent_car():
 def test_the_car_stands_on_its_tables(bent_car, car):
     static, model = bent_car.model.static, bent_car.model.model
     assert static.residual < 1e-9
-    # Statics do not know of stiffness, but for the share of the ground that is left to hold it while the car settles.
+    # The static position does not depend on stiffness, except for the remaining share of the ground during settling.
     assert list(static.tyre_load.values()) == pytest.approx(list(car.model.static.tyre_load.values()), rel=1e-3)
-    bend = {one.name: one for one in bent_car.matrices.bends}
+    bend = {segment.name: segment for segment in bent_car.matrices.segments}
     load = static.tyre_load["fr"]
-    # The tyre stands at -load / K on the table, so that it leaves the ground after as much.
+    # The tyre is at -load / K of the table, so that it leaves the ground after as much.
     validated(
         "Bushings, springs and stops", "way up to which a tyre of a table keeps contact",
         bend["bushing/tyre_fr along z"].high, load / TYRE, rel=1e-9, unit="m",
@@ -159,20 +159,20 @@ def test_tables_of_a_line_are_the_linear_car(car, bump_piece):
         }
         front["bushings"]["tyre"]["table_z"] = {"displacement": [-0.1, 0.1], "force": [-0.1 * TYRE, 0.1 * TYRE]}
 
-    one, other = changed_car(straight).run(bump_piece), car.run(bump_piece)
+    table_run, linear_run = changed_car(straight).run(bump_piece), car.run(bump_piece)
     for name in ("seat_rail_acc_z", "tyre_fr_force_z", "damper_fr_velocity"):
-        np.testing.assert_allclose(one[name], other[name], rtol=0.0, atol=1e-7 * np.std(other[name]))
+        np.testing.assert_allclose(table_run[name], linear_run[name], rtol=0.0, atol=1e-7 * np.std(linear_run[name]))
 
 
 def test_energy_balances_and_the_engines_say_where_they_end(bent_car, bump_piece):
     run = bent_car.run(bump_piece, engine="auto")
     assert run.recording.statistics.engine == "mujoco"
-    assert "stop of damper 1 left the piece of its table" in run.engine_reason
+    assert "stop of damper 1 left the linear segment of its table" in run.engine_reason
     assert run.recording.statistics.energies.residual < 2e-3
-    # Who asks for the reduced engine gets it, and is told.
+    # An explicit choice of the reduced engine is followed, with a warning.
     beyond = bent_car.run(bump_piece, engine="reduced").recording.statistics
     assert beyond.engine == "reduced" and not beyond.within_validity
-    assert any("stop of damper 1 left the piece of its table" in text for text in beyond.warnings)
+    assert any("stop of damper 1 left the linear segment of its table" in text for text in beyond.warnings)
     small = type(bump_piece)(
         time=bump_piece.time, displacement={name: 0.1 * z for name, z in bump_piece.displacement.items()}
     )
@@ -182,7 +182,7 @@ def test_energy_balances_and_the_engines_say_where_they_end(bent_car, bump_piece
     assert difference < 5e-3 * np.std(exact["tyre_fr_force_z"])
 
 
-def test_tables_that_cannot_be_are_refused_by_name():
+def test_invalid_tables_are_rejected_by_name():
     def falling(front):
         front["main_spring"]["table"] = {"displacement": [-0.2, 0.1], "force": [1.0, -1.0]}
 

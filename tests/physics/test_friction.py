@@ -137,7 +137,7 @@ def test_den_hartogs_forced_oscillator(ratio, share):
     # No stops: only the two turns of each period are slow.
     slow = np.abs(np.diff(tail)) / step < 0.02 * omega * exact
     assert np.mean(slow) < 0.03
-    # Friction turns round half a step early (it answers the speed at the end of the step): of the order of
+    # Friction turns round half a step early (it depends on the speed at the end of the step): of the order of
     # pi / period = 4e-3; without friction the amplitude would be 3 to 22 % larger.
     assert abs(direct) * amplitude / stiffness / exact > 1.03
     validated(

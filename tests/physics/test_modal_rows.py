@@ -26,7 +26,7 @@ TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def free_box(force, *, turned=False, law=FREE, ratio=0.02, carrier=False):
-    """The box, free, pulled at a node by the preload of a bushing to the ground; position of its CoG is the origin."""
+    """Return the free box, pulled at a node by the preload of a bushing to the ground; its CoG is the origin."""
     spec = empty_spec(STEP)
     body = spec.worldbody.add_body(name="body")
     body.explicitinertial = True
@@ -96,12 +96,13 @@ def test_acceleration_of_another_node_is_rigid_plus_modal():
     arm = BOX.positions[BOX.node_index(NODE)] - BOX.cog
     there = BOX.positions[BOX.node_index(OTHER)] - BOX.cog
     body, modal = run.data.qacc[:6], run.data.qacc[6:]
-    found = body[:3] + np.cross(body[3:], there) + BOX.shape_at(OTHER) @ modal
+    acceleration = body[:3] + np.cross(body[3:], there) + BOX.shape_at(OTHER) @ modal
     rigid = force / BOX.mass + np.cross(np.linalg.solve(BOX.inertia, np.cross(arm, force)), there)
     exact = rigid + BOX.shape_at(OTHER) @ (BOX.shape_at(NODE).T @ force)
     # The armature of the scheme, w2 h2 / 12, makes the modal part smaller by at most 3e-4.
     validated(
-        "Integration in MuJoCo", "acceleration of a node at the first instant of a force at another node", found, exact,
+        "Integration in MuJoCo", "acceleration of a node at the first instant of a force at another node",
+        acceleration, exact,
         peak=5e-4, unit="m/s2", source="second derivation: lumped-mass body in the space of its ten shapes",
     )  # fmt: skip
 

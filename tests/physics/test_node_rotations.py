@@ -1,4 +1,4 @@
-"""Elements with a rotational stiffness on a flexible body whose nodes know their rotation: against all of K and M."""
+"""Elements with a rotational stiffness on a flexible body whose nodes have rotations: against all of K and M."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.engines.simulation.row_model import QUARTER_TURN, Stepper, add_bushin
 from tests.model.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_fields
 from tests.validation import validated
 from vehicle.commands import body as body_command
-from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.flexbody.beam import frame_stiffness
 from vehicle.model.flexbody.library import BODY_DESIGN
@@ -26,14 +26,14 @@ STIFFNESS = frame_stiffness(POSITIONS, [(a, b, SECTION) for a, b in PAIRS])
 _, RECOVERY = condense_rotations(STIFFNESS)
 ROTATIONS = np.arange(48).reshape(8, 6)[:, 3:]
 NODE, HELD = 6, {0: 2e5, 3: 1e5, 5: 3e5}
-"""Corner with the rotational spring; corners on springs to the ground [N/m], for a static answer."""
+"""Corner with the rotational spring; corners on springs to the ground [N/m], for a static response."""
 TWIST = 2e4
 """As stiff as the beams, so that 10 % of it would show in the frequencies."""
 TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def all_modes():
-    """The box with all 18 elastic modes and the rotations of its corners in them."""
+    """Return the box with all 18 elastic modes and the rotations of its corners in them."""
     fields = box_fields(18)
     turns = (RECOVERY @ fields["shapes"].reshape(18, -1).T)[ROTATIONS]  # (8, 3, 18)
     rotations = {name: turn.T for name, turn in zip(fields["nodes"], turns, strict=True)}
@@ -44,7 +44,7 @@ BOX = all_modes()
 
 
 def held_box(*, twist=TWIST, carrier=True, turned=False, rotations=True, preload=None, step=1e-4):
-    """The box on three springs, and between a corner and the ground a spring against rotation."""
+    """Return the box on three springs, and between a corner and the ground a spring against rotation."""
     spec = empty_spec(step)
     body = spec.worldbody.add_body(name="body")
     body.explicitinertial = True
@@ -74,13 +74,14 @@ def held_box(*, twist=TWIST, carrier=True, turned=False, rotations=True, preload
 def linear(run, preload=None):
     size = run.rows.layout.row_count + 3
     static = np.zeros(size) if preload is None else preload
-    return car_matrices(run.model, StaticTrim(preload=static, tyre_load={}, support_load={}, residual=0.0)).system
+    trim = StaticTrim(preload=static, tyre_load={}, support_load={}, residual=0.0)
+    return car_matrices(run.model, trim, compiled=False).system
 
 
 def whole_frame():
-    """K and M of all six freedoms a corner, with the springs.
+    """Return K and M of all six freedoms a corner, with the springs.
 
-    All modes of translations leave out what a corner turns by beside them, K_rr^-1: the spring of the frame is the one
+    The modes of translations omit the additional rotation of a corner, K_rr^-1: the spring of the frame is the one
     that is K_rot with this in series.
     """
     stiffness = STIFFNESS.copy()
@@ -98,23 +99,25 @@ def whole_frame():
 def test_frequencies_are_those_of_the_whole_frame(carrier, turned):
     stiffness, mass = whole_frame()
     exact = np.sqrt(scipy.linalg.eigh(stiffness, np.diag(mass), eigvals_only=True)) / (2.0 * np.pi)
-    found = {}
-    for known in (True, False):
-        system = linear(held_box(carrier=carrier, turned=turned, rotations=known))
+    frequencies = {}
+    for with_rotations in (True, False):
+        system = linear(held_box(carrier=carrier, turned=turned, rotations=with_rotations))
         # The armature of the integration is a mass of the run: the bodies' own is wanted.
-        own = system.mass.copy()
-        own[np.arange(6, 24), np.arange(6, 24)] = 1.0
-        found[known] = np.sqrt(scipy.linalg.eigh(system.stiffness, own, eigvals_only=True)) / (2.0 * np.pi)
+        reduced_mass = system.mass.copy()
+        reduced_mass[np.arange(6, 24), np.arange(6, 24)] = 1.0
+        frequencies[with_rotations] = np.sqrt(scipy.linalg.eigh(system.stiffness, reduced_mass, eigvals_only=True)) / (
+            2.0 * np.pi
+        )
     # Central differences of the forces leave 1e-8.
     place = f"{'body carries' if carrier else 'body moves'}, {'turned' if turned else 'upright'}"
     validated(
-        "Body models", f"frequencies of a frame with a rotational spring at a node, {place}", found[True], exact,
+        "Body models", f"frequencies of a frame with a rotational spring at a node, {place}", frequencies[True], exact,
         rel=1e-6, unit="Hz", source="second derivation: K and M of all six degrees of freedom of each corner",
     )  # fmt: skip
-    assert np.max(np.abs(found[False] / exact - 1.0)) > 0.01
+    assert np.max(np.abs(frequencies[False] / exact - 1.0)) > 0.01
 
 
-def test_static_answer_to_a_torque_is_that_of_the_whole_frame():
+def test_static_response_to_a_torque_is_that_of_the_whole_frame():
     torque = np.array([300.0, -200.0, 500.0])
     stiffness = STIFFNESS.copy()
     for node, k in HELD.items():
@@ -131,9 +134,10 @@ def test_static_answer_to_a_torque_is_that_of_the_whole_frame():
     system = linear(held_box(twist=1e-6, carrier=False))
     moved = np.linalg.solve(system.stiffness, force)
     rigid = moved[:3] + np.cross(moved[3:6], BOX.positions - BOX.cog)
-    found = rigid + np.einsum("mni,m->ni", BOX.shapes, moved[6:])
+    displacement = rigid + np.einsum("mni,m->ni", BOX.shapes, moved[6:])
     validated(
-        "Body models", "static displacement of a frame under a torque at a node", found, exact, peak=1e-6, unit="m",
+        "Body models", "static displacement of a frame under a torque at a node", displacement, exact, peak=1e-6,
+        unit="m",
         source="second derivation: K of all six degrees of freedom of each corner",
     )  # fmt: skip
 
@@ -149,13 +153,13 @@ def test_the_run_vibrates_as_the_whole_frame():
     for number in (7, 12):
         run, way = held_box(), 1e-3 * shapes[:, number]
         mujoco.mj_integratePos(run.model, run.data.qpos, way, 1.0)
-        found = run.step(count, run.position)[:, 7:] @ way[6:] / (way[6:] @ way[6:])
+        amplitude = run.step(count, run.position)[:, 7:] @ way[6:] / (way[6:] @ way[6:])
         swing = np.cos(np.sqrt(squares[number]) * times)
         assert swing.min() < -0.9
         # (w h)^2/8 from the start, and what the box turns by.
         validated(
-            "Integration in MuJoCo", f"free vibration of a frame in its natural mode {number}", found, swing, abs=2e-3,
-            source="closed form: cos w t, w from K and M of the whole frame",
+            "Integration in MuJoCo", f"free vibration of a frame in its natural mode {number}", amplitude, swing,
+            abs=2e-3, source="closed form: cos w t, w from K and M of the whole frame",
         )  # fmt: skip
 
 
@@ -165,18 +169,19 @@ def test_a_static_torque_turns_with_the_node_that_carries_it(carrier):
     preload = np.zeros(held_box().rows.layout.row_count + 3)
     preload[-3:] = load
     with_load, without = (
-        linear(held_box(carrier=carrier, preload=rest), rest).stiffness for rest in (preload, np.zeros_like(preload))
+        linear(held_box(carrier=carrier, preload=at_rest), at_rest).stiffness
+        for at_rest in (preload, np.zeros_like(preload))
     )
     psi = BOX.rotations[f"corner_{NODE}"].T
     # T = C p on the ground, -T on the node; d(theta x p)/dq = -[p]x Psi. The ground does not turn.
-    turning = np.cross(psi, load, axisa=0, axisc=0) if carrier else np.zeros((3, 18))
+    moment_change = np.cross(psi, load, axisa=0, axisc=0) if carrier else np.zeros((3, 18))
     change = (with_load - without)[6:, 6:]
     validated(
         "Linear system",
         f"stiffness of a static torque that turns with its node, {'body carries' if carrier else 'body moves'}", change,
-        psi.T @ turning, abs=1e-7 * np.abs(without).max(), source="closed form: d(theta x p) / dq",
+        psi.T @ moment_change, abs=1e-7 * np.abs(without).max(), source="closed form: d(theta x p) / dq",
     )  # fmt: skip
-    assert not carrier or np.abs(psi.T @ turning).max() > 1e-5 * np.abs(without).max()
+    assert not carrier or np.abs(psi.T @ moment_change).max() > 1e-5 * np.abs(without).max()
 
 
 def test_both_engines_see_the_rotations_of_a_body_design(tmp_path, capsys):
@@ -192,14 +197,14 @@ def test_both_engines_see_the_rotations_of_a_body_design(tmp_path, capsys):
     car = Car(load_vehicle(None, [*stiff, "body.superelement=turning.toml"]), folder=tmp_path)
     runs = [car.run(signal, engine=engine) for engine in ("mujoco", "reduced")]
     channel = "engine_acc_x"
-    size, (found, linear) = np.std(runs[0][channel]), (run[channel] for run in runs)
+    size, (stepped, linear) = np.std(runs[0][channel]), (run[channel] for run in runs)
     # The step of 0.5 ms leaves 0.1 %, with and without rotations.
-    assert np.std(found - linear) < 0.003 * size
+    assert np.std(stepped - linear) < 0.003 * size
     assert np.std(rigid[channel] - linear) > 0.01 * size
-    for file, words in ((tmp_path / "turning.toml", "known of strut_top_fr"), (None, "not known of strut_top_fr")):
+    for file, notice in ((tmp_path / "turning.toml", "known at strut_top_fr"), (None, "unknown at strut_top_fr")):
         options = [] if file is None else ["--vehicle", str(write_vehicle(tmp_path, file.name))]
         assert body_command.main(["show", *options]) == 0
-        assert f"rotations of nodes under rotational stiffness: {words}" in capsys.readouterr().out
+        assert f"rotations of nodes under rotational stiffness: {notice}" in capsys.readouterr().out
 
 
 def write_vehicle(folder, body):

@@ -18,7 +18,7 @@ DURATION, EVERY = 0.4, 4e-3
 
 
 def dropped(step: float, height: float = HEIGHT) -> tuple[np.ndarray, np.ndarray]:
-    """Height of a wheel that falls on its tyre and bounces, every 4 ms, and the force of the tyre at every step."""
+    """Return the height of a bouncing wheel every 4 ms, and the force of its tyre at every step."""
     spec = empty_spec(step)
     spec.option.gravity = [0.0, 0.0, -GRAVITY]
     body = spec.worldbody.add_body(name="wheel")
@@ -37,8 +37,8 @@ def dropped(step: float, height: float = HEIGHT) -> tuple[np.ndarray, np.ndarray
         # The force of the step before.
         return [run.data.qpos[0], run.rows.state.explicit[row] + (run.data.efc_force[row] if run.data.nefc else 0.0)]
 
-    found = run.step(round(DURATION / step) + 1, read)
-    return found[:: round(EVERY / step), 0], found[1:, 1]
+    samples = run.step(round(DURATION / step) + 1, read)
+    return samples[:: round(EVERY / step), 0], samples[1:, 1]
 
 
 def bounced(height: float = HEIGHT) -> tuple[np.ndarray, list[float]]:
@@ -48,7 +48,7 @@ def bounced(height: float = HEIGHT) -> tuple[np.ndarray, list[float]]:
         return float(-STIFFNESS * y[0] - DAMPING * y[1])
 
     pushes.terminal = True  # type: ignore[attr-defined]
-    times, changes, found = np.arange(0.0, DURATION + 1e-9, EVERY), [0.0], []
+    times, changes, heights = np.arange(0.0, DURATION + 1e-9, EVERY), [0.0], []
     y, contact = np.array([height, 0.0]), 0.0
     while changes[-1] < DURATION:
 
@@ -58,10 +58,10 @@ def bounced(height: float = HEIGHT) -> tuple[np.ndarray, list[float]]:
         pushes.direction = -1.0 if contact else 1.0  # type: ignore[attr-defined]
         part = solve_ivp(law, (changes[-1], DURATION + EVERY), y, events=pushes, dense_output=True, rtol=1e-11,
                          atol=1e-14, max_step=1e-3)  # fmt: skip
-        found += [float(part.sol(t)[0]) for t in times if changes[-1] <= t < part.t[-1]]
+        heights += [float(part.sol(t)[0]) for t in times if changes[-1] <= t < part.t[-1]]
         y, contact = part.y[:, -1], 1.0 - contact
         changes.append(float(part.t[-1]))
-    return np.array(found), changes[1:-1]
+    return np.array(heights), changes[1:-1]
 
 
 def test_a_wheel_falls_and_bounces():
@@ -69,8 +69,8 @@ def test_a_wheel_falls_and_bounces():
     assert len(changes) >= 4 and len(reference) == round(DURATION / EVERY) + 1
     steps, errors = np.array([2e-3, 1e-3, 5e-4, 2.5e-4]), []
     for step in steps:
-        heights, force = dropped(step)
-        errors.append(np.max(np.abs(heights - reference)))
+        height, force = dropped(step)
+        errors.append(np.max(np.abs(height - reference)))
         # Where it touches the force is wrong for one step, by what the damper changes in it.
         assert np.min(force) > -1e-6 and 0.3 < np.mean(force < 1e-6) < 0.9
     order, rk45 = np.polyfit(np.log(steps), np.log(errors), 1)[0], foreign("scipy", "RK45 with events of contact")
@@ -111,7 +111,7 @@ def test_a_car_leaves_its_plates(one_sided, car):
 
 def test_on_the_ground_nothing_changes(one_sided, car):
     for engine in ("mujoco", "auto"):
-        both = [one.run(hump(2e-3), engine=engine) for one in (one_sided, car)]
+        both = [tested.run(hump(2e-3), engine=engine) for tested in (one_sided, car)]
         assert both[0].recording.statistics.engine == both[1].recording.statistics.engine
         for name in ("tyre_fr_force_z", "seat_rail_acc_z"):
             np.testing.assert_array_equal(both[0][name], both[1][name])

@@ -42,21 +42,21 @@ def transmissibility(frequency, step, *, velocity=1.0, acceleration=1.0):
 
 @pytest.mark.parametrize("frequency", [5.0, 12.5, 25.0, 40.0])
 def test_wheel_on_a_moving_plate(frequency):
-    found, exact = transmissibility(frequency, 1e-3)
+    measured, exact = transmissibility(frequency, 1e-3)
     # Fourth order but for the damping: largest near the resonance of 13.5 Hz.
     validated(
-        "Tyres", f"transmissibility of a wheel on a moving plate at {frequency:g} Hz", found, exact, rel=2e-3,
+        "Tyres", f"transmissibility of a wheel on a moving plate at {frequency:g} Hz", measured, exact, rel=2e-3,
         unit="m/m", source="closed form: (k + i w c) / (k + i w c - m w^2)",
     )  # fmt: skip
 
 
 def test_without_the_plate_velocity_the_tyre_damper_is_wrong():
-    found, exact = transmissibility(12.5, 1e-3, velocity=0.0)
-    assert abs(found - exact) > 0.02 * abs(exact)
+    measured, exact = transmissibility(12.5, 1e-3, velocity=0.0)
+    assert abs(measured - exact) > 0.02 * abs(exact)
 
 
 def test_the_plate_acceleration_belongs_to_the_average_of_the_stiffness():
     # K is averaged over three steps of wheel less plate; leaving the plate out triples the error at 40 Hz.
-    found, exact = transmissibility(40.0, 1e-3)
+    measured, exact = transmissibility(40.0, 1e-3)
     without, _ = transmissibility(40.0, 1e-3, acceleration=0.0)
-    assert abs(without - exact) > 2.5 * abs(found - exact)
+    assert abs(without - exact) > 2.5 * abs(measured - exact)

@@ -13,8 +13,8 @@ from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, 
 from tests.engines.simulation.row_model import poles
 from tests.validation import foreign, validated
 from vehicle.engines.linear.natural_modes import natural_modes
-from vehicle.engines.lumped.drive import Sampled
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.input_signals import Sampled
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.quarter_car_spec import quarter_car_spec
@@ -32,7 +32,7 @@ SLIP = 1e-3
 
 @cache
 def road(size, seconds):
-    """The road of the study, from rest."""
+    """Return the road of the study, from rest."""
     return random_road(
         rms=size,
         seed=2006,
@@ -45,20 +45,20 @@ def road(size, seconds):
 
 
 @cache
-def stepped(size, step, kind="friction"):
-    """MuJoCo with friction, without ("loose") or with the massless damper ("slip"); linear ones for 2 s only."""
-    if kind == "friction":
+def stepped(size, step, form="friction"):
+    """Simulate with friction, without ("loose") or with the massless damper ("slip"); linear forms for 2 s only."""
+    if form == "friction":
         return in_mujoco(CAR, road(size, 5.0), timestep=step)
-    return in_mujoco(LOOSE, road(size, 2.0), timestep=step, damper="slip" if kind == "slip" else "friction")
+    return in_mujoco(LOOSE, road(size, 2.0), timestep=step, damper="slip" if form == "slip" else "friction")
 
 
 @cache
-def solved(size, kind):
-    """Stiff solution at the instants of the default step; "rows" is friction with the clamped law of the rows."""
-    linear = kind in ("slip", "loose")
-    model = friction_of_the_rows(CAR) if kind == "rows" else None
+def solved(size, form):
+    """Return the stiff solution at the instants of the default step; "rows" is the clamped friction law of the rows."""
+    linear = form in ("slip", "loose")
+    model = friction_of_the_rows(CAR) if form == "rows" else None
     if model is None:
-        model = quarter_car(LOOSE if linear else CAR, damper="slip" if kind == "slip" else "friction").first_order()
+        model = quarter_car(LOOSE if linear else CAR, damper="slip" if form == "slip" else "friction").first_order()
     signal = road(size, 2.0 if linear else 5.0)
     time = DEFAULT_STEP * np.arange(round(signal.duration / DEFAULT_STEP) + 1)
     return stiff_solution(model, time, road=Sampled(signal.displacement["fr"], 1e-3))
@@ -68,46 +68,46 @@ def rms(values):
     return np.sqrt(np.mean(values**2))
 
 
-def ratios(size, kind):
-    """RMS acceleration of MuJoCo over that of the stiff solver, less 1, by place."""
-    found, exact = stepped(size, DEFAULT_STEP).acceleration, solved(size, kind)
-    return {place: rms(value) / rms(exact.acceleration(place)) - 1.0 for place, value in found.items()}
+def ratios(size, form):
+    """Return the RMS acceleration of MuJoCo over that of the stiff solver, less 1, by place."""
+    accelerations, exact = stepped(size, DEFAULT_STEP).acceleration, solved(size, form)
+    return {output: rms(value) / rms(exact.acceleration(output)) - 1.0 for output, value in accelerations.items()}
 
 
-def slip_shares(size, kind):
+def slip_shares(size, form):
     return (
         slip_share(stepped(size, DEFAULT_STEP).sliding_velocity, SLIP),
-        slip_share(solved(size, kind).sliding_velocity(), SLIP),
+        slip_share(solved(size, form).sliding_velocity(), SLIP),
     )
 
 
-def orders(kind, quantity, places):
-    """Errors by place and step, relative to the RMS of the stiff solution, and the slope over the three steps."""
+def orders(form, quantity, outputs):
+    """Return errors by output and step, relative to the RMS of the stiff solution, and the slope over the steps."""
     size, errors = 0.005, {}
-    exact = solved(size, kind)
-    for place in places:
-        want = getattr(exact, quantity)(place)
-        runs = {step: stepped(size, step, "friction" if kind == "rows" else kind) for step in STEPS}
-        gaps = [rms(getattr(run, quantity)[place] - want[:: round(h / DEFAULT_STEP)]) for h, run in runs.items()]
-        errors[place] = np.array(gaps) / rms(want)
-    return errors, {place: np.polyfit(np.log(STEPS), np.log(gap), 1)[0] for place, gap in errors.items()}
+    exact = solved(size, form)
+    for output in outputs:
+        want = getattr(exact, quantity)(output)
+        runs = {step: stepped(size, step, "friction" if form == "rows" else form) for step in STEPS}
+        gaps = [rms(getattr(run, quantity)[output] - want[:: round(h / DEFAULT_STEP)]) for h, run in runs.items()]
+        errors[output] = np.array(gaps) / rms(want)
+    return errors, {output: np.polyfit(np.log(STEPS), np.log(gap), 1)[0] for output, gap in errors.items()}
 
 
 @pytest.mark.parametrize("size", [0.001, 0.005])
 def test_body_wheel_and_damper_move_as_in_the_stiff_solution_of_the_same_law(size):
     # Asked for: RMS within 1 %, slip within 0.5 points, at the default step, where the damper slips part of the time.
     stiff = foreign("scipy", "Radau on the lumped quarter car")
-    for place in ("body", "wheel", "damper"):
+    for output in ("body", "wheel", "damper"):
         validated(
             "Integration in MuJoCo",
-            f"quarter car, RMS acceleration of the {place} over that of a stiff solver, road of {1e3 * size:g} mm",
-            1.0 + ratios(size, "rows")[place], 1.0, abs=0.01, source=stiff,
+            f"quarter car, RMS acceleration of the {output} over that of a stiff solver, road of {1e3 * size:g} mm",
+            1.0 + ratios(size, "rows")[output], 1.0, abs=0.01, source=stiff,
         )  # fmt: skip
-    found, exact = slip_shares(size, "rows")
+    measured, exact = slip_shares(size, "rows")
     assert 0.1 < exact < 0.7
     validated(
         "Integration in MuJoCo", f"quarter car, share of time in which the damper slips, road of {1e3 * size:g} mm",
-        found, exact, abs=0.005, source=stiff,
+        measured, exact, abs=0.005, source=stiff,
     )  # fmt: skip
 
 
@@ -115,8 +115,8 @@ def test_body_wheel_and_damper_move_as_in_the_stiff_solution_of_the_same_law(siz
 def test_the_published_smooth_law_gives_nearly_the_same(size):
     gap = ratios(size, "atan")
     assert abs(gap["body"]) < 0.01 and abs(gap["wheel"]) < 0.01
-    found, exact = slip_shares(size, "atan")
-    assert abs(found - exact) < 0.005
+    measured, exact = slip_shares(size, "atan")
+    assert abs(measured - exact) < 0.005
     # The damper's mass of 1 kg feels the last percents of the friction: its deviation is that between the two laws,
     # as the stiff solver has it too, and not one of the step.
     laws = rms(solved(size, "rows").acceleration("damper")) / rms(solved(size, "atan").acceleration("damper")) - 1
@@ -125,11 +125,11 @@ def test_the_published_smooth_law_gives_nearly_the_same(size):
 
 
 def test_the_linear_models_converge_with_second_order():
-    places = ("body", "wheel", "damper")
+    outputs = ("body", "wheel", "damper")
     # The damper's mass on its mount has 133 Hz: (w h)^2/12 is 1.5 % at 0.5 ms for its share of the acceleration.
     for quantity, limit in (("displacement", 5e-5), ("acceleration", 0.015)):
-        errors, slope = orders("loose", quantity, places)
-        for place in places:
+        errors, slope = orders("loose", quantity, outputs)
+        for place in outputs:
             validated(
                 "Integration in MuJoCo", f"linear quarter car, order of convergence of the {quantity} of the {place}",
                 slope[place], 2.0, abs=0.15, source=foreign("scipy", "Radau"),
@@ -137,11 +137,11 @@ def test_the_linear_models_converge_with_second_order():
         assert max(gap[-1] for gap in errors.values()) < limit
     # The massless damper is a Maxwell branch, exact for a rate on a straight line: its share of the error is of higher
     # order, and that of the undamped springs of the fourth. The sampled acceleration is that of the step: order 2.
-    errors, slope = orders("slip", "displacement", places[:2])
+    errors, slope = orders("slip", "displacement", outputs[:2])
     assert min(slope.values()) > 2.0
     assert max(gap[-1] for gap in errors.values()) < 5e-6
-    errors, slope = orders("slip", "acceleration", places[:2])
-    assert slope == pytest.approx(dict.fromkeys(places[:2], 2.0), abs=0.15)
+    errors, slope = orders("slip", "acceleration", outputs[:2])
+    assert slope == pytest.approx(dict.fromkeys(outputs[:2], 2.0), abs=0.15)
     assert max(gap[-1] for gap in errors.values()) < 2e-3
 
 
@@ -170,8 +170,8 @@ def test_stuck_the_frequencies_converge_with_fourth_order():
     for step in (4e-3, 2e-3, 1e-3):
         motion = free_vibration("stick", step)
         # The scheme keeps the mode shapes, so each mode is one oscillator with poles of its own.
-        found = [np.abs(poles(motion @ (masses * shape.real), step)[0]) / (2.0 * np.pi) for shape in modes.shape]
-        errors.append(np.array(found) / modes.frequency - 1.0)
+        frequencies = [np.abs(poles(motion @ (masses * shape.real), step)[0]) / (2.0 * np.pi) for shape in modes.shape]
+        errors.append(np.array(frequencies) / modes.frequency - 1.0)
     slope = np.polyfit(np.log([4e-3, 2e-3, 1e-3]), np.log(np.abs(errors)), 1)[0]
     validated(
         "Integration in MuJoCo", "stuck quarter car, order of convergence of both frequencies", slope,
@@ -185,11 +185,11 @@ def test_stuck_the_frequencies_converge_with_fourth_order():
 
 
 def free_vibration(damper, step):
-    """Motion of body and wheel, shape (T, 2), after a road that steps up by 10 mm before the record and stays."""
+    """Return the motion of body and wheel, (T, 2), after a step of the road by 10 mm before the record."""
     time = step * np.arange(401)
     still = Signal(time=time, displacement={"fr": np.full(time.size, 0.01)}, source="a step")
     motion = in_mujoco(CAR, still, timestep=step, damper=damper)
-    return np.stack([motion.displacement[place] for place in ("body", "wheel")], axis=1) - 0.01
+    return np.stack([motion.displacement[output] for output in ("body", "wheel")], axis=1) - 0.01
 
 
 def test_the_friction_row_holds_the_damper():

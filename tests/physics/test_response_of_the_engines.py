@@ -1,4 +1,4 @@
-"""The response to a periodic motion of a plate, of both engines as they are shipped, against the matrices."""
+"""Responses of both engines with default settings to a periodic plate motion, compared with the matrices."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def test_response_up_to_100_hz(engine, damper):
     run = car.run(periodic_motion(), engine=engine, channels=[*channels, "plate_fr_displacement"])
     responses = np.array([run[name][:-1] for name in channels])
     plate = run["plate_fr_displacement"][:-1]
-    frequency, found = periodic_response(1e-3, plate, responses, period=PERIOD, band=(1.0, 100.0))
+    frequency, measured = periodic_response(1e-3, plate, responses, period=PERIOD, band=(1.0, 100.0))
     exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
-    error = np.sqrt(np.sum(np.abs(found - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
+    error = np.sqrt(np.sum(np.abs(measured - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
     assert frequency[-1] > 99.0
     for channel, value in zip(channels, error, strict=True):
         validated(

@@ -40,13 +40,13 @@ WHOLE = BODY + 4 * sum(MASSES.values())
 
 
 def poles_of(car: Car) -> Complex:
-    """Poles of a car."""
+    """Return the poles of a car."""
     return np.asarray(np.linalg.eigvals(first_order(car.matrices.system).state), dtype=complex)
 
 
-def farthest(wanted: Complex, found: Complex) -> float:
-    """Largest relative distance of a pole from the nearest one found."""
-    away = np.abs(wanted[:, None] - found) / np.abs(wanted)[:, None]
+def farthest(wanted: Complex, computed: Complex) -> float:
+    """Return the largest relative distance of a pole from the nearest one found."""
+    away = np.abs(wanted[:, None] - computed) / np.abs(wanted)[:, None]
     return float(np.max(np.min(away, axis=1)))
 
 
@@ -56,14 +56,14 @@ def hold_of(car: Car) -> npt.NDArray[np.float64]:
     return WHOLE * np.array([omega**2, 2.0 * car.vehicle.driving.hold_damping * omega])
 
 
-def yaw_inertia(about: float) -> float:
-    """Of the whole car about a vertical line at x [m]."""
-    found = INERTIA[2] + BODY * (COG[0] - about) ** 2
-    for place in AXLES.values():
+def yaw_inertia(axis: float) -> float:
+    """Return the yaw inertia of the whole car about a vertical line at x [m]."""
+    inertia = INERTIA[2] + BODY * (COG[0] - axis) ** 2
+    for position in AXLES.values():
         wheel = sum(MASSES.values())
-        own = 0.55 * SPINS["tyre"] + 0.6 * (SPINS["knuckle"] + SPINS["brake_disc"] + SPINS["caliper"])
-        found += 2 * (wheel * ((place - about) ** 2 + TRACK**2 / 4) + own)
-    return float(found)
+        wheel_inertia = 0.55 * SPINS["tyre"] + 0.6 * (SPINS["knuckle"] + SPINS["brake_disc"] + SPINS["caliper"])
+        inertia += 2 * (wheel * ((position - axis) ** 2 + TRACK**2 / 4) + wheel_inertia)
+    return float(inertia)
 
 
 @pytest.mark.parametrize("speed", [3.0, 20.0, 50.0])
@@ -87,8 +87,8 @@ def test_side_force_relaxes_over_its_length(tmp_path: Path) -> None:
     start, way = data.qpos.copy(), np.zeros(model.nv)
     for name in ("body", *(f"knuckle_{wheel}" for wheel in car.vehicle.wheels)):
         joint = model.joint(name)
-        place = car.model.origins[name]
-        x, y = place[0] - COG[0], place[1]
+        position = car.model.origins[name]
+        x, y = position[0] - COG[0], position[1]
         way[joint.dofadr[0] : joint.dofadr[0] + 6] = -y * psi, x * psi, 0.0, 0.0, 0.0, psi
     mujoco.mj_integratePos(model, start, way, 1.0)
     tyre = rows.layout.rolling.tyres[0]
@@ -129,12 +129,14 @@ def test_rigid_car_is_the_single_track_car(tmp_path: Path, speed: float, trail: 
         vertical=1e9,
         overrides=["driving.hold_frequency=0.02"],
     )
-    cog = (BODY * COG[0] + sum(2 * sum(MASSES.values()) * place for place in AXLES.values())) / WHOLE
+    cog = (BODY * COG[0] + sum(2 * sum(MASSES.values()) * position for position in AXLES.values())) / WHOLE
     omega, zeta = 2.0 * np.pi * 0.02, 0.7
-    # Of the inertia of the wheels next to nothing is left.
-    own = 4 * (0.55 * SPINS["tyre"] + 0.6 * (SPINS["knuckle"] + SPINS["brake_disc"] + SPINS["caliper"]))
-    turned, about = yaw_inertia(cog) - own * 0.999, yaw_inertia(COG[0]) - own * 0.999
-    hold = np.array([WHOLE * omega**2, 2 * zeta * WHOLE * omega, about * omega**2, 2 * zeta * about * omega])
+    # The inertia of the wheels is nearly zero.
+    wheel_inertia = 4 * (0.55 * SPINS["tyre"] + 0.6 * (SPINS["knuckle"] + SPINS["brake_disc"] + SPINS["caliper"]))
+    turned, design_inertia = yaw_inertia(cog) - wheel_inertia * 0.999, yaw_inertia(COG[0]) - wheel_inertia * 0.999
+    hold = np.array(
+        [WHOLE * omega**2, 2 * zeta * WHOLE * omega, design_inertia * omega**2, 2 * zeta * design_inertia * omega]
+    )
     axles = [(AXLES[axle], 2 * cornering[axle]) for axle in AXLES]
     wanted = np.linalg.eigvals(single_track(speed, WHOLE, turned, cog, hold, axles, trail)).astype(complex)
     validated(
@@ -172,18 +174,18 @@ def test_locked_wheel_at_no_speed_is_the_standing_tyre() -> None:
         stiffness=system.stiffness - course.T @ (rolling.hold[:3, None] * course),
         damping=system.damping - course.T @ (rolling.hold[3:6, None] * course),
     )
-    found = np.linalg.eigvals(first_order(locked).state)
+    eigenvalues = np.linalg.eigvals(first_order(locked).state)
     wanted = np.linalg.eigvals(first_order(still.matrices.system).state)
-    assert np.count_nonzero(np.abs(found) > 1e-3) == np.count_nonzero(np.abs(wanted) > 1e-3)
+    assert np.count_nonzero(np.abs(eigenvalues) > 1e-3) == np.count_nonzero(np.abs(wanted) > 1e-3)
     validated(
         "Tyres", "largest relative distance of the poles of a sedan on locked wheels at no speed",
-        farthest(wanted[np.abs(wanted) > 1e-3], found.astype(complex)), 0.0, abs=1e-6,
+        farthest(wanted[np.abs(wanted) > 1e-3], eigenvalues.astype(complex)), 0.0, abs=1e-6,
         source="second derivation: standing tyres as springs of the carcass",
     )  # fmt: skip
 
 
 def ramp(car: Car, speed: float) -> Signal:
-    """A ramp of 30 mm over 1 m, cosine, met by the rear wheels later."""
+    """Return a ramp of 30 mm over 1 m, cosine, met by the rear wheels later."""
     time = uniform_time(samples=801, timestep=1e-3)
     foremost, displacement = min(AXLES.values()), {}
     for wheel in car.vehicle.composition.wheels:
@@ -232,8 +234,8 @@ def test_varied_speed_and_tyre_are_those_of_a_car_that_is_built() -> None:
     short, built = base.varied(changes), Car.load("sedan", ["driving.speed=20", *changes])
     assert short._from_terms is not None
     for name in ("stiffness", "damping", "input_damping", "branch_rows", "branch_drifts", "branch_effects"):
-        one, other = (getattr(car.matrices.system, name) for car in (short, built))
-        assert np.max(np.abs(one - other)) < 1e-8 * max(np.max(np.abs(other)), 1.0), name
+        varied, other = (getattr(car.matrices.system, name) for car in (short, built))
+        assert np.max(np.abs(varied - other)) < 1e-8 * max(np.max(np.abs(other)), 1.0), name
 
 
 @pytest.mark.parametrize(

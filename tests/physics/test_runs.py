@@ -86,13 +86,13 @@ def test_frf_from_time_and_from_the_matrices(damper):
     car = Car.load(None, settings)
     signal = multisine(rms=1e-5, seed=1, period=4.0, periods=4)
     run = car.run(signal)
-    channels = [f"{place}_acc_{axis}" for place in PLACES for axis in AXES]
+    channels = [f"{point}_acc_{axis}" for point in PLACES for axis in AXES]
     responses = np.array([run[name][:-1] for name in channels])
     plate = run["plate_fr_displacement"][:-1]
-    frequency, found = periodic_response(run.recording.timestep, plate, responses, period=4.0)
+    frequency, measured = periodic_response(run.recording.timestep, plate, responses, period=4.0)
     assert frequency.size == 197  # 1 to 50 Hz in steps of 0.25
     exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
-    error = np.sum(np.abs(found - exact) ** 2, axis=1)
+    error = np.sum(np.abs(measured - exact) ** 2, axis=1)
     size = np.sum(np.abs(exact) ** 2, axis=1)
     # The demand of the project: 1 % RMS over 1 to 50 Hz.
     each = dict(zip(channels, np.sqrt(error / size), strict=True))
@@ -103,7 +103,7 @@ def test_frf_from_time_and_from_the_matrices(damper):
         )  # fmt: skip
     # The other state of the damper is another car: the comparison can fail.
     other = car.matrix_frf(channels, frequency, damper="sliding" if damper == "stuck" else "stuck", wheel="fr")
-    assert np.sqrt(np.sum(np.abs(found[2] - other[2]) ** 2) / size[2]) > 0.2
+    assert np.sqrt(np.sum(np.abs(measured[2] - other[2]) ** 2) / size[2]) > 0.2
 
 
 def test_twice_the_input_is_twice_the_response_while_it_sticks(car):
@@ -114,7 +114,7 @@ def test_twice_the_input_is_twice_the_response_while_it_sticks(car):
 
 
 def mirror_symmetric():
-    """The car with its engine mounts, products of inertia and outputs made symmetric; body rigid."""
+    """Return the car with its engine mounts, products of inertia and outputs made symmetric; body rigid."""
     return load_vehicle(
         None,
         [
@@ -124,7 +124,7 @@ def mirror_symmetric():
     )
 
 
-def test_a_symmetric_car_answers_left_as_right():
+def test_a_symmetric_car_responds_left_as_right():
     car = Car(mirror_symmetric())
     road = random_road(rms=5.25e-4, seed=4, wheel="fr", duration=2.0)
     z = road.displacement["fr"]
@@ -134,8 +134,8 @@ def test_a_symmetric_car_answers_left_as_right():
     sign = {"x": 1.0, "y": -1.0, "z": 1.0}
     # The rows are solved in another order on the other side: rounding, blown up by sticking and slipping.
     for axis in AXES:
-        for place in ("knuckle", "damper_top", "suspension_mount"):
-            a, b = right[f"{place}_fr_acc_{axis}"], left[f"{place}_fl_acc_{axis}"]
+        for point in ("knuckle", "damper_top", "suspension_mount"):
+            a, b = right[f"{point}_fr_acc_{axis}"], left[f"{point}_fl_acc_{axis}"]
             np.testing.assert_allclose(a, sign[axis] * b, atol=1e-5 * np.max(np.abs(a)) + 1e-9)
         a, b = right[f"engine_acc_{axis}"], left[f"engine_acc_{axis}"]
         np.testing.assert_allclose(a, sign[axis] * b, atol=1e-5 * np.max(np.abs(a)) + 1e-9)

@@ -45,14 +45,16 @@ def test_without_range_it_is_the_passive_damper():
     controlled, passive = Car.load(Path("focus_road"), [*changes("hybrid"), *fixed]), Car.load(Path("focus_road"))
     signal = road(passive, 0.3)
     for engine in ("mujoco", "reduced"):
-        found, expected = controlled.run(signal, engine=engine), passive.run(signal, engine=engine)
+        controlled_run, expected = controlled.run(signal, engine=engine), passive.run(signal, engine=engine)
         for name, values in expected.recording.channels.items():
-            np.testing.assert_allclose(found[name], values, rtol=0.0, atol=1e-7 * np.max(np.abs(values)) + 1e-12)
+            np.testing.assert_allclose(
+                controlled_run[name], values, rtol=0.0, atol=1e-7 * np.max(np.abs(values)) + 1e-12
+            )
 
 
 def test_engines_agree_with_a_control(skyhook):
-    one, two = skyhook["mujoco"], skyhook["reduced"]
-    moving = one.time > 0.5
+    stepped, reduced = skyhook["mujoco"], skyhook["reduced"]
+    moving = stepped.time > 0.5
     for name in (
         "seat_rail_acc_z",
         "knuckle_fr_acc_z",
@@ -60,7 +62,7 @@ def test_engines_agree_with_a_control(skyhook):
         "damper_rl_force",
         "damper_fr_coefficient",
     ):
-        a, b = one[name][moving], two[name][moving]
+        a, b = stepped[name][moving], reduced[name][moving]
         # MuJoCo at its step of 1 ms; at 0.25 ms it is below 0.5 % on every one of these.
         assert np.std(b) == pytest.approx(np.std(a), rel=0.02), name
 
@@ -86,7 +88,7 @@ def test_it_only_resists(skyhook, engine):
         assert np.all(setting * velocity**2 >= 0.0)
 
 
-def test_settings_are_recorded_on_request_alone():
+def test_settings_are_recorded_only_on_request():
     vehicle = load_vehicle(Path("focus_road"), changes("groundhook"))
     assert vehicle.setting_channels == tuple(f"damper_{wheel}_coefficient" for wheel in ("fr", "fl", "rr", "rl"))
     assert not set(vehicle.setting_channels) & {*vehicle.channels, *vehicle.load_channels}
@@ -123,8 +125,8 @@ def test_bad_controls_are_refused_by_name(change, message):
 def test_a_template_without_ends_has_no_sensors(tmp_path):
     text = (SHIPPED / "macpherson.toml").read_text(encoding="utf-8")
     start, end = text.index("damper = ["), text.index("output = [")
-    own = text[:start] + 'damper = [{ name = "damper", joint = "damper" }]\n' + text[end:]
-    (tmp_path / "macpherson.toml").write_text(own, encoding="utf-8")
+    template = text[:start] + 'damper = [{ name = "damper", joint = "damper" }]\n' + text[end:]
+    (tmp_path / "macpherson.toml").write_text(template, encoding="utf-8")
     file = tmp_path / "vehicle.toml"
     file.write_text(vehicle_file("focus_road").read_text(encoding="utf-8"), encoding="utf-8")
     assert load_vehicle(file).wheels

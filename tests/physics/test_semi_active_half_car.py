@@ -1,4 +1,4 @@
-"""Semi-active dampers of both engines against the lumped half car of source 2, every law, with delay and rate."""
+"""Semi-active dampers of both engines against the lumped half car with rider, every law, with delay and rate."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import pytest
 
 from tests.physics.controlled_half_car import half_car_spec
 from tests.validation import validated
-from vehicle.engines.linear.matrices import car_matrices
+from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.lumped.bump_response import bump_passage
-from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.engines.reduced.pole_model import pole_model
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
@@ -39,7 +39,7 @@ def with_control(**changes):
 
 
 def damper_of(car):
-    """Damper of the complete car without friction under the control of a half car."""
+    """Return a damper of the complete car without friction under the control of a half car."""
     return dataclasses.replace(
         load_vehicle().damper, coulomb_friction=0.0, stribeck_friction=0.0, control=car.semi_active
     )
@@ -68,13 +68,13 @@ def in_mujoco(car):
             mujoco.mj_step(model, data)
             velocity[index] = data.qvel - 0.5 * STEP * data.qacc
             coefficient[index] = rows.state.coefficient
-    own = {model.joint(joint).name: velocity[:, model.jnt_dofadr[joint]] for joint in range(model.njnt)}
-    base = own["heave"] - CAR.body.seat_arm * own["pitch"]
+    joint_velocity = {model.joint(joint).name: velocity[:, model.jnt_dofadr[joint]] for joint in range(model.njnt)}
+    base = joint_velocity["heave"] - CAR.body.seat_arm * joint_velocity["pitch"]
     return {
-        "heave": own["heave"],
-        "upper limb": base + own["seat"] + own["upper_limb"],
-        "damper_fr": -own["damper_fr"],
-        "damper_rr": -own["damper_rr"],
+        "heave": joint_velocity["heave"],
+        "upper limb": base + joint_velocity["seat"] + joint_velocity["upper_limb"],
+        "damper_fr": -joint_velocity["damper_fr"],
+        "damper_rr": -joint_velocity["damper_rr"],
     }, coefficient
 
 
@@ -85,9 +85,9 @@ def reduced(car):
     still = StaticTrim(
         preload=np.zeros(Rows(model).weights.preload.size), tyre_load=loads, support_load={}, residual=0.0
     )
-    names = [f"damper_{wheel}_{what}" for wheel in loads for what in ("velocity", "force", "coefficient")]
+    names = [f"damper_{wheel}_{quantity}" for wheel in loads for quantity in ("velocity", "force", "coefficient")]
     return simulate_reduced(
-        pole_model(car_matrices(model, still)),
+        pole_model(car_matrices(model, still, compiled=False)),
         ROAD,
         dampers=[damper_of(car)] * 2,
         record_rate=1.0 / STEP,
@@ -96,8 +96,8 @@ def reduced(car):
     )
 
 
-def gap(found, expected):
-    return float(np.std(found - expected) / np.std(expected))
+def gap(values, expected):
+    return float(np.std(values - expected) / np.std(expected))
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -120,5 +120,5 @@ def test_both_engines_are_the_lumped_half_car(law):
         # Passive at every sample: the force is a coefficient of the damper times its velocity.
         force = -run[f"damper_{wheel}_force"]
         np.testing.assert_allclose(force, setting * velocity, atol=1e-9 * np.max(np.abs(force)))
-        for one in (setting, coefficient[:, number]):
-            assert 300.0 - 1e-9 <= one.min() < one.max() <= 3000.0 + 1e-9
+        for history in (setting, coefficient[:, number]):
+            assert 300.0 - 1e-9 <= history.min() < history.max() <= 3000.0 + 1e-9

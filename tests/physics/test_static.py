@@ -1,4 +1,4 @@
-"""Gravity and static trim: the car stands in its design position and stays there."""
+"""Gravity and static trim: the car is in equilibrium in its design position."""
 
 from __future__ import annotations
 
@@ -80,8 +80,8 @@ def test_the_ground_pulls_nowhere_sideways(car):
     points = car.vehicle.points
     front, rear = points["tyre_patch_fr"][0], points["rear_support_right"][0]
     weight = car.vehicle.gravity * model.body_mass.sum()
-    place = np.sum(model.body_mass * data.xipos[:, 0]) / model.body_mass.sum()
-    axle = weight * (rear - place) / (rear - front)
+    centre = np.sum(model.body_mass * data.xipos[:, 0]) / model.body_mass.sum()
+    axle = weight * (rear - centre) / (rear - front)
     # One per cent for the torques of the 100 N m/rad bushings.
     validated(
         "Static equilibrium", "load of the front axle", sum(static.tyre_load.values()), axle, rel=0.01, unit="N",

@@ -18,7 +18,7 @@ from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.signals.excitation.bump import bump
 
 

@@ -34,7 +34,7 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_peak,
 )
 from scenarios.evidence import LEVELS, evidence_of, status_of
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER

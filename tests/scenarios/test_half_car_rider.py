@@ -11,7 +11,7 @@ from scenarios.half_car_rider.__main__ import main
 from scenarios.half_car_rider.claims import relative_changes
 from scenarios.half_car_rider.runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive, varied
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider, places
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, output_points
 from vehicle.model.parameters.half_car_rider_parameters import PUBLISHED, half_car_rider_parameters
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.exposure import vibration_dose_value
@@ -89,7 +89,7 @@ def test_every_row_has_its_place_and_a_picture_that_is_there(results):
 def test_base_case_is_tabled_for_every_point(results):
     table = json.loads((results / "results.json").read_text(encoding="utf-8"))["base_case"]
     history = passive(CAR, SPEEDS[0])
-    assert set(table) == set(places(CAR))
+    assert set(table) == set(output_points(CAR))
     assert table["rear_body"]["acceleration"]["peak"] == pytest.approx(
         np.abs(history.acceleration("heave") + 1.45 * history.acceleration("pitch")).max(), rel=1e-12
     )

@@ -1,4 +1,4 @@
-"""Numbers that README.md and the page quote from the table of published results are those of the table."""
+"""Numbers that README.md and docs/trust.md quote from the table of published results are those of the table."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ TABLE: dict[str, Any] = json.loads((ROOT / HOME / "results.json").read_text(enco
 
 ROWS: list[dict[str, Any]] = TABLE["rows"]
 
-README = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+PAGES = {name: " ".join((ROOT / name).read_text(encoding="utf-8").split()) for name in ("README.md", "docs/trust.md")}
+"""Pages that quote numbers, docs/trust.md all of them."""
 
 
 def named(pattern: str) -> dict[str, Any]:
@@ -72,14 +73,14 @@ QUOTES: dict[str, Callable[[], list[str]]] = {
     ],
     rf"first slip \(end of sticking[^|]*\| 5.035 s \| {N} s": lambda: first("bump: *end of stick* with Fd 125 N*", 3),
 }
-"""Sentence of README.md to the quoted numbers of the table or of the chosen set."""
+"""Pattern of a quoted sentence, and the numbers of the table, or of the chosen set, that belong there."""
 
 
 @pytest.mark.parametrize("sentence", QUOTES)
-def test_a_number_of_the_readme_is_that_of_the_table(sentence):
-    match = re.search(sentence, README)
-    assert match, f"README.md has no sentence like {sentence}; change QUOTES with it"
-    assert list(match.groups()) == QUOTES[sentence]()
+def test_a_quoted_number_is_that_of_the_table(sentence):
+    quotes = [match.groups() for text in PAGES.values() for match in re.finditer(sentence, text)]
+    assert re.search(sentence, PAGES["docs/trust.md"]), f"docs/trust.md has no sentence like {sentence}; change QUOTES"
+    assert [list(quote) for quote in quotes] == [QUOTES[sentence]()] * len(quotes)
 
 
 def test_the_page_is_that_of_the_table():

@@ -176,7 +176,7 @@ def test_published_modes(capsys):
 
 
 def test_run_in_python(short_signal: Path):
-    """The five lines of the README."""
+    """Load a car, run a signal, evaluate FRF and comfort."""
     from vehicle.runs.car import Car
     from vehicle.signals.excitation.signal_file import read_signal
 

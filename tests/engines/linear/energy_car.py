@@ -48,7 +48,7 @@ def turned(angle):
 
 @dataclass
 class Term:
-    """A vector function of some coordinates, with its stiffness; `settling` is the one while the car is set down."""
+    """A vector function of some coordinates, with its stiffness; `settling` is the stiffness while the car settles."""
 
     columns: list[int]
     value: Any
@@ -58,13 +58,13 @@ class Term:
     turns: Any = ()
 
     def derivative(self, at=0.0):
-        """r' at a point, (rows, columns)."""
+        """Return r' at a point, (rows, columns)."""
         size = len(self.columns)
-        found = [np.imag(self.value(at + 1j * COMPLEX_STEP * way)) / COMPLEX_STEP for way in np.eye(size)]
-        return np.array(found).T
+        columns = [np.imag(self.value(at + 1j * COMPLEX_STEP * way)) / COMPLEX_STEP for way in np.eye(size)]
+        return np.array(columns).T
 
     def curvature(self, weights):
-        """Sum of the second derivatives of the rows, (columns, columns)."""
+        """Return the sum of the second derivatives of the rows, (columns, columns)."""
         steps = REAL_STEP * np.eye(len(self.columns))
         return np.array([weights @ (self.derivative(s) - self.derivative(-s)) for s in steps]) / (2.0 * REAL_STEP)
 
@@ -100,7 +100,7 @@ class EnergyCar:
         self.geometric = sum(self._full(term, term.curvature(weights)) for term, weights in weighted)
 
     def _listed(self, name, to=None):
-        part = next(one for one in self.vehicle.composition.parts if one.name == name)
+        part = next(candidate for candidate in self.vehicle.composition.parts if candidate.name == name)
         self._part(name, np.array(part.cog), part.numbers.mass, np.diag(part.numbers.inertia), to)
 
     def _part(self, name, centre, mass, inertia, to=None):
@@ -112,12 +112,12 @@ class EnergyCar:
 
     def _columns(self, *names):
         """Coordinates of parts; those of the body are followed by the modal ones."""
-        found: list[Any] = []
+        coordinates: list[Any] = []
         for part in (self.root[name] for name in names if name in self.root):
             first = 6 * self.parts.index(part)
-            found += range(first, first + 6)
-            found += range(self.rigid, self.rigid + self.modes) if part == "body" else ()
-        return found
+            coordinates += range(first, first + 6)
+            coordinates += range(self.rigid, self.rigid + self.modes) if part == "body" else ()
+        return coordinates
 
     def _pose(self, name, x):
         """Rotation of a part and where it takes a point, from its own coordinates; the ground stays."""
@@ -145,16 +145,16 @@ class EnergyCar:
 
     def _joints(self, *, stuck):
         """Constraints: balls, universal joints of the rods, slides of the dampers, the bar."""
-        found: list[Any] = []
+        joints: list[Any] = []
 
         def ball(first, second, point):
-            found.append(self._pair(first, second, lambda r, p, s, o: p(point) - o(point)))
+            joints.append(self._pair(first, second, lambda r, p, s, o: p(point) - o(point)))
 
         def square(first, second, pairs):
-            found.append(self._pair(first, second, lambda r, p, s, o: [(r @ a) @ (s @ b) for a, b in pairs]))
+            joints.append(self._pair(first, second, lambda r, p, s, o: [(r @ a) @ (s @ b) for a, b in pairs]))
 
         def line(first, second, point, across):
-            found.append(self._pair(first, second, lambda r, p, s, o: (s @ across).T @ (p(point) - o(point))))
+            joints.append(self._pair(first, second, lambda r, p, s, o: (s @ across).T @ (p(point) - o(point))))
 
         for w in WHEELS:
             knuckle, top, strut = f"knuckle_{w}", f"damper_top_{w}", self._strut(w)
@@ -174,7 +174,7 @@ class EnergyCar:
             ball(f"stabilizer_rod_{w}", f"damper_bottom_{w}", f"stab_rod_top_{w}")
         square("stabilizer_half_fr", "stabilizer_half_fl", ((Y, X), (Y, Z)))
         line("stabilizer_half_fr", "stabilizer_half_fl", self.points["stab_body_fr"] * (X + Z), np.array((X, Z)).T)
-        return found
+        return joints
 
     def _slide(self, wheel):
         """First derivative of the extension of a damper, (1, size)."""
@@ -187,8 +187,8 @@ class EnergyCar:
         return axis / np.linalg.norm(axis)
 
     def _elements(self):
-        """Deformations of all elements."""
-        found = []
+        """Return the deformations of all elements."""
+        terms = []
 
         def twist(r, p, s, o):
             between = s.T @ r
@@ -202,9 +202,9 @@ class EnergyCar:
             bent = lambda r, p, s, o, at=c.point: s.T @ (p(at) - o(at))  # noqa: E731
             turns = 6 * self.parts.index(self.root[c.carrier]) + np.arange(3, 6) if c.carrier in self.root else ()
             k = np.asarray(law.stiffness)
-            found.append(self._pair(c.moving, c.carrier, bent, k, k * share, law, turns))
+            terms.append(self._pair(c.moving, c.carrier, bent, k, k * share, law, turns))
             k = np.full(3, law.rotational_stiffness)
-            found.append(self._pair(c.moving, c.carrier, twist, k, k))
+            terms.append(self._pair(c.moving, c.carrier, twist, k, k))
         for w in WHEELS:
 
             def longer(r, p, s, o, up=f"strut_top_{w}", low=f"spring_lower_{w}"):
@@ -212,22 +212,22 @@ class EnergyCar:
                 return [np.sqrt(line @ line) - np.linalg.norm(self.points[up] - self.points[low])]
 
             k = np.array([value_of(self.vehicle, "main_spring.stiffness")])
-            found.append(self._pair("body", f"main_spring_lower_{w}", longer, k, k))
+            terms.append(self._pair("body", f"main_spring_lower_{w}", longer, k, k))
         k = np.array([value_of(self.vehicle, "stabilizer.torsional_stiffness")])
         torsion = lambda r, p, s, o: [(s.T @ r)[0, 2]]  # noqa: E731
-        found.append(self._pair("stabilizer_half_fr", "stabilizer_half_fl", torsion, k, k))
+        terms.append(self._pair("stabilizer_half_fr", "stabilizer_half_fl", torsion, k, k))
         k = (2.0 * np.pi * self.body.frequencies * self.vehicle.body.frequency_scale) ** 2
-        return [*found, Term(list(range(self.rigid, self.size)), lambda x: x, k, k)]
+        return [*terms, Term(list(range(self.rigid, self.size)), lambda x: x, k, k)]
 
     def _full(self, term, matrix=None):
         """First derivatives of a term, or a matrix of its coordinates, in those of the car."""
         if matrix is None:
-            found = np.zeros((len(term.value(np.zeros(len(term.columns)))), self.size))
-            found[:, term.columns] = term.derivative()
-            return found
-        found = np.zeros((self.size, self.size))
-        found[np.ix_(term.columns, term.columns)] = matrix
-        return found
+            derivatives = np.zeros((len(term.value(np.zeros(len(term.columns)))), self.size))
+            derivatives[:, term.columns] = term.derivative()
+            return derivatives
+        extended = np.zeros((self.size, self.size))
+        extended[np.ix_(term.columns, term.columns)] = matrix
+        return extended
 
     def _preload(self):
         """Static forces: what each element takes when the stress-free car is set down on sliding ground contacts."""
@@ -240,13 +240,13 @@ class EnergyCar:
         return [-term.settling * (j @ settled) for j, term in zip(rows, self.elements, strict=True)]
 
     def _mass(self):
-        found = np.zeros((self.size, self.size))
+        matrix = np.zeros((self.size, self.size))
         for part, mass, centre, inertia in self.masses:
             columns = self._columns(part)[:6]
             way = np.hstack([np.eye(3), -cross_matrix(centre - self.centres[part])])
-            found[np.ix_(columns, columns)] += mass * way.T @ way + scipy.linalg.block_diag(np.zeros((3, 3)), inertia)
-        found[self.rigid :, self.rigid :] += np.eye(self.modes)
-        return found
+            matrix[np.ix_(columns, columns)] += mass * way.T @ way + scipy.linalg.block_diag(np.zeros((3, 3)), inertia)
+        matrix[self.rigid :, self.rigid :] += np.eye(self.modes)
+        return matrix
 
     def poles(self, *, stuck):
         """Poles with positive imaginary part by their size, and the largest force [N] out of balance at rest."""
@@ -285,6 +285,6 @@ class EnergyCar:
         state[n : 2 * n] = -np.linalg.solve(mass, np.hstack([stiffness, damping, branches.T]))
         state[2 * n :, n : 2 * n] = np.array(springs)[:, None] * branches
         state[2 * n :, 2 * n :] = -np.diag(1.0 / np.array(times))
-        found = np.linalg.eigvals(state)
-        found = found[found.imag > 1e-6]
-        return found[np.argsort(np.abs(found))], float(np.max(np.abs(gradient + fixed.T @ reaction)))
+        eigenvalues = np.linalg.eigvals(state)
+        eigenvalues = eigenvalues[eigenvalues.imag > 1e-6]
+        return eigenvalues[np.argsort(np.abs(eigenvalues))], float(np.max(np.abs(gradient + fixed.T @ reaction)))

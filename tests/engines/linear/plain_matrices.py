@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle.engines.linear.matrices import CarMatrices
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.system import LinearSystem
 
 
@@ -22,7 +22,7 @@ def plain_matrices(
     outputs,
     body_rows,
     body_masses,
-    body_places=None,
+    body_centres=None,
     constraints=(),
     branches=(),
     branch_stiffness=(),
@@ -59,7 +59,7 @@ def plain_matrices(
         tyre_rows=np.asarray(plate_stiffness) / np.reshape(tyre_stiffness, (-1, 1)),
         body_rows=body_rows,
         body_masses=body_masses,
-        body_places=body_places or {name: np.zeros(3) for name in body_masses},
+        body_centres=body_centres or {name: np.zeros(3) for name in body_masses},
         carried_by={},
         modal=slice(0, 0),
     )

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
+from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.linear.first_order import free_basis
-from vehicle.engines.linear.matrices import car_matrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows, joint_springs
 from vehicle.errors import ConfigurationError
@@ -16,7 +16,7 @@ from vehicle.runs.car import Car
 
 
 def element_stiffness(car):
-    """J' K J of all elements and joint springs at the design position, without any geometric part."""
+    """Return J' K J of all elements and joint springs at the design position, without any geometric part."""
     model, static = car.model.model, car.model.static
     data = mujoco.MjData(model)
     rows = Rows(model, static.preload)
@@ -28,13 +28,13 @@ def element_stiffness(car):
     diagonal[e.bushings.rows] = e.bushings.stiffness
     diagonal[e.springs.rows] = e.springs.stiffness
     # Velocities of rotation by another way than that of the callback: the Jacobians of the two sites.
-    turning = np.zeros((model.nv, model.nv))
+    rotational = np.zeros((model.nv, model.nv))
     for stiffness, sites in zip(e.rotations.stiffness, e.rotations.sites, strict=True):
         moving, carrier = np.zeros((3, model.nv)), np.zeros((3, model.nv))
         mujoco.mj_jacSite(model, data, None, moving, sites[0])
         mujoco.mj_jacSite(model, data, None, carrier, sites[1])
-        turning += stiffness * (moving - carrier).T @ (moving - carrier)
-    return jacobian.T @ (diagonal[:, None] * jacobian) + turning + np.diag(joint_springs(model))
+        rotational += stiffness * (moving - carrier).T @ (moving - carrier)
+    return jacobian.T @ (diagonal[:, None] * jacobian) + rotational + np.diag(joint_springs(model))
 
 
 def in_free_motions(car, matrix, *, stuck=True):
@@ -45,15 +45,15 @@ def in_free_motions(car, matrix, *, stuck=True):
 
 
 def test_stiffness_is_elements_and_a_small_geometric_part(car):
-    found, elements = (
+    stiffness, elements = (
         in_free_motions(car, matrix) for matrix in (car.matrices.system.stiffness, element_stiffness(car))
     )
-    difference = np.abs(found - elements)
+    difference = np.abs(stiffness - elements)
     # Gravity and preloads turn with the parts: 0.2 % of the stiffest direction in mass-normalised terms.
     assert difference.max() < 0.005 * np.abs(elements).max()
     assert difference.max() > 0.0
     # Gravity and preload change undamped frequencies by at most 0.6 %.
-    frequencies = [np.sqrt(np.linalg.eigvalsh((m + m.T) / 2.0)) / (2.0 * np.pi) for m in (found, elements)]
+    frequencies = [np.sqrt(np.linalg.eigvalsh((m + m.T) / 2.0)) / (2.0 * np.pi) for m in (stiffness, elements)]
     below = frequencies[1] < 60.0
     change = frequencies[0][below] / frequencies[1][below] - 1.0
     assert below.sum() > 20
@@ -62,11 +62,12 @@ def test_stiffness_is_elements_and_a_small_geometric_part(car):
 
 def test_without_gravity_the_stiffness_is_that_of_the_elements():
     weightless = Car.load(None, ["gravity=0"])
-    found = in_free_motions(weightless, weightless.matrices.system.stiffness)
+    stiffness = in_free_motions(weightless, weightless.matrices.system.stiffness)
     elements = in_free_motions(weightless, element_stiffness(weightless))
     # Two derivations: central differences of the forces, and J' K J. Differences of 1e-6 leave 1e-8.
     validated(
-        "Linear system", "stiffness of the weightless car, mass-normalised", found, elements, peak=1e-6, unit="1/s2",
+        "Linear system", "stiffness of the weightless car, mass-normalised", stiffness, elements, peak=1e-6,
+        unit="1/s2",
         source="second derivation: J' K J of all elements",
     )  # fmt: skip
 
@@ -144,13 +145,13 @@ def test_published_modes_with_stuck_dampers(car):
 
 
 def test_more_inertia_rolls_slower():
-    found = {}
+    frequencies = {}
     for ixx in (1000, 1200):
         modes = Car.load(None, [f"body.inertia.ixx={ixx}"]).modes("stuck")
         # Roll mixes with pitch and yaw; it is the rigid mode whose body turns most about x.
         (roll,) = [mode for mode in modes if mode.description.startswith("body roll")]
-        found[ixx] = roll.frequency
-    assert found[1200] < 0.9 * found[1000]
+        frequencies[ixx] = roll.frequency
+    assert frequencies[1200] < 0.9 * frequencies[1000]
 
 
 def test_sliding_dampers_make_another_car(car):
@@ -160,9 +161,9 @@ def test_sliding_dampers_make_another_car(car):
     # The wheels get their damper: no lightly damped vertical wheel mode is left near 28 Hz.
     damped = [m.damping_ratio for m in sliding if "wheel hop" in m.description]
     assert len(damped) == 2 and min(damped) > 0.1
-    for modes, least, most in ((stuck, 0.2, 1.0), (sliding, 0.0, 0.1)):
+    for modes, lowest_ratio, highest_ratio in ((stuck, 0.2, 1.0), (sliding, 0.0, 0.1)):
         light = [m for m in modes if 20.0 < m.frequency < 40.0 and m.damping_ratio < 0.06]
-        assert least < max(m.energy["wheel_fr"] for m in light) < most
+        assert lowest_ratio < max(m.energy["wheel_fr"] for m in light) < highest_ratio
     with pytest.raises(ConfigurationError, match="damper: found 'loose', allowed are stuck, sliding"):
         car.modes("loose")
 
@@ -188,11 +189,11 @@ def test_static_deflection_of_plate_and_car(car):
     )
     assert np.max(np.abs(right.imag)) < 1e-3
     assert right[1].real == pytest.approx(left[1].real, rel=0.02)
-    together = (right + left).real
+    in_phase = (right + left).real
     rear, front = 3.465, 0.85
     lever = (rear - np.array([2.05, 0.45])) / (rear - front)
-    # A rigid tilt, but for the soft horizontal supports.
+    # A rigid tilt, except for the soft horizontal supports.
     validated(
-        "Linear system", "response at 0.01 Hz of seat rail and body front to both plates", together[:2], lever,
+        "Linear system", "response at 0.01 Hz of seat rail and body front to both plates", in_phase[:2], lever,
         rel=0.03, unit="m/m", source="closed form: rigid tilt about the rear supports",
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""A car without a step of its own gets the largest that answers it."""
+"""A car without a time step gets the largest sufficient step."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def without_step(**mount):
     return Car(vehicle_of(table, FOCUS_FILE.parent), folder=FOCUS_FILE.parent)
 
 
-def test_the_step_is_halved_until_it_answers_the_car():
+def test_the_step_is_halved_until_it_is_sufficient():
     assert without_step().stepped().vehicle.solver.timestep == 1e-3
     car = without_step(stiffness=[3e6, 3e6, 3e7])
     assert car.stepped().vehicle.solver.timestep == 5e-4  # what the refusal of 1e-3 advises

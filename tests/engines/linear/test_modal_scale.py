@@ -8,7 +8,7 @@ from vehicle.engines.linear.modal_scale import modal_a
 
 
 def stiffness(system, s):
-    """D(s) of the theory, written out."""
+    """Return D(s) of the theory, written out."""
     branch = system.branch_stiffness * s * system.branch_time / (1.0 + s * system.branch_time)
     rows = system.branch_rows
     return s**2 * system.mass + s * system.damping + system.stiffness + rows.T @ (branch[:, None] * rows)

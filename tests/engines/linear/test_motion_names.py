@@ -75,10 +75,10 @@ def test_a_wheel_hops_between_8_and_35_hz(frequency, word):
 
 
 def test_rigid_rows_of_a_unit_against_its_bodies():
-    """Energy of the rigid motion by hand, and the motion relative to it from the velocities of each body."""
+    """Compare with the energy of the rigid motion by hand, and of the relative motion from the body velocities."""
     rng = np.random.default_rng(3)
     bodies, freedom = ("arm_fr", "knuckle_fr", "tyre_fr"), 18
-    places = {body: rng.normal(size=3) for body in bodies}
+    centres = {body: rng.normal(size=3) for body in bodies}
     masses = {}
     for body in bodies:
         root = rng.normal(size=(3, 3))
@@ -87,7 +87,7 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
     matrices: Any = SimpleNamespace(
         body_rows={body: rng.normal(size=(6, freedom)) for body in bodies},
         body_masses=masses,
-        body_places=places,
+        body_centres=centres,
         carried_by={},
         system=SimpleNamespace(inputs=("fr", "fl")),
     )
@@ -97,7 +97,7 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
     coordinates = rigid_rows(matrices)["wheel_fr"][:, 0]
     # The rigid motion nearest to that of the bodies in M, by least squares.
     six = {
-        body: np.block([[np.eye(3), np.cross(np.eye(3), places[body]).T], [np.zeros((3, 3)), np.eye(3)]])
+        body: np.block([[np.eye(3), np.cross(np.eye(3), centres[body]).T], [np.zeros((3, 3)), np.eye(3)]])
         for body in bodies
     }
     normal = sum(six[body].T @ masses[body] @ six[body] for body in bodies)
@@ -110,10 +110,10 @@ def test_rigid_rows_of_a_unit_against_its_bodies():
     )  # fmt: skip
     assert rigid < 0.9 * total
     # Exactly rigid: nothing is left, and the rotation alone has no translation of the centre.
-    centre = sum(masses[body][0, 0] * places[body] for body in bodies) / sum(masses[body][0, 0] for body in bodies)
+    centre = sum(masses[body][0, 0] * centres[body] for body in bodies) / sum(masses[body][0, 0] for body in bodies)
     turn = np.array([0.3, -1.0, 0.2])
     matrices.body_rows = {
-        body: np.concatenate([np.cross(turn, places[body] - centre), turn])[:, None] for body in bodies
+        body: np.concatenate([np.cross(turn, centres[body] - centre), turn])[:, None] for body in bodies
     }
     coordinates = rigid_rows(matrices)["wheel_fr"][:, 0]
     energy = sum(float(v @ masses[body] @ v) for body, rows in matrices.body_rows.items() for v in [rows[:, 0]])
@@ -133,12 +133,12 @@ def test_the_named_motion_holds_half_or_two_are_named(modes, name):
             else:
                 assert mode.description == " with ".join(f"{word} ({100 * share:.0f} %)" for word, share in shares[:2])
             for group in ("body", "engine"):
-                own = sum(share for word, share in shares if word.startswith(group))
-                assert own == pytest.approx(mode.energy[group], abs=1e-9)
+                group_share = sum(share for word, share in shares if word.startswith(group))
+                assert group_share == pytest.approx(mode.energy[group], abs=1e-9)
 
 
 def test_shares_add_up_to_m(cars):
-    """The energy coordinates and what links do beside them, against M of MuJoCo."""
+    """Compare the energy coordinates and the relative motion of the links with M of MuJoCo."""
     matrices = cars["sedan"].matrices
     rng = np.random.default_rng(1)
     for velocity in rng.normal(size=(3, matrices.system.mass.shape[0])):
@@ -165,17 +165,21 @@ AXIS = {"fore-aft": (0, 0), "lateral": (0, 1), "hop": (0, 2), "camber": (1, 0), 
 
 @pytest.mark.parametrize("name", ["focus", "focus_road", "sedan"])
 def test_names_agree_with_the_animation(cars, modes, name):
-    """What the film draws of the wheels: a translation of their centre, or a rotation, alike or opposite."""
+    """Motion of the wheels in the film: a translation of their centre, or a rotation, alike or opposite."""
     model, seen = cars[name].model.model, 0
     for mode in modes[name, "stuck"]:
-        words = mode.description.replace(",", "").split()
-        if not (words[1:2] == ["wheel"] and "(" not in mode.description and words[2] in AXIS):
+        parts = mode.description.replace(",", "").split()
+        if not (parts[1:2] == ["wheel"] and "(" not in mode.description and parts[2] in AXIS):
             continue
         motion = ModeMotion(model, mode.shape)
-        kind, axis = AXIS[words[2]]
-        right, left = (motion.amplitude[model.body(f"tyre_{words[0][0]}{side}").id, kind, axis] for side in ("r", "l"))
+        quantity, axis = AXIS[parts[2]]
+        right, left = (
+            motion.amplitude[model.body(f"tyre_{parts[0][0]}{side}").id, quantity, axis] for side in ("r", "l")
+        )
         assert np.sign((right * np.conj(left)).real) == (1.0 if "in phase" in mode.description else -1.0)
-        both = np.abs(motion.amplitude[[model.body(f"tyre_{words[0][0]}{side}").id for side in ("r", "l")], kind]) ** 2
+        both = (
+            np.abs(motion.amplitude[[model.body(f"tyre_{parts[0][0]}{side}").id for side in ("r", "l")], quantity]) ** 2
+        )
         assert both.sum(axis=0).argmax() == axis
         seen += 1
     assert seen >= {"focus": 2, "focus_road": 6, "sedan": 12}[name]

@@ -8,8 +8,8 @@ import pytest
 from tests.engines.linear.plain_matrices import plain_matrices
 from tests.validation import validated
 from vehicle.engines.linear import response
+from vehicle.engines.linear.car_modes import car_modes
 from vehicle.engines.linear.first_order import first_order, free_basis
-from vehicle.engines.linear.modes import car_modes
 from vehicle.engines.linear.part_motions import group_of
 from vehicle.engines.linear.response import frequency_response
 from vehicle.errors import ConfigurationError
@@ -93,7 +93,7 @@ def test_a_maxwell_branch_adds_a_real_pole_and_the_right_limits():
     assert matrix.shape == (5, 5)
     poles = np.linalg.eigvals(matrix)
     assert np.sum(np.abs(poles.imag) < 1e-6) == 1 and poles.real.max() < 0.0
-    # A fast branch is a damper K2 tau = 7e-4 N s/m, hence nothing; a slow one is a spring beside the main spring.
+    # A fast branch is a damper K2 tau = 7e-4 N s/m, hence zero; a slow one is a spring parallel to the main one.
     plain = [mode.frequency for mode in car_modes(quarter_car(), stuck=False)]
     assert [mode.frequency for mode in car_modes(soft, stuck=False)] == pytest.approx(plain, rel=1e-6)
     slow = car_modes(quarter_car(branch=((7e5, 1e6),)), stuck=False, highest=1e3)
@@ -127,8 +127,8 @@ def test_frequency_response_by_hand(stuck):
     frequency = np.array([0.5, 3.0, 12.0, 40.0])
     s = 2j * np.pi * frequency
     form = first_order(quarter_car(tyre_damping=TYRE_DAMPING).system, stuck=stuck)
-    places = ["body_acc_z", "wheel_acc_z"]
-    found = frequency_response(form, frequency, places, "acceleration", driven=[1.0, 0.0])
+    outputs = ["body_acc_z", "wheel_acc_z"]
+    response_by_poles = frequency_response(form, frequency, outputs, "acceleration", driven=[1.0, 0.0])
     drive = TYRE + TYRE_DAMPING * s
     if stuck:
         body = wheel = drive / ((SPRUNG + UNSPRUNG) * s**2 + drive)
@@ -138,11 +138,11 @@ def test_frequency_response_by_hand(stuck):
         wheel = drive / (UNSPRUNG * s**2 + strut + drive - strut**2 / sprung)
         body = wheel * strut / sprung
     validated(
-        "Linear system", f"FRF of body and wheel of a {'stuck' if stuck else 'sliding'} quarter car", found,
+        "Linear system", f"FRF of body and wheel of a {'stuck' if stuck else 'sliding'} quarter car", response_by_poles,
         np.array([s**2 * body, s**2 * wheel]), rel=1e-10, unit="(m/s2)/m", source="closed form: transfer function",
     )  # fmt: skip
     # The left plate drives nothing here.
-    assert not frequency_response(form, frequency, places, "acceleration", driven=[0.0, 1.0]).any()
+    assert not frequency_response(form, frequency, outputs, "acceleration", driven=[0.0, 1.0]).any()
 
 
 def test_unknown_channel():
@@ -169,11 +169,11 @@ def test_newtons_beside_metres_are_no_dependent_vectors(monkeypatch):
     stiffness, time = 1e9, 1e-3
     system = quarter_car(branch=[(stiffness, time)]).system
     by_lines: list[object] = []
-    monkeypatch.setattr(response, "_solved", lambda *given: by_lines.append(given))
+    monkeypatch.setattr(response, "_solved", lambda *arguments: by_lines.append(arguments))
     lines = np.array([1.0, 10.0, 40.0])
-    found = frequency_response(first_order(system), lines, "body_acc_z", driven=[1.0, 0.0])
+    response_by_poles = frequency_response(first_order(system), lines, "body_acc_z", driven=[1.0, 0.0])
     assert not by_lines
-    for line, ours in zip(2j * np.pi * lines, found, strict=True):
+    for line, ours in zip(2j * np.pi * lines, response_by_poles, strict=True):
         damper = line * (VISCOUS + stiffness * time / (1.0 + line * time))
         dynamic = line**2 * system.mass + np.diag([TYRE, SUSPENSION + damper])
         validated(

@@ -31,12 +31,14 @@ FALLING = [
 
 
 @pytest.mark.parametrize("engine", ["mujoco", "reduced", "auto"])
-def test_a_growing_car_is_refused_by_what_moves(engine):
+def test_an_unstable_car_is_rejected_with_the_moving_part(engine):
     with pytest.raises(ConfigurationError) as caught:
         Car.load(None, FALLING).run(ROAD, engine=engine)
     message = str(caught.value)
-    assert re.match("this car does not stand: front wheel fore-aft, sides in phase grows by itself, ", message)
-    assert "what works most there is front.bushings.suspension_mount.stiffness.x (10000)" in message
+    assert re.match(
+        "the car is statically unstable: front wheel fore-aft, sides in phase grows by a factor e in ", message
+    )
+    assert "most strained is front.bushings.suspension_mount.stiffness.x (10000)" in message
     assert "body.mass (813 kg), body.cog and gravity (20 m/s2)" in message
 
 
@@ -48,10 +50,10 @@ def test_its_modes_list_what_grows(car, capsys):
     assert not any(mode.grows for mode in car.modes())
     arguments = [word for setting in FALLING for word in ("--set", setting)]
     assert modes.main([*arguments, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert len(found["growing"]) == len(growing)
+    printed = json.loads(capsys.readouterr().out)
+    assert len(printed["growing"]) == len(growing)
     assert modes.main(arguments) == 0
-    assert f"this car does not stand: {', '.join(found['growing'])} grows by itself" in capsys.readouterr().out
+    assert f"this car does not stand: {', '.join(printed['growing'])} grows by itself" in capsys.readouterr().out
 
 
 def test_round_off_does_not_grow():
@@ -91,5 +93,5 @@ def test_a_sweep_writes_a_reason_where_it_would_write_inf():
     road = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.0, lower_band_edge=1.0)
     cases = [Case(source=road, engine="reduced"), Case(overrides=tuple(FALLING), source=road, engine="reduced")]
     result, other = evaluate(cases, Endless())
-    assert result.reason == "SimulationError: loud: infinite; the run left the range of numbers" and not result.values
-    assert other.reason.startswith("ConfigurationError: this car does not stand")
+    assert result.reason == "SimulationError: loud: infinite; the run overflowed" and not result.values
+    assert other.reason.startswith("ConfigurationError: the car is statically unstable")

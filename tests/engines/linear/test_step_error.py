@@ -1,4 +1,4 @@
-"""Item 51: a step that would not answer the car is refused before the run, with the part and the step that does."""
+"""Item 51: a step that is too long is rejected before the run, with the part and a sufficient step."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.engines.linear.step_error import LOCAL_LIMIT, _Judge, require_accurate_step
+from vehicle.engines.linear.step_error import LOCAL_LIMIT, _StepCheck, require_accurate_step
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
 
@@ -17,28 +17,29 @@ MOUNT = "bushings.suspension_mount.stiffness=[3e6, 3e6, {}]"
 REFUSED = {
     "a stiff mount": (
         [MOUNT.format(3e7)],
-        r"at which the ringing of damper_top_fr_acc_z after the damper breaks away is \+3\d % off, allowed are 10 % "
-        r"\(\d+ Hz: damper_top_fr moves, held by front\.bushings\.suspension_mount\.stiffness\.z \(3e\+07\)\); "
-        r"give solver\.timestep=0\.0005, or another value of that parameter where it is a mistake",
+        r"at which the ringing of damper_top_fr_acc_z after the damper breaks away is \+3\d % off, "
+        r"must be at most 10 % \(\d+ Hz: damper_top_fr moves, held by "
+        r"front\.bushings\.suspension_mount\.stiffness\.z \(3e\+07\)\); "
+        r"set solver\.timestep=0\.0005, or correct that parameter",
     ),
     "a stiffer one": (
         [MOUNT.format(1e9)],
-        r".* is \+4\d % off, .*stiffness\.z \(1e\+09\)\); give solver\.timestep=0\.0005",
+        r".* is \+4\d % off, .*stiffness\.z \(1e\+09\)\); set solver\.timestep=0\.0005",
     ),
     "a torque arm of steel": (
         ["bushings.torque_arm_engine.stiffness=[1e8, 1.3e5, 6.5e5]"],
         r"at which the integration is unstable \(\d+ Hz: torque_arm moves, held by "
-        r"engine\.bushings\.torque_arm_engine\.stiffness\.x \(1e\+08\)\); give solver\.timestep=0\.000125",
+        r"engine\.bushings\.torque_arm_engine\.stiffness\.x \(1e\+08\)\); set solver\.timestep=0\.000125",
     ),
     # 3.6 kg on 5e6 N/m: w h = 1.18, and 2 asin(w h/2)/(w h) is 1.072.
     "a stop of steel": (
         ["damper.stop.displacement=[-0.03, 0.0, 0.02]", "damper.stop.force=[0.0, 0.0, 1e5]"],
-        r"at which a vibration on a piece of a table is 7 % high \(188 Hz: damper_top_fr moves, held by stop of "
-        r"damper 1, up to 5e\+06 N/m steeper than where the car stands\); give solver\.timestep=0\.0005,",
+        r"at which a vibration on a stiffer segment of a table is 7 % high \(188 Hz: damper_top_fr moves, held by "
+        r"stop of damper 1, up to 5e\+06 N/m stiffer than at rest\); set solver\.timestep=0\.0005,",
     ),
     "a step of 2 ms": (
         ["solver.timestep=0.002", "solver.record_rate=500"],
-        r"at which the integration is unstable .*; give solver\.timestep=0\.001,",
+        r"at which the integration is unstable .*; set solver\.timestep=0\.001,",
     ),
     "a tyre of steel": (
         ["bushings.tyre.stiffness=[1.5e5, 1.5e5, 1e10]"],
@@ -69,7 +70,7 @@ def test_the_reduced_engine_does_not_depend_on_the_step(high_piece):
     np.testing.assert_array_equal(coarse["damper_top_fr_acc_z"], fine["damper_top_fr_acc_z"])
 
 
-def test_a_run_is_refused_before_it_begins(high_piece):
+def test_a_run_is_rejected_before_it_begins(high_piece):
     begun: list[float] = []
     with pytest.raises(ConfigurationError, match=r"^solver\.timestep: found 0\.001 s, .*stiffness\.z"):
         Car.load(None, [MOUNT.format(3e7)]).run(high_piece, begun.append)
@@ -105,4 +106,4 @@ def test_every_setting_of_the_studies_is_accepted_at_the_default_step():
     ]
     for setting in ends:
         car = Car.load(None, [setting])
-        assert _Judge(car.model, car.matrices).worst(1e-3) is None, setting
+        assert _StepCheck(car.model, car.matrices).worst(1e-3) is None, setting

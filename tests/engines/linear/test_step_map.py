@@ -1,4 +1,4 @@
-"""The one-step map is what the compiled model does, and its poles go to those of the matrices."""
+"""The one-step map equals a step of the compiled model, and its poles converge to those of the matrices."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def mapped(car, stuck, step=None):
 def test_the_map_is_what_the_model_steps(stuck):
     # Without friction the dampers slide; with more friction than any force they stick.
     car = Car.load(None, [f"damper.coulomb_friction={1e4 if stuck else 0}"])
-    made, basis = mapped(car, stuck)
+    one_step, basis = mapped(car, stuck)
     size, steps = basis.shape[1], 50
     start = basis.T @ np.where(np.arange(len(basis)) < 6, 1e-6, 0.0)  # the body shifted and turned on its wheels
-    state = np.zeros(len(made.matrix))
+    state = np.zeros(len(one_step.matrix))
     state[:size] = start
     model = car.model.spec.compile()
     model.qpos_spring[:] = car.model.model.qpos_spring
@@ -38,7 +38,7 @@ def test_the_map_is_what_the_model_steps(stuck):
     with installed(rows):
         for _ in range(steps):
             mujoco.mj_step(model, data)
-            state = made.matrix @ state
+            state = one_step.matrix @ state
     moved = np.zeros(model.nv)
     mujoco.mj_differentiatePos(model, moved, 1.0, model.qpos0, data.qpos)
     expected = basis @ state[:size]

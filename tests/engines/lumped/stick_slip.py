@@ -36,11 +36,11 @@ class ExactStickSlip:
         return pieces
 
     def sample(self, pieces, times):
-        """Displacement at many times."""
+        """Return the displacement at many times."""
         result = np.empty_like(times)
-        for start, end, kind, constants in pieces:
+        for start, end, phase, constants in pieces:
             inside = (times >= start) & (times <= end)
-            result[inside] = constants[0] if kind == 0 else self._at(times[inside], kind, constants)
+            result[inside] = constants[0] if phase == 0 else self._at(times[inside], phase, constants)
         return result
 
     def _at(self, t, direction, constants):

@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.validation import foreign, validated
-from vehicle.engines.linear.parts import ROAD, Network, masses_of, spring_damper
+from vehicle.engines.linear.network import ROAD, Network, masses_of, spring_damper
 from vehicle.engines.lumped.bump_response import BumpPassage, bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 
@@ -29,16 +29,16 @@ def integrated(model, passage, time):
 
     edges = sorted({0.0, time[-1], *passage.arrivals, *(a + passage.contact for a in passage.arrivals)})
     edges = [e for e in edges if e <= time[-1]]
-    state, found = np.zeros(2 * n), np.zeros((2 * n, time.size))
+    state, states = np.zeros(2 * n), np.zeros((2 * n, time.size))
     for start, end in itertools.pairwise(edges):
         gap = 1e-12 * (end - start)
         inside = (time >= start) & (time <= end)
         solved = solve_ivp(
             slope, (start + gap, end - gap), state, method="DOP853", rtol=1e-10, atol=1e-13, dense_output=True
         )
-        found[:, inside] = solved.sol(np.clip(time[inside], start + gap, end - gap))
+        states[:, inside] = solved.sol(np.clip(time[inside], start + gap, end - gap))
         state = solved.y[:, -1]
-    return found
+    return states
 
 
 @pytest.mark.parametrize("speed", [20.0, 60.0])
@@ -58,28 +58,31 @@ def test_half_car_agrees_with_an_adaptive_integrator(speed):
     )  # fmt: skip
 
 
-def test_sampling_does_not_change_the_answer():
+def test_sampling_does_not_change_the_response():
     passage = bump_passage(CAR.bump, 30.0 / 3.6, 2.8)
     fine = bump_response(MODEL, passage, time_step=1e-3, duration=2.0)
     coarse = bump_response(MODEL, passage, time_step=1e-2, duration=2.0)
     # matrix exponentials of different lengths: rounding of some thousand products
-    for one, other, tolerance in (
+    for response, other, tolerance in (
         (fine.displacement("body"), coarse.displacement("body"), 1e-11),
         (fine.acceleration("body"), coarse.acceleration("body"), 1e-10),
     ):
-        assert np.abs(one[::10] - other).max() < tolerance * np.abs(one).max()
+        assert np.abs(response[::10] - other).max() < tolerance * np.abs(response).max()
 
 
 def test_undamped_oscillator_follows_its_closed_form():
     w0, w, h0 = 7.0, 11.0, 0.05
     spring = spring_damper({"x": 1.0, ROAD: -1.0}, 2.0 * w0**2, 0.0)
     model = Network(coordinates=("x",), masses=masses_of({"x": 2.0}), links=(spring,)).system()
-    found = bump_response(model, BumpPassage(height=h0, omega=w, arrivals=(0.0,)), time_step=1e-3, duration=np.pi / w)
-    t = found.time[found.time < np.pi / w]
+    response = bump_response(
+        model, BumpPassage(height=h0, omega=w, arrivals=(0.0,)), time_step=1e-3, duration=np.pi / w
+    )
+    t = response.time[response.time < np.pi / w]
     expected = h0 * w0**2 / (w0**2 - w**2) * (np.sin(w * t) - w / w0 * np.sin(w0 * t))
     # h0 = 0.05: rounding only
     validated(
-        "Quarter and half cars", "undamped oscillator on a half-sine bump", found.displacement("x")[: t.size], expected,
+        "Quarter and half cars", "undamped oscillator on a half-sine bump", response.displacement("x")[: t.size],
+        expected,
         abs=1e-12, unit="m", source="closed form: h0 w0^2 / (w0^2 - w^2) (sin w t - w / w0 sin w0 t)",
     )  # fmt: skip
 
@@ -98,7 +101,9 @@ def test_acceleration_obeys_the_equation_of_motion():
     h = bump_response(MODEL, passage, time_step=1e-3, duration=1.0)
     np.testing.assert_allclose(h.inputs.T, passage.heights(h.time), atol=1e-12)
     force = MODEL.input_stiffness @ h.inputs.T + MODEL.input_damping @ h.input_rates.T
-    moved = {q: np.array([h.of(n, q) for n in MODEL.coordinates]) for q in ("displacement", "velocity", "acceleration")}
+    moved = {
+        q: np.array([h.motion(n, q) for n in MODEL.coordinates]) for q in ("displacement", "velocity", "acceleration")
+    }
     left = MODEL.mass @ moved["acceleration"] + MODEL.damping @ moved["velocity"]
     left += MODEL.stiffness @ moved["displacement"]
     validated(
@@ -123,5 +128,5 @@ def test_bad_grid_is_refused(change, message):
 
 
 def test_wrong_number_of_wheels_is_refused():
-    with pytest.raises(ConfigurationError, match="found 1 arrivals for 2 roads, needed is one each"):
+    with pytest.raises(ConfigurationError, match="found 1 arrivals for 2 roads, must be equal"):
         bump_response(MODEL, BumpPassage(height=0.05, omega=1.0, arrivals=(0.0,)), time_step=0.01, duration=1.0)

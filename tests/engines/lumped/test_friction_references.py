@@ -9,8 +9,8 @@ import pytest
 
 from tests.engines.lumped.stick_slip import ExactStickSlip
 from tests.validation import validated
-from vehicle.engines.lumped.drive import Sine
-from vehicle.engines.lumped.quarter_car import quarter_car, single_mass
+from vehicle.engines.lumped.input_signals import Sine
+from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
 from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.coulomb import Coulomb
@@ -40,7 +40,7 @@ def oscillator(friction, *, mass=1.0, stiffness=100.0, smoothing=1e5, **more):
 
 
 def den_hartog(ratio, share):
-    """Amplitude per static deflection P/k of continuous motion; ratio w/wn, share Fd/P (Den Hartog 1931)."""
+    """Return the amplitude per static deflection P/k of continuous motion; ratio w/wn, share Fd/P (Den Hartog 1931)."""
     v = 1.0 / (1.0 - ratio**2)
     u = math.sin(math.pi / ratio) / (ratio * (1.0 + math.cos(math.pi / ratio)))
     return math.sqrt(v**2 - share**2 * u**2)
@@ -84,19 +84,21 @@ def test_den_hartog_with_stops(ratio, share, kind):
     expected = exact.sample(pieces, time)
     model = oscillator(30.0 * share, smoothing=1e6)
     if kind == "smooth":
-        found = stiff_solution(model, time, force=drive).displacement("mass")
+        displacement = stiff_solution(model, time, force=drive).displacement("mass")
     else:
         law = Switch(limit=30.0 * share, band=1e-6, return_time=1e-4)
-        found = switch_solution(model, law, time, force=drive).displacement("mass")
+        displacement = switch_solution(model, law, time, force=drive).displacement("mass")
     # While stuck the atan law creeps at 1e-6 m/s times tan(pi/2 load/Fd): below 1e-4 m in all, of 0.3 m. The switch
     # model drifts by at most its band times the time.
     validated(
         "Dampers and friction",
-        f"lumped oscillator that stops in every cycle, {kind} law, w / w0 = {ratio}, Ff / F0 = {share}", found,
+        f"lumped oscillator that stops in every cycle, {kind} law, w / w0 = {ratio}, Ff / F0 = {share}", displacement,
         expected, abs=1e-4 if kind == "smooth" else 2e-5, unit="m",
         source="closed form: harmonic motion between the stops, instants by root finding",
     )  # fmt: skip
-    assert steady_amplitude(time, found, period) == pytest.approx(steady_amplitude(time, expected, period), rel=1e-3)
+    assert steady_amplitude(time, displacement, period) == pytest.approx(
+        steady_amplitude(time, expected, period), rel=1e-3
+    )
 
 
 def test_free_decay_with_coulomb_friction():
@@ -175,7 +177,7 @@ def test_mass_on_a_belt_with_static_and_kinetic_friction():
 def test_the_locked_strut_unlocks_where_its_force_reaches_the_limit(frequency):
     """'Boulevard ride': below A(w) the strut never slides; A = Fd / |friction force of the stuck car per road metre|.
 
-    The stuck car by two equations of its own: damper mass on the wheel, mount spring above it.
+    The stuck car by two separate equations: damper mass on the wheel, mount spring above it.
     """
     s = 2j * math.pi * frequency
     k = 3e4 + 7e5
@@ -233,16 +235,19 @@ def test_the_switch_model_gives_up_after_its_evaluations():
     law = Switch(limit=p.friction_limit, band=p.stick_band, return_time=p.return_time)
     drive = Sine(amplitude=p.force_amplitude, frequency=p.force_frequency)
     with pytest.raises(SimulationError) as caught:
-        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, most_evaluations=300)
+        switch_solution(model, law, np.linspace(0.0, 0.5, 101), force=drive, max_evaluations=300)
     message = str(caught.value)
     assert message.startswith("switch model: stopped at t = 0.")  # 1200 for the whole half second
     assert message.endswith(
-        "s of 0.5 s after most_evaluations = 300; widen the stick band, lengthen the return time, or allow more"
+        "s of 0.5 s after max_evaluations = 300; widen the stick band, lengthen the return time, or allow more"
     )
-    with pytest.raises(ConfigurationError, match=r"^most_evaluations: found 0, must be at least 1$"):
-        switch_solution(model, law, [0.0, 0.5], most_evaluations=0)
+    with pytest.raises(ConfigurationError, match=r"^max_evaluations: found 0, must be at least 1$"):
+        switch_solution(model, law, [0.0, 0.5], max_evaluations=0)
 
 
 def test_the_switch_model_refuses_a_belt():
-    with pytest.raises(ConfigurationError, match="needed is a single model with one sliding pair off the road"):
+    with pytest.raises(
+        ConfigurationError,
+        match="the model must be a single model with one sliding pair that is independent of the road",
+    ):
         switch_solution(oscillator(1.0, belt=True), Switch(limit=1.0, band=1e-6, return_time=1e-4), [0.0, 1.0])

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 
 from tests.validation import foreign, validated
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
-from vehicle.engines.lumped.semi_active import simulate_bump
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
+from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.model.parameters.semi_active_damper import LAWS
@@ -43,10 +43,10 @@ def test_passive_car_converges_to_the_exact_response_with_order_two():
 
 def test_runs_of_a_batch_do_not_act_on_each_other():
     heavy = dataclasses.replace(CAR, body=dataclasses.replace(CAR.body, mass=700.0))
-    together = simulate_bump([CAR, heavy], [SPEED, 12.0], law="skyhook", one_sided_tyres=True, duration=0.4)
-    alone = simulate_bump([heavy], [12.0], law="skyhook", one_sided_tyres=True, duration=0.4)[0]
+    batch = simulate_bump([CAR, heavy], [SPEED, 12.0], law="skyhook", one_sided_tyres=True, duration=0.4)
+    single = simulate_bump([heavy], [12.0], law="skyhook", one_sided_tyres=True, duration=0.4)[0]
     # batched products may add in another order
-    np.testing.assert_allclose(together[1].state, alone.state, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(batch[1].state, single.state, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -155,9 +155,9 @@ def test_wheel_in_the_air_is_pulled_by_nothing_but_its_suspension():
     [
         (
             {"law": "sky"},
-            f"half car: law: found 'sky', allowed are passive, {', '.join(LAWS)}",
+            f"half car: law: found 'sky', must be one of passive, {', '.join(LAWS)}",
         ),
-        ({"speeds": [1.0, 2.0]}, "half car: found 1 cars and 2 speeds, needed is one speed each"),
+        ({"speeds": [1.0, 2.0]}, "half car: found 1 cars and 2 speeds, must be one speed for each car"),
         ({"largest_step": 0.0}, "half car: largest_step: found 0.0 s, must be greater than 0.0"),
         ({"duration": 0.0}, "half car: duration: found 0.0 s, must be at least 0.0005 s"),
     ],
@@ -169,7 +169,7 @@ def test_bad_arguments_are_refused(arguments, message):
 
 
 def test_cars_with_different_controllers_are_refused():
-    with pytest.raises(ConfigurationError, match="half car: semi_active: the cars of one call must share it"):
+    with pytest.raises(ConfigurationError, match="half car: semi_active: all cars of one call must have the same"):
         simulate_bump([CAR, at(CAR, maximum_damping=4000.0)], [5.0, 5.0])
 
 

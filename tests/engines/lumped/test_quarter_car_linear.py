@@ -10,9 +10,9 @@ import sympy as sp
 
 from tests.validation import validated
 from vehicle.engines.linear.natural_modes import natural_modes
-from vehicle.engines.linear.parts import ROAD, Link, Mass, Network
+from vehicle.engines.linear.network import ROAD, Link, Mass, Network
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.quarter_car import quarter_car
+from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
@@ -114,7 +114,7 @@ def test_engine_on_its_mount_alone(engine):
 @pytest.mark.parametrize("engine", ["none", "linear", "elastomer"])
 @pytest.mark.parametrize("strut", [False, True])
 def test_the_friction_model_follows_lagrange(strut, engine, small_mass):
-    """Equations 2.6, 2.7, 2.13 and D.28 to D.34 from T, V, the dissipation and the sliding force, by sympy."""
+    """Derive equations 2.6, 2.7, 2.13 and D.28 to D.34 from T, V, the dissipation and the sliding force, by sympy."""
     t = sp.Symbol("t")
     yb, yt, u, xt, ye, ys, w, f2, fr = (sp.Function(n)(t) for n in ("yb", "yt", "u", "xt", "ye", "ys", "w", "f2", "fr"))
     a = sp.rad(sp.Rational(42, 10)) if strut else sp.Integer(0)
@@ -195,18 +195,18 @@ def test_a_stack_of_cars_equals_the_single_ones():
     stack = quarter_car(
         CAR, damper="slip", engine="elastomer", vary={"mount.stiffness": mounts, "damper.damping": dampings}
     )
-    together = frequency_response(stack.first_order(), frequency, "body", "acceleration")
-    assert together.shape == (3, 30)
+    stacked = frequency_response(stack.first_order(), frequency, "body", "acceleration")
+    assert stacked.shape == (3, 30)
     for i in range(3):
         car = dataclasses.replace(
             CAR,
             mount=dataclasses.replace(CAR.mount, stiffness=float(mounts[i])),
             damper=dataclasses.replace(CAR.damper, damping=float(dampings[i])),
         )
-        alone = frequency_response(
+        single = frequency_response(
             quarter_car(car, damper="slip", engine="elastomer").first_order(), frequency, "body", "acceleration"
         )
-        assert together[i] == pytest.approx(alone, rel=1e-10)
+        assert stacked[i] == pytest.approx(single, rel=1e-10)
 
 
 def test_angles_can_be_stacked_and_zero_angle_is_the_vertical_car():
@@ -249,10 +249,10 @@ BAD = [
         {"damper": "slip", "vary": {"mount.stifness": 1.0}},
         "no parameter mount.stifness; the nearest is mount.stiffness",
     ),
-    ({"damper": "stuck"}, "damper: found 'stuck', allowed are slip, stick, friction"),
-    ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', allowed are coulomb, stribeck"),
-    ({"damper": "slip", "engine": "diesel"}, "engine: found 'diesel', allowed are none, linear, elastomer"),
-    ({"damper": "slip", "degressive": True}, "degressive: needs damper='friction', found damper='slip'"),
+    ({"damper": "stuck"}, "damper: found 'stuck', must be slip, stick or friction"),
+    ({"damper": "friction", "friction": "stick"}, "friction: found 'stick', must be one of coulomb, stribeck"),
+    ({"damper": "slip", "engine": "diesel"}, "engine: found 'diesel', must be none, linear or elastomer"),
+    ({"damper": "slip", "degressive": True}, "degressive: found damper='slip', must be damper='friction'"),
 ]
 
 
@@ -288,9 +288,9 @@ def test_stacks_of_different_length_are_refused():
 
 
 def test_a_model_with_friction_has_no_frequency_response():
-    with pytest.raises(ConfigurationError, match="a sliding pair has no frequency response of its own"):
+    with pytest.raises(ConfigurationError, match="a model with sliding pairs has no frequency response"):
         frequency_response(model(damper="friction"), 1.0, "body")
-    with pytest.raises(ConfigurationError, match="natural_modes: needed is one linear model"):
+    with pytest.raises(ConfigurationError, match="natural_modes: the model must be a single linear model"):
         natural_modes(model(damper="friction"))
     with pytest.raises(ConfigurationError, match="output 'engine': unknown; this model has body, wheel"):
         frequency_response(model(damper="slip"), 1.0, "engine")

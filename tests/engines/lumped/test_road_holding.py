@@ -42,8 +42,8 @@ def test_printed_measure_is_equation_10():
         total += abs(amplitude - amplitude * mean)
     expected = P.quarter_car.wheel.tyre_stiffness * total
     expected /= (P.quarter_car.sprung_mass + P.quarter_car.wheel.unsprung_mass) * 9.81
-    found = printed_load_fluctuation(quarter_car_model(P.quarter_car, 3000.0), P.highway, P.bands)[0]
-    assert found == pytest.approx(expected, rel=1e-3)  # ten midpoints in each band
+    rate = printed_load_fluctuation(quarter_car_model(P.quarter_car, 3000.0), P.highway, P.bands)[0]
+    assert rate == pytest.approx(expected, rel=1e-3)  # ten midpoints in each band
 
 
 def test_signed_sum_is_smaller_and_only_rises():
@@ -78,7 +78,7 @@ def test_physical_measure_is_the_integral_of_the_complex_difference():
 
 
 def stationary_variances(damping, intensity):
-    """Variances of tyre deflection and travel under white road velocity, by Lyapunov's equation."""
+    """Return the variances of tyre deflection and travel under white road velocity, by Lyapunov's equation."""
     k, kt = CAR.wheel.suspension_stiffness, CAR.wheel.tyre_stiffness
     m, mu = CAR.sprung_mass, CAR.wheel.unsprung_mass
     # states: road - wheel, wheel - body, wheel velocity, body velocity
@@ -102,7 +102,7 @@ def test_ride_measures_agree_with_lyapunovs_equation(damping):
     edges = np.geomspace(1e-3, 2000.0, 8001)
     lines, width = np.sqrt(edges[1:] * edges[:-1]), np.diff(edges)
     density = 256e-6 * 0.1**2 * speed / lines**2  # ISO 8608, class C
-    found = ride_measures(CAR, damping, lines, density, width)
+    measures = ride_measures(CAR, damping, lines, density, width)
     # one-sided velocity density (2 pi f)^2 G is constant; white noise of two-sided intensity half of it per hertz
     intensity = 0.5 * (2.0 * np.pi) ** 2 * 256e-6 * 0.1**2 * speed
     tyre, travel, acceleration = stationary_variances(damping, intensity)
@@ -110,9 +110,9 @@ def test_ride_measures_agree_with_lyapunovs_equation(damping):
     # the spectra fall as 1/f^2: beyond 2000 Hz lies less than 0.5 % of the variance, the midpoint rule is closer
     lyapunov = foreign("scipy", "Lyapunov equation under white road velocity")
     for name, value, exact, rel in (
-        ("dynamic wheel load", found.tyre_load, load, 3e-3),
-        ("RMS travel", found.travel, np.sqrt(travel), 3e-3),
-        ("RMS body acceleration", found.acceleration, np.sqrt(acceleration), 5e-3),
+        ("dynamic wheel load", measures.tyre_load, load, 3e-3),
+        ("RMS travel", measures.travel, np.sqrt(travel), 3e-3),
+        ("RMS body acceleration", measures.acceleration, np.sqrt(acceleration), 5e-3),
     ):
         validated(
             "Quarter and half cars", f"quarter car on a road of class C, {damping:g} N s/m, {name}", value, exact,

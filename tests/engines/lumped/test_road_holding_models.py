@@ -86,14 +86,14 @@ def test_half_car_with_inertia_m_a_b_falls_apart_into_two_quarter_cars():
         unsprung_mass=60.0, suspension_stiffness=3.5e4, suspension_damping=2500.0, tyre_stiffness=3e5, tyre_damping=20.0
     )
     half = RoadHoldingHalfCar(sprung_mass=m, pitch_inertia=m * a * b, front_arm=a, rear_arm=b, front=front, rear=rear)
-    found = half_car_model(half).response(LINES)
+    response = half_car_model(half).response(LINES)
     corners = [
         quarter_car_model(RoadHoldingQuarterCar(sprung_mass=share, wheel=axle)).response(LINES)
         for share, axle in ((m * b / (a + b), front), (m * a / (a + b), rear))
     ]
-    np.testing.assert_allclose(found[:2], [corners[0][0], corners[1][0]], rtol=1e-9)
-    np.testing.assert_allclose(found[2] - a * found[3], corners[0][1], rtol=1e-9)
-    np.testing.assert_allclose(found[2] + b * found[3], corners[1][1], rtol=1e-9)
+    np.testing.assert_allclose(response[:2], [corners[0][0], corners[1][0]], rtol=1e-9)
+    np.testing.assert_allclose(response[2] - a * response[3], corners[0][1], rtol=1e-9)
+    np.testing.assert_allclose(response[2] + b * response[3], corners[1][1], rtol=1e-9)
 
 
 def test_static_loads_are_those_of_the_axles():
@@ -105,9 +105,9 @@ def test_static_loads_are_those_of_the_axles():
 
 
 def test_given_damping_replaces_the_cars_own():
-    own = half_car_model(HALF).model.damping
-    given = half_car_model(HALF, HALF.front.suspension_damping, HALF.rear.suspension_damping).model.damping
-    np.testing.assert_array_equal(own, given)
+    default = half_car_model(HALF).model.damping
+    explicit = half_car_model(HALF, HALF.front.suspension_damping, HALF.rear.suspension_damping).model.damping
+    np.testing.assert_array_equal(default, explicit)
     swapped = half_car_model(HALF, 1.0, 2.0).model.damping
     assert swapped[0, 0] == 1.0
     assert swapped[1, 1] == 2.0

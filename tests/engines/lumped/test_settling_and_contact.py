@@ -6,7 +6,7 @@ import pytest
 from scenarios.half_car_rider.runs import settling_time
 from tests.validation import validated
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
+from vehicle.engines.lumped.half_car_rider_model import half_car_rider, lift_off, linear_tyre_load, static_tyre_load
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 
@@ -23,10 +23,10 @@ def test_exponential_settles_after_ln_of_the_band():
 
 def test_last_exit_counts_not_the_first_entry():
     ringing = np.exp(-0.5 * TIME) * np.cos(8.0 * TIME)
-    found = settling_time(TIME, ringing, 0.05)
-    assert found is not None
-    assert np.abs(ringing[found < TIME]).max() <= 0.05 * np.abs(ringing).max()
-    assert found > 4.0  # it enters the band for the first time at 0.18 s
+    time = settling_time(TIME, ringing, 0.05)
+    assert time is not None
+    assert np.abs(ringing[time < TIME]).max() <= 0.05 * np.abs(ringing).max()
+    assert time > 4.0  # it enters the band for the first time at 0.18 s
 
 
 def test_unsettled_and_silent_records():

@@ -1,4 +1,4 @@
-"""Four dampers on a road: the reduced engine against MuJoCo, channel by channel, and where it says that it is invalid.
+"""Four dampers on a road: the reduced engine against MuJoCo for every channel, and warnings outside the valid range.
 
 Both engines take one model; MuJoCo at a quarter of a millisecond is exact to 0.1 % here. What is left is geometry, of
 second order in the motion: it falls with the level, and over 10 s of class A it leaves 0.48 % in the RMS of the worst
@@ -37,17 +37,17 @@ def test_every_channel_of_class_a_agrees(car):
     for channel in car.vehicle.channels:
         ours, theirs = (float(np.std(run[channel])) for run in (reduced, stepped))
         worst[channel] = abs(ours / theirs - 1.0)
-    turning = {name for name in worst if name.startswith("knuckle") and not name.endswith("z")}
-    assert len(turning) == 8 and len(worst) > 50
+    rotation_channels = {name for name in worst if name.startswith("knuckle") and not name.endswith("z")}
+    assert len(rotation_channels) == 8 and len(worst) > 50
     for few, words in ((True, "wheel carriers along and across"), (False, "all other channels")):
-        group = np.array([value for name, value in worst.items() if (name in turning) == few])
+        group = np.array([value for name, value in worst.items() if (name in rotation_channels) == few])
         validated(
             "Reduced engine", f"RMS of {words} on a road of class A over that of MuJoCo", 1.0 + group, 1.0,
             abs=0.02 if few else 0.005, source="second derivation: MuJoCo, step 0.25 ms",
         )  # fmt: skip
 
 
-@pytest.mark.parametrize(("road_class", "said"), [("B", "turned by"), ("C", "would lift off its plate")])
+@pytest.mark.parametrize(("road_class", "said"), [("B", "rotated by"), ("C", "would lift off its plate")])
 def test_rougher_roads_leave_the_validity_and_that_is_said(car, road_class, said):
     recording = car.run(road(car, road_class, 10.0), engine="reduced", channels=["seat_rail_acc_z"]).recording
     assert not recording.statistics.within_validity

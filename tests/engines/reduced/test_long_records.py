@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vehicle.engines.reduced import plate_samples, run
+from vehicle.engines.reduced import plate_samples, reduced_run
 from vehicle.engines.simulation import recorded_acceleration
 from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
@@ -21,17 +21,17 @@ def test_pieces_give_the_same_run(car, monkeypatch):
     whole = car.run(road, engine="reduced", channels=channels)
     monkeypatch.setattr(plate_samples, "LARGEST_TABLE", 0)
     pieces = car.run(road, engine="reduced", channels=channels)
-    assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlates)
+    assert isinstance(plate_samples.plate_samples(road, 1e-3, 10, 2), plate_samples.LongPlateSamples)
     for name in channels:
         np.testing.assert_array_equal(whole[name], pieces[name])
 
 
 def test_blocks_of_any_length_give_the_same_run(car, monkeypatch):
-    """What the blocks hand on: the dampers on both sides of a sample, the past of an acceleration, the plates."""
+    """Check the state that a block passes on: damper forces around a sample, past positions, plates."""
     road = random_road(rms=4e-3, seed=3, wheel="fr", duration=2.0)
     names = [*car.vehicle.channels, *car.vehicle.requested_channels]
     whole = car.run(road, engine="reduced", channels=names)
-    monkeypatch.setattr(run, "BLOCK", 333)
+    monkeypatch.setattr(reduced_run, "BLOCK", 333)
     monkeypatch.setattr(recorded_acceleration, "BLOCK", 77)
     blocks = car.run(road, engine="reduced", channels=names)
     for name in names:

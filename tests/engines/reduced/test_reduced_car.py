@@ -7,7 +7,7 @@ import pytest
 
 from tests.periodic import multisine, periodic_response
 from tests.validation import validated
-from vehicle.engines.reduced import march
+from vehicle.engines.reduced import pole_stepping
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -21,13 +21,13 @@ FINE = "solver.timestep=0.000125"
 """The step of the reduced engine, so that MuJoCo's own error stays below 0.1 %."""
 
 
-def rms_ratios(found, expected):
+def rms_ratios(values, expected):
     """RMS of every moving channel about its mean, found over expected, minus 1."""
     ratios = {}
     for name in CHANNELS:
         size = np.std(expected[name])
         if size > 0.0:
-            ratios[name] = np.std(found[name]) / size - 1.0
+            ratios[name] = np.std(values[name]) / size - 1.0
     return ratios
 
 
@@ -82,11 +82,11 @@ def test_frf_from_time_and_from_the_matrices(damper, friction):
     run = car.run(signal, engine="reduced")
     channels = ["knuckle_fr_acc_z", "seat_rail_acc_x", "engine_acc_z"]
     responses = np.array([run[name][:-1] for name in channels])
-    frequency, found = periodic_response(1e-3, run["plate_fr_displacement"][:-1], responses, period=4.0)
+    frequency, measured = periodic_response(1e-3, run["plate_fr_displacement"][:-1], responses, period=4.0)
     exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
-    error = np.sqrt(np.sum(np.abs(found - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
-    # Sliding is linear and exact at any step; a stuck damper is one that creeps, its force constant over each step.
-    # What is left of the transient after three periods is about 1e-3 for the least damped modes.
+    error = np.sqrt(np.sum(np.abs(measured - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
+    # Sliding is linear and exact at any step; a stuck damper creeps with a constant force over each step.
+    # The rest of the transient after three periods is about 1e-3 for the least damped modes.
     assert np.max(error) < (2e-3 if damper == "sliding" else 4e-3), error
 
 
@@ -101,10 +101,10 @@ def test_a_coarser_record_is_the_same_motion(high_piece):
 
 
 def test_blocks_leave_no_seam(high_piece, monkeypatch):
-    from vehicle.engines.reduced import run
+    from vehicle.engines.reduced import reduced_run
 
     whole = Car.load().run(high_piece, engine="reduced")
-    monkeypatch.setattr(run, "BLOCK", 77)
+    monkeypatch.setattr(reduced_run, "BLOCK", 77)
     pieces = Car.load().run(high_piece, engine="reduced")
     for name in CHANNELS:
         # Products of other shapes are rounded in another order.
@@ -112,9 +112,9 @@ def test_blocks_leave_no_seam(high_piece, monkeypatch):
 
 
 def test_the_same_run_twice_is_the_same_bit_for_bit(high_piece):
-    one, two = (Car.load().run(high_piece, engine="reduced") for _ in range(2))
+    first, second = (Car.load().run(high_piece, engine="reduced") for _ in range(2))
     for name in CHANNELS:
-        assert np.array_equal(one[name], two[name]), name
+        assert np.array_equal(first[name], second[name]), name
 
 
 def test_it_may_record_few_channels(car, high_piece):
@@ -146,7 +146,7 @@ def test_auto_is_reduced_until_the_motion_is_large(car, high_piece):
     large = Signal(time=time, displacement={"fr": bump_shape(time, amplitude=0.04, start=0.1)})
     reduced = car.run(large, engine="reduced").recording.statistics
     assert not reduced.within_validity
-    assert f"holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine" in reduced.warnings[0]
+    assert f"is valid up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine" in reduced.warnings[0]
     assert car.run(large, engine="auto").recording.statistics.engine == "mujoco"
 
 
@@ -158,18 +158,18 @@ def test_a_tyre_that_would_lift_off_is_named(car):
 
 def test_without_numba_it_is_named_and_auto_is_mujoco(car, high_piece, monkeypatch):
     piece = Signal(time=high_piece.time[:101], displacement={"fr": high_piece.displacement["fr"][:101]})
-    monkeypatch.setattr(march, "find_spec", lambda name: None)
-    march.compiled_march.cache_clear()
+    monkeypatch.setattr(pole_stepping, "find_spec", lambda name: None)
+    pole_stepping.compiled_stepping.cache_clear()
 
     def without():
         raise ImportError("numba")
 
-    monkeypatch.setattr(march, "numba_module", without)
+    monkeypatch.setattr(pole_stepping, "numba_module", without)
     try:
-        with pytest.raises(MissingPartError, match="needs numba, which is missing"):
+        with pytest.raises(MissingPartError, match="needs numba; install it"):
             car.run(piece, engine="reduced")
         monkeypatch.undo()
-        monkeypatch.setattr(march, "find_spec", lambda name: None)
+        monkeypatch.setattr(pole_stepping, "find_spec", lambda name: None)
         assert car.run(piece, engine="auto").recording.statistics.engine == "mujoco"
     finally:
-        march.compiled_march.cache_clear()
+        pole_stepping.compiled_stepping.cache_clear()

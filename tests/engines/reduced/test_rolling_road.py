@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from vehicle.engines.reduced.many import simulate_many
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, Side, drive
@@ -26,7 +26,7 @@ SPEED, SKIP = 80.0 / 3.6, 1000
 
 
 def road(car: Car, level: str, duration: float) -> Signal:
-    """A road of a class for all wheels of a car, with tracks of 1.5 m.
+    """Return a road of a class for all wheels of a car, with tracks of 1.5 m.
 
     Args:
         car: whose wheels.
@@ -48,7 +48,7 @@ def run_reduced(car: Car, signal: Signal, *, present_load: bool = True) -> Recor
     Args:
         car: the car.
         signal: road.
-        present_load: as of `simulate_reduced`.
+        present_load: see `simulate_reduced`.
     """
     return simulate_reduced(
         car.poles,
@@ -70,9 +70,9 @@ def test_engines_differ_by_arcs_of_the_wheels_alone(name: str, level: str, arcs:
     car = Car.load(name, [f"driving.speed={SPEED}", "solver.timestep=0.0005"])
     signal = road(car, level, 2.5)
     down = replace(signal, displacement={wheel: -z for wheel, z in signal.displacement.items()})
-    few = [run_reduced(car, one) for one in (signal, down)]
-    static = [run_reduced(car, one, present_load=False) for one in (signal, down)]
-    whole = [car.run(one).recording for one in (signal, down)]
+    few = [run_reduced(car, plates) for plates in (signal, down)]
+    static = [run_reduced(car, plates, present_load=False) for plates in (signal, down)]
+    whole = [car.run(plates).recording for plates in (signal, down)]
     for channel in car.vehicle.acceleration_channels:
         odd, even = (
             [0.5 * (run[0][channel] + sign * run[1][channel]) for run in (few, whole, static)] for sign in (-1.0, 1.0)
@@ -81,8 +81,8 @@ def test_engines_differ_by_arcs_of_the_wheels_alone(name: str, level: str, arcs:
         bound = 1.5e-2 if channel.startswith("damper_top") else 5e-3
         assert abs(rms(odd[0]) / rms(odd[1]) - 1.0) < bound, channel
         # Along x and y, where arcs are compared with small motions; along z they move only the instants of slipping.
-        most = 0.03 if channel.endswith("z") else arcs if channel.startswith("knuckle") else 0.5 * arcs
-        assert rms(even[0] - even[1]) < most * rms(whole[0][channel]), channel
+        limit = 0.03 if channel.endswith("z") else arcs if channel.startswith("knuckle") else 0.5 * arcs
+        assert rms(even[0] - even[1]) < limit * rms(whole[0][channel]), channel
         if channel in ("knuckle_fl_acc_x", "knuckle_fr_acc_x"):
             # Front wheels move nearly straight up, so most of what is even is the load on the slope.
             assert rms(even[0] - even[1]) < 0.6 * rms(even[1]), channel
@@ -95,7 +95,7 @@ def test_a_batch_takes_static_loads_on_slopes() -> None:
     signal = road(car, "B", 4.0)
     channels = [f"seat_rail_acc_{axis}" for axis in "xyz"]
     dampers = [damper.law for damper in car.vehicle.composition.dampers]
-    many = simulate_many(
+    batch = simulate_batch(
         2 * [car.poles],
         signal,
         dampers=2 * [dampers],
@@ -106,7 +106,7 @@ def test_a_batch_takes_static_loads_on_slopes() -> None:
     present, static = (run_reduced(car, signal, present_load=load) for load in (True, False))
     for channel in channels:
         # Not point by point: single precision leaves noise along y above 100 Hz, 2 % of the rail.
-        assert abs(rms(many[channel]) / rms(static[channel]) - 1.0) < 1e-3, channel
-    total, other = (np.sqrt(sum(rms(run[channel]) ** 2 for channel in channels)) for run in (many, present))
+        assert abs(rms(batch[channel]) / rms(static[channel]) - 1.0) < 1e-3, channel
+    total, other = (np.sqrt(sum(rms(run[channel]) ** 2 for channel in channels)) for run in (batch, present))
     assert abs(total / other - 1.0) < 2e-3
-    assert 1e-2 < rms(present[channels[0]] - many[channels[0]]) / rms(present[channels[0]]) < 0.1
+    assert 1e-2 < rms(present[channels[0]] - batch[channels[0]]) / rms(present[channels[0]]) < 0.1

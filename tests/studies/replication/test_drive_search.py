@@ -10,7 +10,7 @@ import pytest
 from scenarios.inputs.make_inputs import LEVELS, SEED
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.reduced.equivalent import equivalent_damping, linearised_response
+from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal

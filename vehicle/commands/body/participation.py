@@ -13,7 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
 
 if TYPE_CHECKING:
-    from vehicle.engines.linear.participation import Participation
+    from vehicle.engines.linear.mode_participation import Participation
     from vehicle.model.parameters.vehicle import Vehicle
 
 FILES = ("participation.csv", "attachments.csv", "participation.png")
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Compute, write and print the contributions."""
     import numpy as np
 
-    from vehicle.engines.linear.participation import participation
+    from vehicle.engines.linear.mode_participation import participation
     from vehicle.runs.car import Car
 
     if options.at is not None and not 0.0 < options.at < math.inf:
@@ -143,7 +143,7 @@ def _numbers(options: argparse.Namespace, result: Participation, wheel: str) -> 
     total, phase = result.total[0], np.degrees(np.angle(result.contributions[:, 0] / result.total[0]))
     frequencies = [None] * 6 + [float(frequency) for frequency in result.mode_frequency]
     return {
-        "place": result.place,
+        "place": result.channel,
         "frequency_hz": float(result.frequency[0]),
         "wheel": wheel,
         "damper": options.damper,
@@ -172,7 +172,7 @@ def _write(options: argparse.Namespace, over: Participation, result: Participati
     import numpy as np
 
     from vehicle.drawing.rendering.participation_plot import plot_participation
-    from vehicle.engines.linear.participation import in_phase
+    from vehicle.engines.linear.mode_participation import in_phase
     from vehicle.runs.output.folder import output_folder, write_text, write_whole
     from vehicle.signals.records.text_format import write_table
 

@@ -1,1 +1,1 @@
-"""How the objects of a car look in a notebook, and their values as tables of other libraries."""
+"""Display of cars and runs in a notebook, and conversion of their values to tables of other libraries."""

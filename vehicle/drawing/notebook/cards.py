@@ -1,4 +1,4 @@
-"""A car and a run as a notebook shows them."""
+"""Display of a car and of a run in a notebook."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from vehicle.drawing.notebook.picture import card, frame_drawing, line_drawing
 
 
 def car_card(car: Any) -> str:
-    """A `vehicle.runs.car.Car` as HTML."""
+    """Return HTML of a `vehicle.runs.car.Car`."""
     from vehicle.drawing.rendering.wireframe import car_wireframe
 
-    own, static = car.vehicle, car.static
+    vehicle, static = car.vehicle, car.static
     rows = {
         "changes": "; ".join(car.overrides) or "none",
-        "mass of the trimmed body": f"{own.body.mass:g} kg",
+        "mass of the trimmed body": f"{vehicle.body.mass:g} kg",
         "tyre loads": ", ".join(f"{wheel} {load:.0f} N" for wheel, load in static.tyre_load.items()),
-        "channels": f"{len(own.channels)}, and {len(own.load_channels)} loads",
+        "channels": f"{len(vehicle.channels)}, and {len(vehicle.load_channels)} loads",
     }
     wire = car_wireframe(car.model)
-    return card(f"Car {own.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
+    return card(f"Car {vehicle.name}", rows, frame_drawing(wire.points, wire.lines, "seen from the right"))
 
 
 def run_card(run: Any) -> str:
-    """A `vehicle.runs.car.Run` as HTML."""
+    """Return HTML of a `vehicle.runs.car.Run`."""
     shares = {wheel: run.slip_share(wheel) for wheel in run.car.vehicle.wheels}
     rows = {
         "signal": f"{Path(run.signal.source).name}, {run.signal.duration:g} s, "

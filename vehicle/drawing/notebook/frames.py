@@ -1,4 +1,4 @@
-"""Time histories and FRFs as tables of pandas and xarray, where they are installed."""
+"""Conversion of time histories and FRFs to tables of pandas and xarray, if installed."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from vehicle.errors import MissingPartError
 from vehicle.signals.analysis.frf import FrequencyResponse
 
 
-def _library(name: str, what: str) -> Any:
-    """A library of the extra `notebook`."""
+def _library(name: str, purpose: str) -> Any:
+    """Import a library of the extra `notebook`."""
     try:
         return import_module(name)
     except ImportError:
         raise MissingPartError(
-            f"{what}: needs {name}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
+            f"{purpose}: needs {name}, which is not installed; pip install 'vehicle-on-shaker[notebook]'"
         ) from None
 
 
@@ -33,7 +33,7 @@ def table_frame(text: str) -> Any:
 
 
 def recording_frame(recording: Recording) -> Any:
-    """Channels as columns over the time [s]; `attrs["units"]` has the unit of each.
+    """Return a pandas table with channels as columns over the time [s], and their units in `attrs["units"]`.
 
     Raises:
         MissingPartError: pandas is not installed.
@@ -45,7 +45,7 @@ def recording_frame(recording: Recording) -> Any:
 
 
 def recording_dataset(recording: Recording) -> Any:
-    """Channels as variables over the dimension `time`, each with its unit.
+    """Return an xarray data set with channels as variables over the dimension `time`, each with its unit.
 
     Raises:
         MissingPartError: xarray is not installed.
@@ -59,11 +59,11 @@ def recording_dataset(recording: Recording) -> Any:
 
 
 def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
-    """Magnitude, phase [deg], coherence and random error of each channel as columns over the frequency [Hz].
+    """Return a pandas table of magnitude, phase [deg], coherence and random error of each channel over frequency [Hz].
 
     Args:
         response: the FRFs [m/s2 per m].
-        names: of its rows.
+        names: names of the rows.
 
     Raises:
         MissingPartError: pandas is not installed.

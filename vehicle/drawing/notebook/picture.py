@@ -1,4 +1,4 @@
-"""What a notebook shows: pictures, small drawings beside a table."""
+"""Pictures in a notebook, and small drawings next to a table."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ WIDTH, HEIGHT = 330, 110
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure; a notebook shows it where it is the last value of a cell."""
+    """Figure that a notebook displays if it is the last value of a cell."""
 
     png: bytes
     """content of the file"""
@@ -36,10 +36,10 @@ class Picture:
 
 
 def picture(plot: Callable[[Path], object]) -> Picture:
-    """The figure that a function of `rendering` writes.
+    """Return the figure that a plot function of `rendering` writes.
 
     Args:
-        plot: writes PNG at the path it is given.
+        plot: function that writes a PNG file at a given path.
     """
     with TemporaryDirectory() as folder:
         path = Path(folder) / "figure.png"
@@ -48,7 +48,7 @@ def picture(plot: Callable[[Path], object]) -> Picture:
 
 
 def card(title: str, rows: Mapping[str, str], drawing: str) -> str:
-    """Title and table with a drawing at their right, as HTML."""
+    """Return HTML with a title, a table and a drawing on the right."""
     cells = "".join(f"<tr><td>{html.escape(name)}</td><td>{html.escape(text)}</td></tr>" for name, text in rows.items())
     return (
         f'<div style="display:flex;gap:1.5em;align-items:center"><div><b>{html.escape(title)}</b>'
@@ -57,46 +57,46 @@ def card(title: str, rows: Mapping[str, str], drawing: str) -> str:
 
 
 def line_drawing(along: Vector, values: Vector, label: str) -> str:
-    """A line over its whole length as SVG, from its least to its largest value in each column.
+    """Draw a line as SVG, from its minimum to its maximum in each pixel column.
 
     Args:
-        along: where the values are, rising, (n,).
-        values: (n,); what is not finite is left out.
-        label: under the line.
+        along: increasing horizontal coordinates, (n,).
+        values: values, (n,); values that are not finite are left out.
+        label: text under the line.
     """
-    kept = np.isfinite(values) & np.isfinite(along)
-    along, values = along[kept], values[kept]
+    finite = np.isfinite(values) & np.isfinite(along)
+    along, values = along[finite], values[finite]
     if along.size < 2 or np.ptp(along) == 0.0:
         return ""
     across = (WIDTH - 4) * (along - along[0]) / np.ptp(along) + 2
     up = 16 + (HEIGHT - 36) * (values.max() - values) / (np.ptp(values) or 1.0)
-    places = []
+    points_of_line = []
     for column in np.unique(across.astype(int)):
         inside = up[across.astype(int) == column]
-        places += [(column, inside.max()), (column, inside.min())] if inside.size > 1 else [(column, inside[0])]
-    points = " ".join(f"{x},{y:.1f}" for x, y in places)
+        points_of_line += [(column, inside.max()), (column, inside.min())] if inside.size > 1 else [(column, inside[0])]
+    points = " ".join(f"{x},{y:.1f}" for x, y in points_of_line)
     return _svg(f'<polyline points="{points}" fill="none" stroke="#1f5fa8"/>', label)
 
 
 def frame_drawing(points: Vector, lines: npt.NDArray[np.intp], label: str) -> str:
-    """Lines between points seen from the right, front at the left, as SVG.
+    """Draw lines between points as SVG, seen from the right with the front on the left.
 
     Args:
         points: x to the rear, y right, z up [m], (n, 3).
         lines: pairs of points, (m, 2).
-        label: under the lines.
+        label: text under the lines.
     """
-    seen = points[:, [0, 2]]
-    low, size = seen.min(axis=0), np.ptp(seen, axis=0)
+    side_view = points[:, [0, 2]]
+    low, size = side_view.min(axis=0), np.ptp(side_view, axis=0)
     scale = min((WIDTH - 8) / size[0], (HEIGHT - 24) / size[1])
-    places = np.column_stack([4 + scale * (seen[:, 0] - low[0]), HEIGHT - 20 - scale * (seen[:, 1] - low[1])])
+    pixels = np.column_stack([4 + scale * (side_view[:, 0] - low[0]), HEIGHT - 20 - scale * (side_view[:, 1] - low[1])])
     path = "".join(
-        f"M{places[i, 0]:.1f} {places[i, 1]:.1f}L{places[j, 0]:.1f} {places[j, 1]:.1f}" for i, j in lines.tolist()
+        f"M{pixels[i, 0]:.1f} {pixels[i, 1]:.1f}L{pixels[j, 0]:.1f} {pixels[j, 1]:.1f}" for i, j in lines.tolist()
     )
     return _svg(f'<path d="{path}" fill="none" stroke="#1f5fa8" stroke-width=".8"/>', label)
 
 
 def _svg(content: str, label: str) -> str:
     style = 'font-size="11" fill="#5a6672" font-family="sans-serif"'
-    words = f'<text x="4" y="{HEIGHT - 4}" {style}>{html.escape(label)}</text>'
-    return f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}">{content}{words}</svg>'
+    text = f'<text x="4" y="{HEIGHT - 4}" {style}>{html.escape(label)}</text>'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{HEIGHT}">{content}{text}</svg>'

@@ -1,4 +1,4 @@
-"""The FRFs of a run with the names of their channels: what they look like in a notebook."""
+"""FRFs of a run with the names of their channels, and their display in a notebook."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from vehicle.signals.analysis.motion_response import MotionResponse, motion_resp
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
 class RunResponse(FrequencyResponse):
-    """FRFs of a run.
+    """FRFs of a run with channel names.
 
     Attributes:
         names: channels of the rows.
-        plate: what the responses are to, in words.
+        plate: description of the input.
     """
 
     names: tuple[str, ...]
     plate: str
 
     def __repr__(self) -> str:
-        """One line."""
+        """Return a summary in one line."""
         shown = ", ".join(self.names[:3]) + (f" and {len(self.names) - 3} more" if len(self.names) > 3 else "")
         return (
             f"FRFs of {shown} to {self.plate}: {self.frequency.size} lines, {self.frequency[0]:g} to "
@@ -52,7 +52,7 @@ class RunResponse(FrequencyResponse):
         return card("Frequency responses", rows, line_drawing(np.log10(self.frequency), level, label))
 
     def plot(self) -> Picture:
-        """Magnitude, phase and coherence of all rows."""
+        """Plot magnitude, phase and coherence of all rows."""
         from vehicle.drawing.rendering.response_plot import plot_response
 
         def draw(path: Path) -> None:
@@ -61,34 +61,34 @@ class RunResponse(FrequencyResponse):
         return picture(draw)
 
     def to_dataframe(self) -> Any:
-        """A pandas table, as of `response_frame`."""
+        """Return a pandas table; see `response_frame`."""
         return response_frame(self, self.names)
 
 
 def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> RunResponse:
-    """FRFs with their names."""
-    values = {one.name: getattr(response, one.name) for one in fields(FrequencyResponse)}
+    """Return FRFs with channel names and a description of the input."""
+    values = {field.name: getattr(response, field.name) for field in fields(FrequencyResponse)}
     return RunResponse(**values, names=names, plate=plate)
 
 
 def require_moving(recording: Recording, wheel: str | None) -> None:
-    """Refuse a wheel whose plate does not move.
+    """Raise an error if the plate of a wheel does not move.
 
     Raises:
-        DataError: naming it.
+        DataError: the plate does not move.
     """
     moving = recording.excited
     if moving and wheel is not None and wheel not in moving:
         raise DataError(f"wheel {wheel}: its plate does not move, so there is no FRF to it; {', '.join(moving)} do")
 
 
-def of_wheel(found: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:
-    """The response to one wheel among those to all motions; to the first one by default."""
-    asked = found[0].first if wheel is None else wheel
-    chosen = next(number for number, group in enumerate(found) if asked in group.motion)
-    note = what_moves([group.motion for group in found], chosen)
-    response = found[chosen].response
-    plate = " and ".join(f"plate_{one}_displacement" for one in found[chosen].motion)
+def of_wheel(all_responses: Sequence[MotionResponse], wheel: str | None, names: tuple[str, ...]) -> RunResponse:
+    """Return the response to a wheel, by default to the first motion."""
+    asked = all_responses[0].first if wheel is None else wheel
+    chosen = next(number for number, group in enumerate(all_responses) if asked in group.motion)
+    note = what_moves([group.motion for group in all_responses], chosen)
+    response = all_responses[chosen].response
+    plate = " and ".join(f"plate_{moved}_displacement" for moved in all_responses[chosen].motion)
     reasons = (*([note] if note else []), *response.reasons)
     return named(replace(response, reasons=reasons), names, plate)
 
@@ -96,31 +96,31 @@ def of_wheel(found: Sequence[MotionResponse], wheel: str | None, names: tuple[st
 def responses(
     recording: Recording, signal: Any, names: tuple[str, ...], band: tuple[float, float], window: float | None
 ) -> tuple[MotionResponse, ...]:
-    """FRFs of a run to each plate that moves by itself.
+    """Return the FRFs of a run to each independently moving plate.
 
     Args:
-        recording, signal: of the run.
+        recording, signal: recording and signal of the run.
         names: acceleration channels.
-        band: frequencies [Hz].
-        window: as of `vehicle.runs.car.Run.frf`.
+        band: lowest and highest frequency [Hz].
+        window: see `vehicle.runs.car.Run.frf`.
 
     Raises:
         DataError: no plate moves, or the record is too short.
-        DependentInputsError: one plate moves as the other some time before.
+        DependentInputsError: a plate repeats the motion of another plate with a delay.
     """
     moving = recording.excited
     if not moving:
         raise DataError(
             f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
         )
-    plates = {one: f"plate_{one}_displacement" for one in moving}
+    plates = {wheel_name: f"plate_{wheel_name}_displacement" for wheel_name in moving}
     return motion_responses(
         recording.timestep,
-        {one: recording[plate] for one, plate in plates.items()},
+        {wheel_name: recording[plate] for wheel_name, plate in plates.items()},
         [recording[name] for name in names],
         labels=plates,
         names=names,
         band=band,
-        rounding={one: rounding_step(signal.displacement[one]) for one in moving},
+        rounding={wheel_name: rounding_step(signal.displacement[wheel_name]) for wheel_name in moving},
         window=window,
     )

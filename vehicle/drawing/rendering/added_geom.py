@@ -1,4 +1,4 @@
-"""Shapes that are in no model and are put into a scene as it is drawn."""
+"""Shapes that are not in the model and are appended to a scene during drawing."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ def add_geom(
     colour: npt.NDArray[np.float32],
     frame: npt.NDArray[np.float64] = UPRIGHT,
 ) -> mujoco.MjvGeom:
-    """Append a shape to a scene that has been updated and must have room.
+    """Append a shape to an updated scene, which must have space for it.
 
     Args:
         scene: the scene; changed in place.
         kind: sphere, capsule, box, plane.
-        size: half lengths or radii as MuJoCo has them [m], (3,).
-        place: its centre [m], (3,).
+        size: half lengths or radii in the convention of MuJoCo [m], (3,).
+        place: centre of the shape [m], (3,).
         colour: red, green, blue, opacity, (4,).
-        frame: its axes as the columns of a matrix, (9,).
+        frame: axes of the shape as the columns of a matrix, (9,).
 
     Returns:
         The shape in the scene.

@@ -1,4 +1,4 @@
-"""The picture of a body model: its first modes as wireframes, at rest and at the end of a swing."""
+"""Picture of a body model: its first modes as wireframes, at rest and at the end of a swing."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from vehicle.signals.analysis.thinned_wireframe import thinned
 Vector = npt.NDArray[np.float64]
 
 MOST = 12
-"""Modes in a picture; more are too small to be seen."""
+"""Maximum number of modes in a picture."""
 
 SWING = 0.12
 """Largest displacement drawn, over the length of the body."""
 
 DENSE = 500
-"""Lines from which they are drawn thinner, or a mesh would be a dark patch."""
+"""Number of lines above which they are drawn thinner, since a dense mesh would be a dark patch."""
 
 VIEW = np.array([[0.80, 0.60, 0.0], [-0.23, 0.31, 0.92]])
 """Right and up of the page over x to the rear, y to the right, z up: seen from the left in front, 23 degrees above."""
@@ -38,17 +38,17 @@ def plot_body(
     title: str,
     caption: str,
 ) -> None:
-    """Write the picture.
+    """Write the picture of the first modes.
 
     Args:
         path: PNG file.
-        positions: of the nodes in the vehicle frame [m], (n, 3).
-        edges: pairs of nodes, (m, 2); without any, nodes are dots.
-        shapes: of the modes, (modes, n, 3); the first `MOST` are drawn.
-        titles: of the modes.
+        positions: positions of the nodes in the vehicle frame [m], (n, 3).
+        edges: pairs of nodes, (m, 2); if empty, nodes are drawn as dots.
+        shapes: shapes of the modes, (modes, n, 3); the first `MOST` are drawn.
+        titles: titles of the modes.
         places: nodes at which the car is fixed to the body, shown as dots.
-        title: above the picture.
-        caption: below it.
+        title: title above the picture.
+        caption: caption below the picture.
     """
     from matplotlib.collections import LineCollection
 
@@ -60,14 +60,14 @@ def plot_body(
     seen = np.unique(np.concatenate([edges.ravel(), places])) if len(edges) else np.arange(len(positions))
     with saved_figure(path, (4.0 * columns, 2.9 * -(-count // columns) + 0.9), title, caption) as figure:
         grid = np.atleast_1d(figure.subplots(-(-count // columns), columns, squeeze=False)).ravel()
-        for axis, shape, words in zip(grid, shapes, titles, strict=False):
+        for axis, shape, title_of_mode in zip(grid, shapes, titles, strict=False):
             size = np.linalg.norm(shape, axis=1)
-            # Nodes that no line reaches are not in the picture, and must not be its scale.
+            # Nodes without lines are not in the picture and must not determine its scale.
             largest = float(size[seen].max()) or 1.0
             moved = (positions + SWING * length / largest * shape) @ VIEW.T
             if len(edges):
-                rest: Any = LineCollection(flat[edges], colors="#b8b8b8", linewidths=0.3 if dense else 0.6)
-                axis.add_collection(rest)
+                at_rest: Any = LineCollection(flat[edges], colors="#b8b8b8", linewidths=0.3 if dense else 0.6)
+                axis.add_collection(at_rest)
                 shades = colours(size[edges].mean(axis=1), largest)
                 swung: Any = LineCollection(moved[edges], colors=shades, linewidths=0.6 if dense else 1.4)
                 axis.add_collection(swung)
@@ -75,7 +75,7 @@ def plot_body(
                 axis.scatter(*flat.T, s=4, color="#b8b8b8")
                 axis.scatter(*moved.T, s=16, c=colours(size, largest))
             axis.scatter(*moved[places].T, s=6, color=COLOURS[4], zorder=3)
-            axis.set_title(words, fontsize=8.5)
+            axis.set_title(title_of_mode, fontsize=8.5)
             axis.set_aspect("equal")
             axis.margins(0.04)
             axis.autoscale_view()

@@ -2,7 +2,7 @@
 
     x = p + exp(k [theta]) (r + k Phi q),
 
-p and theta the exaggerated place and the rotation of the body as `motion` has them.
+with the exaggerated position p and the rotation theta of the body from `motion`.
 """
 
 from __future__ import annotations
@@ -27,25 +27,25 @@ MEMBER_RADIUS = 0.0085
 """Drawn sizes [m] of a frame of beams."""
 
 FRAME_LINES = 200
-"""Lines up to which a body is drawn as a frame of beams; members as thick would hide a dense mesh."""
+"""Maximum number of lines of a body drawn as a frame of beams; thick members would hide a dense mesh."""
 
 EMISSION = 0.35
-"""Share of its colour that a member shows without light."""
+"""Emission of the members: share of their colour without light."""
 
 
 def members_of(car: CarModel) -> tuple[npt.NDArray[np.intp], float]:
-    """Lines that stand for the flexible body, pairs of its nodes (n, 2), and a factor of how thick they are drawn."""
+    """Return the lines of the flexible body as pairs of nodes (n, 2), and a factor on their thickness."""
     element = car.superelement
     lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
     return lines, min(1.0, float(np.cbrt(FRAME_LINES / max(len(lines), 1))))
 
 
 class Wireframe:
-    """Nodes and members of the superelement, coloured by how far each node moves.
+    """Nodes and members of the superelement, coloured by displacement.
 
     Args:
-        car: the car.
-        motion: its motion.
+        car: compiled car.
+        motion: motion of the car.
     """
 
     def __init__(self, car: CarModel, motion: Motion) -> None:
@@ -53,18 +53,18 @@ class Wireframe:
         self.motion = motion
         self.body = int(motion.model.body("body").id)
         lines, self.slim = members_of(car)
-        # A body without lines is its nodes; of one with lines, those that lines end at.
+        # Show all nodes of a body without lines, otherwise the ends of the lines.
         shown, index = np.unique(lines, return_inverse=True) if len(lines) else (slice(MOST_NODES), lines)
         self.rest, self.edges = np.asarray(element.positions)[shown], index.reshape(-1, 2)
         self.shapes = np.asarray(element.shapes)[: len(motion.modal), shown]  # (modes, n, 3); none of a rigid body
 
     def places(self, state: State, factor: float) -> Vector:
-        """Exaggerated positions of the nodes [m], (n, 3)."""
+        """Return exaggerated positions of the nodes [m], (n, 3)."""
         elastic = np.einsum("m,mni->ni", state.modal, self.shapes)
         return self.motion.moved(state, factor, self.body, self.rest + factor * elastic)
 
     def displacement(self, state: State) -> Vector:
-        """True distance of each node from its design position [m], (n,)."""
+        """Return the true distance of each node from its design position [m], (n,)."""
         return np.asarray(np.linalg.norm(self.places(state, 1.0) - self.rest, axis=1))
 
     def draw(self, scene: mujoco.MjvScene, places: Vector, colours: npt.NDArray[np.float32]) -> None:
@@ -75,8 +75,8 @@ class Wireframe:
             places: node positions [m], (n, 3).
             colours: red, green, blue, opacity of the nodes, (n, 4); a member takes the mean of its ends.
         """
-        for place, colour in zip(places, colours, strict=True):
-            _glowing(scene, mujoco.mjtGeom.mjGEOM_SPHERE, self.slim * NODE_RADIUS, place, colour)
+        for position, colour in zip(places, colours, strict=True):
+            _glowing(scene, mujoco.mjtGeom.mjGEOM_SPHERE, self.slim * NODE_RADIUS, position, colour)
         middle = 0.5 * (colours[self.edges[:, 0]] + colours[self.edges[:, 1]])
         radius = self.slim * MEMBER_RADIUS
         for (first, second), colour in zip(self.edges, middle, strict=True):
@@ -85,8 +85,8 @@ class Wireframe:
 
 
 def _glowing(
-    scene: mujoco.MjvScene, kind: mujoco.mjtGeom, radius: float, place: Vector, colour: npt.NDArray[np.float32]
+    scene: mujoco.MjvScene, geom_type: mujoco.mjtGeom, radius: float, position: Vector, colour: npt.NDArray[np.float32]
 ) -> mujoco.MjvGeom:
-    geom = add_geom(scene, kind, np.full(3, radius), place, colour)
+    geom = add_geom(scene, geom_type, np.full(3, radius), position, colour)
     geom.emission, geom.specular = EMISSION, 0.1
     return geom

@@ -1,4 +1,4 @@
-"""Where a film looks from."""
+"""Cameras of a film."""
 
 from __future__ import annotations
 
@@ -11,11 +11,15 @@ from vehicle.model.parameters.vehicle import Vehicle
 
 
 def whole_car(vehicle: Vehicle) -> mujoco.MjvCamera:
-    """Camera in front of the car at its right, as far as the car is long."""
+    """Return a camera at the front right of the car, at a distance in proportion to its wheelbase."""
     wheels = vehicle.composition.wheels
-    standing = [wheel.patch for wheel in wheels]
-    standing += [one.at for one in vehicle.composition.connections if one.ground and one.moving == "body"]
-    front, rear = min(place[0] for place in standing), max(place[0] for place in standing)
+    ground_points = [wheel.patch for wheel in wheels]
+    ground_points += [
+        connection.at
+        for connection in vehicle.composition.connections
+        if connection.ground and connection.moving == "body"
+    ]
+    front, rear = min(point[0] for point in ground_points), max(point[0] for point in ground_points)
     camera = mujoco.MjvCamera()
     camera.lookat = [0.5 * (front + rear), 0.05, min(wheel.patch[2] for wheel in wheels) + 0.58]
     camera.distance, camera.azimuth, camera.elevation = max(2.256 * (rear - front), 4.0), -52.0, -13.0
@@ -23,9 +27,9 @@ def whole_car(vehicle: Vehicle) -> mujoco.MjvCamera:
 
 
 def close_up(motion: Motion, vehicle: Vehicle, wheel: str) -> mujoco.MjvCamera:
-    """Camera on the suspension of a wheel, from outside in front: between its hub and its highest point."""
+    """Return a camera on the suspension of a wheel from the front outside, aimed between hub and highest point."""
     hub = motion.position[motion.model.body(hub_of(vehicle.composition, wheel)).id]
-    top = max((place for name, place in vehicle.points.items() if name.endswith(f"_{wheel}")), key=lambda at: at[2])
+    top = max((point for name, point in vehicle.points.items() if name.endswith(f"_{wheel}")), key=lambda at: at[2])
     camera = mujoco.MjvCamera()
     camera.lookat = np.mean([hub, top], axis=0)
     camera.distance, camera.elevation = 2.0, -7.0

@@ -1,4 +1,4 @@
-"""The off-screen picture of a scene."""
+"""Off-screen rendering of a scene."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vehicle.drawing.rendering.added_geom import add_geom
 from vehicle.drawing.rendering.layout import Picture
 
 MOST_GEOMS = 5000
-"""Room in a scene: shapes, nodes and members of the wireframe, pieces of a road."""
+"""Maximum number of geoms in a scene: shapes, nodes and members of the wireframe, pieces of a road."""
 
 WHITE = np.ones(4, dtype=np.float32)
 
@@ -20,11 +20,11 @@ WHITE = np.ones(4, dtype=np.float32)
 class Canvas:
     """OpenGL context, scene and buffer; close it when done.
 
-    MuJoCo's own Renderer takes the backend that MUJOCO_GL named when mujoco was imported; this takes the one it is
-    told, so a notebook that has imported mujoco already can make films too.
+    The Renderer of MuJoCo uses the backend that MUJOCO_GL named when mujoco was imported. This canvas uses the given
+    backend, so a notebook that has already imported mujoco can make films too.
 
     Args:
-        model: what is drawn; its off-screen buffer must be at least as large as the picture.
+        model: model to draw; its off-screen buffer must be at least as large as the picture.
         size: width and height [pixel].
         backend: OpenGL backend, one of `BACKENDS`.
     """
@@ -39,13 +39,13 @@ class Canvas:
         for flag in (mujoco.mjtRndFlag.mjRND_SHADOW, mujoco.mjtRndFlag.mjRND_REFLECTION):
             self.scene.flags[flag] = False
         self.option = mujoco.MjvOption()
-        # Springs are drawn as coils, not as tendons.
+        # Springs are drawn as coils instead of tendons.
         self.option.flags[mujoco.mjtVisFlag.mjVIS_TENDON] = False
         self.floor = int(model.geom("floor").id)
         self.picture = np.zeros((size[1], size[0], 3), dtype=np.uint8)
 
     def close(self) -> None:
-        """Give all of OpenGL back; harmless a second time."""
+        """Release all OpenGL resources; repeated calls are harmless."""
         if self.context is not None:
             self.gl.make_current()
             self.context.free()
@@ -53,24 +53,24 @@ class Canvas:
             self.gl.free()
 
     def upload(self, mesh: int) -> None:
-        """Pass the changed vertices of a mesh on to OpenGL."""
+        """Upload the changed vertices of a mesh to OpenGL."""
         mujoco.mjr_uploadMesh(self.model, self.context, mesh)
 
     def update(self, data: mujoco.MjData, camera: mujoco.MjvCamera) -> None:
-        """Fill the scene with the geoms as they are placed, seen by a camera; more may be appended to it then."""
+        """Fill the scene with the geoms in their poses, for a camera; further geoms may be appended."""
         everything = mujoco.mjtCatBit.mjCAT_ALL
-        # The headlight is placed before the camera is: a picture would depend on the one before.
+        # MuJoCo sets the headlight before the camera, so a picture would depend on the previous picture.
         mujoco.mjv_updateCamera(self.model, data, camera, self.scene)
         mujoco.mjv_updateScene(self.model, data, self.option, None, camera, everything, self.scene)
-        # Haze is drawn at the horizon of an infinite plane alone; this one is nothing but that.
+        # Haze is only visible at the horizon of an infinite plane.
         add_geom(self.scene, mujoco.mjtGeom.mjGEOM_PLANE, np.zeros(3), data.geom_xpos[self.floor], WHITE)
 
     def render(self, viewport: tuple[int, int, int, int]) -> None:
-        """Draw the scene into a part of the picture: left, bottom, width and height [pixel]."""
+        """Render the scene to a part of the picture: left, bottom, width and height [pixel]."""
         mujoco.mjr_render(mujoco.MjrRect(*viewport), self.scene, self.context)
 
     def read(self) -> Picture:
-        """The picture drawn so far, (height, width, 3), first row on top."""
+        """Return the rendered picture, (height, width, 3), first row on top."""
         width, height = self.size
         mujoco.mjr_readPixels(self.picture, None, mujoco.MjrRect(0, 0, width, height), self.context)
         return np.asarray(self.picture[::-1])

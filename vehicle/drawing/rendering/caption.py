@@ -1,4 +1,4 @@
-"""What is written on a picture of the car: a heading, and the scale of the colours."""
+"""Text on a picture of the car: a heading and a colour bar."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from vehicle.drawing.rendering.layout import INK, PAPER, Layout, Picture
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Caption:
-    """Writes a heading and the scale of the colours onto pictures of one size."""
+    """Writer of a heading and a colour bar on pictures of one size."""
 
     layout: Layout
-    """where things are"""
+    """layout of the picture"""
     heading: Sequence[str]
     """lines at the upper left; the first is bold"""
     scale_top: float
@@ -27,14 +27,14 @@ class Caption:
     """quantity and unit of the colour bar"""
 
     def write(self, picture: Picture) -> Picture:
-        """Put them onto a view of the car, (height, width, 3)."""
+        """Write heading and colour bar on a view of the car, (height, width, 3)."""
         image = Image.fromarray(np.ascontiguousarray(picture))
         self._head(image)
         self._scale(image)
         return np.asarray(image)
 
     def _head(self, image: Image.Image, last: str = "") -> None:
-        """Heading, and a bold last line."""
+        """Draw the heading and a bold last line."""
         px, font = self.layout.px, self.layout.font
         x, y, step = px(16), px(12), px(24)
         image.paste(INK, (x, y), self.head)
@@ -43,7 +43,7 @@ class Caption:
 
     @cached_property
     def head(self) -> Image.Image:
-        """The heading as a mask of its ink."""
+        """Return the heading as a mask."""
         px, font = self.layout.px, self.layout.font
         lines = [(line, font(21 if number == 0 else 17, number == 0)) for number, line in enumerate(self.heading)]
         width = max(letters.getbbox(line)[2] for line, letters in lines)
@@ -55,23 +55,23 @@ class Caption:
         return mask
 
     def _scale(self, image: Image.Image) -> None:
-        """The colour bar at the lower left of the car."""
-        place = self.layout.view_height - self.colour_bar.height - self.layout.px(10)
-        image.paste(self.colour_bar, (self.layout.px(16), place))
+        """Draw the colour bar at the lower left of the view."""
+        top = self.layout.view_height - self.colour_bar.height - self.layout.px(10)
+        image.paste(self.colour_bar, (self.layout.px(16), top))
 
     @cached_property
     def colour_bar(self) -> Image.Image:
-        """Scale of the wireframe's colours on a white plate."""
+        """Return the colour bar of the wireframe on a white background."""
         px, font = self.layout.px, self.layout.font
         width, height = px(384), px(56)
         image = Image.new("RGB", (width, height), PAPER)
         pen = ImageDraw.Draw(image)
-        words = f"{self.scale_words}; grey: at rest"
-        pen.text((px(8), px(4)), words, fill=INK, font=font(14))
+        label = f"{self.scale_words}; grey: at rest"
+        pen.text((px(8), px(4)), label, fill=INK, font=font(14))
         left, right, top, bottom = px(10), width - px(10), px(23), px(35)
         shades = (255.0 * colours(np.linspace(0.0, 1.0, right - left), 1.0)[:, :3]).astype(np.uint8)
         image.paste(Image.fromarray(np.repeat(shades[None], bottom - top, axis=0)), (left, top))
         for share, anchor in ((0.0, "la"), (0.5, "ma"), (1.0, "ra")):
-            place = (left + share * (right - left), bottom + px(3))
-            pen.text(place, f"{share * self.scale_top:.3g}", fill=INK, font=font(13), anchor=anchor)
+            position = (left + share * (right - left), bottom + px(3))
+            pen.text(position, f"{share * self.scale_top:.3g}", fill=INK, font=font(13), anchor=anchor)
         return image

@@ -10,15 +10,15 @@ SCALE = "viridis"
 (Smith and van der Walt, 2015). Violet is at rest, yellow the top of the scale."""
 
 SHADES = 256
-"""Of its table."""
+"""Number of colours in the table."""
 
 
 def colours(values: npt.ArrayLike, top: float) -> npt.NDArray[np.float32]:
-    """Colours of values between 0 and the top of the scale; what lies above is drawn as the top.
+    """Return the colours of values between 0 and the top of the scale; larger values have the colour of the top.
 
     Args:
-        values: (n,), same unit as `top`.
-        top: largest value of the scale, above 0.
+        values: values in the unit of `top`, (n,).
+        top: maximum of the scale, above 0.
 
     Returns:
         Red, green, blue and opacity 1, (n, 4).

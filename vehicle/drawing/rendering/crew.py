@@ -1,4 +1,4 @@
-"""Frames of a film drawn by several processes, each with a canvas of its own, taken in their order."""
+"""Drawing of the frames of a film by several processes, each with a separate canvas."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ from vehicle.errors import OutputError
 from vehicle.threads import one_thread_each
 
 WORTH_A_PROCESS = 40
-"""Frames that take longer to draw than a process to start."""
+"""Minimum number of frames for each process: fewer are drawn faster than a process starts."""
 
 MOST = 8
-"""Processes beyond which the encoder is the slowest."""
+"""Maximum number of processes; with more, the encoder is the bottleneck."""
 
 
 def drawing_jobs() -> int:
-    """How many processes this machine has for a film: its processors."""
+    """Return the number of processes for a film: the number of processors, up to `MOST`."""
     return min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1, MOST)
 
 
 def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
-    """All frames of a shot in their order, (height, width, 3) each.
+    """Yield all frames of a shot in order, (height, width, 3) each.
 
-    Process k of n draws the frames k, k + n, k + 2 n and so on. Each is one frame ahead at most: it waits until its
-    frame is taken.
+    Process k of n draws the frames k, k + n, k + 2 n and so on. Each process is at most one frame ahead: it waits until
+    its frame is received.
 
     Args:
-        jobs: processes at most; a film of few frames is drawn here.
-        shot: what is drawn.
+        jobs: maximum number of processes; a film of few frames is drawn in this process.
+        shot: shot to draw.
         backend: OpenGL backend, one of `BACKENDS`.
 
     Raises:
@@ -48,35 +48,35 @@ def drawn_by(jobs: int, shot: Shot, backend: str) -> Iterator[Picture]:
         yield from shot.frames(backend)
         return
     context = get_context("spawn")
-    ends, crew = [], []
+    ends, processes = [], []
     for number in range(count):
-        here, there = context.Pipe(duplex=False)
-        ends.append(here)
-        crew.append(context.Process(target=_draw, args=(shot, backend, number, count, there), daemon=True))
+        receiver, sender = context.Pipe(duplex=False)
+        ends.append(receiver)
+        processes.append(context.Process(target=_draw, args=(shot, backend, number, count, sender), daemon=True))
         with one_thread_each():
-            crew[-1].start()
-        there.close()  # so that the end of the process is the end of the pipe
+            processes[-1].start()
+        sender.close()  # so that the pipe ends with the process
     shape = (shot.layout.height, shot.layout.width, 3)
     try:
         for number in range(shot.cut.frames):
             yield np.frombuffer(ends[number % count].recv_bytes(), dtype=np.uint8).reshape(shape)
     except EOFError:
         raise OutputError(
-            "the film: a process that draws ended; its own error stands above (out of memory where there is none)"
+            "the film: a drawing process ended; see its error message above (without a message, it was out of memory)"
         ) from None
     finally:
-        for process in crew:
+        for process in processes:
             process.terminate()
             process.join()
 
 
-def _draw(shot: Shot, backend: str, first: int, every: int, there: Connection) -> None:
-    """Draw every so manieth frame and send it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the first process ends the others
+def _draw(shot: Shot, backend: str, first: int, every: int, sender: Connection) -> None:
+    """Draw every n-th frame and send it to the main process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the main process ends the others
     os.environ.update(variables(backend))
     try:
         with closing(shot.frames(backend, first, every)) as frames:  # type: ignore[type-var]
             for frame in frames:
-                there.send_bytes(frame.tobytes())
+                sender.send_bytes(frame.tobytes())
     except BrokenPipeError:
-        pass  # nobody wants them any more
+        pass  # the main process needs no more frames

@@ -1,4 +1,4 @@
-"""The car in a state of motion, drawn onto a canvas through one camera after the other."""
+"""Drawing of the car in a state of motion on a canvas, for several cameras."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class Drawing:
     """Shapes, coils and coloured wireframe of a car.
 
     Args:
-        canvas: what it is drawn on.
-        motion: of the bodies of the canvas's model.
-        wireframe: of its flexible body.
-        composition: of the car.
-        scale_top: displacement of the last colour [m].
+        canvas: canvas to draw on.
+        motion: motion of the bodies in the model of the canvas.
+        wireframe: wireframe of the flexible body.
+        composition: composition of the car.
+        scale_top: displacement at the top of the colour scale [m].
     """
 
     def __init__(
@@ -29,13 +29,13 @@ class Drawing:
     ) -> None:
         self.canvas, self.motion, self.wireframe, self.scale_top = canvas, motion, wireframe, scale_top
         self.data = mujoco.MjData(canvas.model)
-        # Lights and cameras take their places once; the geoms are then placed frame by frame.
+        # Lights and cameras are positioned once; the geoms are positioned in every frame.
         for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
             place(canvas.model, self.data)
         self.coils = [Coil(motion, composition, spring) for spring in composition.springs]
 
     def pose(self, state: State, factor: float) -> None:
-        """Put everything into its exaggerated place."""
+        """Set the exaggerated poses of all shapes."""
         self.data.geom_xpos[:], self.data.geom_xmat[:] = self.motion.geoms(state, factor)
         for coil in self.coils:
             coil.write(self.data, coil.places(state, factor))
@@ -44,7 +44,7 @@ class Drawing:
         self.shades = colours(self.wireframe.displacement(state), self.scale_top)
 
     def see(self, camera: mujoco.MjvCamera, opacity: npt.NDArray[np.float64]) -> None:
-        """Fill the scene of the canvas as a camera sees it; more may be appended to it, then it can be rendered."""
+        """Fill the scene of the canvas for a camera; geoms may be appended before it is rendered."""
         self.canvas.model.mat_rgba[:, 3] = opacity
         self.canvas.update(self.data, camera)
         self.wireframe.draw(self.canvas.scene, self.places, self.shades)

@@ -1,4 +1,4 @@
-"""Pictures of a drive found from a response: target beside response, the drive itself, and how the error fell."""
+"""Pictures of a replicated drive signal: target and response, the drive signal, and the convergence of the error."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from vehicle.signals.analysis.spectra import power_spectral_density
 Vector = npt.NDArray[np.float64]
 
 DETAIL, WINDOW = 2.0, 4.0
-"""Length of the magnified stretch and of a window of the spectra [s]."""
+"""Length of the magnified time window and of a window of the spectra [s]."""
 
 ERROR, OUTSIDE = "#555555", "#ececec"
 
@@ -33,14 +33,14 @@ def plot_replication(
     band: tuple[float, float],
     caption: str,
 ) -> None:
-    """Write target and response of each channel, and the drive below them: a stretch of time, and the spectrum.
+    """Plot target and response of each channel and the drive signal below: a time window, and the spectrum.
 
     Args:
         path: PNG file.
-        time: [s], (n,).
+        time: sample times [s], (n,).
         responses: channel to target and response [m/s2], (n,) each.
-        drive: wheel to its displacement [m], (n,).
-        band: edges [Hz].
+        drive: wheel to its plate displacement [m], (n,).
+        band: edges of the frequency band [Hz].
         caption: line under the picture.
     """
     step = float(time[1] - time[0])
@@ -85,18 +85,18 @@ def plot_replication(
 
 
 def _amplitude(step: float, values: Vector) -> tuple[Vector, Vector]:
-    """Frequencies and root of the power spectral density."""
-    found = power_spectral_density(step, values, window_s=min(WINDOW, step * (values.size - 1)))
-    return found.frequency[1:], np.sqrt(found.density[0, 1:])
+    """Return frequencies and the root of the power spectral density."""
+    density = power_spectral_density(step, values, window_s=min(WINDOW, step * (values.size - 1)))
+    return density.frequency[1:], np.sqrt(density.density[0, 1:])
 
 
 def plot_convergence(path: Path, errors: Mapping[str, Vector], kept: npt.NDArray[np.bool_], caption: str) -> None:
-    """Write the error of each channel over the runs.
+    """Plot the error of each channel over the runs.
 
     Args:
         path: PNG file.
         errors: channel to RMS of target minus response over RMS of target, in the band [-], (runs,).
-        kept: which runs were better than all before, (runs,).
+        kept: True for runs better than all previous runs, (runs,).
         caption: line under the picture.
     """
     runs = np.arange(1, kept.size + 1)

@@ -1,4 +1,4 @@
-"""Figures without global state: the Agg canvas, one style, the same bytes for the same data."""
+"""Figures without global state: Agg canvas, one style, bitwise reproducible files."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ COLOURS = ("#1a73c4", "#b3261e", "#35ab8f", "#eeaa1c", "#3d1560")
 are at least six just noticeable differences apart, and as far from the paper."""
 
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
-"""Line styles beside the colours, so that print in black tells curves apart."""
+"""Line styles in addition to the colours, to distinguish curves in black-and-white print."""
 
 FADING = ((-1.0, 0.5, 0.2), (0.5, 0.8, 0.5), (0.8, 2.0, 1.0))
-"""Coherences from, up to, and how opaque a magnitude is there: what is not caused by the plate is pale."""
+"""Ranges of coherence and the opacity of a magnitude in each: motion that the plate does not cause is pale."""
 
 FADED = "pale: coherence below 0.8, paler: below 0.5"
-"""What a caption says of it."""
+"""Explanation of `FADING` in a caption."""
 
 EDGE = 0.06
-"""From the edge of a figure to its title and its caption [inch], where the axes are placed."""
+"""Distance of title and caption from the edge of a figure with placed axes [inch]."""
 
 COMPRESSION = 3
-"""Of PNG files: higher ones take three times as long and spare a tenth of the file."""
+"""Compression level of PNG files: higher levels take three times as long and save a tenth of the file."""
 
 INK = "#444444"
 """Colour of captions."""
@@ -72,21 +72,21 @@ SVG = {
     "path.simplify_threshold": 0.35,
     "savefig.dpi": 160,
 }
-"""Words stay words, names of elements are the same each time, lines lose what is finer than a third of a dot."""
+"""SVG settings: text as text, reproducible names of elements, lines simplified below a third of a dot."""
 
 
 @contextmanager
 def saved_figure(
     path: Path, size: tuple[float, float], title: str = "", caption: str = "", *, placed: bool = False
 ) -> Iterator[Figure]:
-    """Give an empty figure; write it when the block is done.
+    """Yield an empty figure, and write the file at the end of the block.
 
     Args:
-        path: PNG or SVG file, by its ending.
+        path: PNG or SVG file, by its extension.
         size: width and height [inch].
-        title: above the figure; none if empty.
-        caption: below it; none if empty.
-        placed: the axes are those of `placed_axes`, so that no layout is to be found.
+        title: title above the figure; may be empty.
+        caption: caption below the figure; may be empty.
+        placed: the axes come from `placed_axes`, so that no layout is computed.
 
     Yields:
         The figure.
@@ -94,7 +94,7 @@ def saved_figure(
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.figure import Figure
 
-    # The reader's own matplotlibrc must not change the files of a run.
+    # The matplotlibrc of the user must not change the files of a run.
     form = "svg" if path.suffix == ".svg" else "png"
     with rc_context({**rcParamsDefault, **STYLE, **(SVG if form == "svg" else {})}):
         figure = Figure(figsize=size, layout=None if placed else "constrained")
@@ -106,36 +106,38 @@ def saved_figure(
             figure.suptitle(title, fontsize=12, **({"y": 1.0 - edge} if placed else {}))
         if caption:
             figure.supxlabel(caption, fontsize=8.5, color=INK, **({"y": edge} if placed else {}))
-        # The layout is computed once; left to the writer of the file, it costs one more drawing of everything.
+        # Compute the layout once; savefig would draw everything once more for it.
         engine = figure.get_layout_engine()
         if engine is not None:
             engine.execute(figure)
             figure.set_layout_engine(None)
         for axes, grid in grids:
             draw_grid(axes, grid)
-        about: dict[str, Any] = {"metadata": dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",))}
+        save_options: dict[str, Any] = {
+            "metadata": dict.fromkeys(("Date", "Creator") if form == "svg" else ("Software",))
+        }
         if form == "png":
-            about["pil_kwargs"] = {"compress_level": COMPRESSION}
-        figure.savefig(path, format=form, **about)
+            save_options["pil_kwargs"] = {"compress_level": COMPRESSION}
+        figure.savefig(path, format=form, **save_options)
 
 
 def power_of_ten(value: float, _: int | None = None) -> str:
-    """A decade of a logarithmic axis in plain letters: matplotlib's own needs its parser of formulas.
+    """Return the label of a decade as plain text; the labels of matplotlib need its parser of formulas.
 
     Args:
         value: a power of ten.
-        _: number of the tick, which a formatter is given.
+        _: index of the tick, an argument of every formatter.
     """
     return "10" + str(round(np.log10(value))).translate(SUPERSCRIPTS)
 
 
 def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[float, ...]) -> None:
-    """Scales, limits and labels of rows of magnitude, phase and coherence over one logarithmic frequency axis.
+    """Set scales, limits and labels of magnitude, phase and coherence over one logarithmic frequency axis.
 
     Args:
         figure: the figure.
-        axes: its axes, (3, columns), y shared by the rows.
-        coherence_ticks: of the coherence axis.
+        axes: axes of the figure, (3, columns), with y shared by rows.
+        coherence_ticks: ticks of the coherence axis.
     """
     upper, middle, lower = axes[:, 0]
     upper.set(xscale="log", yscale="log", xlim=FRF_BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
@@ -150,13 +152,13 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
 
 
 def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
-    """Phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
+    """Return the phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
 
     Args:
         response: complex values over frequency, (m,).
 
     Returns:
-        Phase of a line to draw, (m,); NaN at the first point behind a jump.
+        Phase of a line to draw, (m,), with NaN at the first point after a jump.
     """
     phase = np.degrees(np.angle(response))
     phase[np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1] = np.nan
@@ -181,14 +183,14 @@ def fading(
         label: legend text, of the line that is not pale.
         style: colour and line style.
     """
-    known = np.where(np.isfinite(coherence), coherence, 1.0)
+    finite = np.where(np.isfinite(coherence), coherence, 1.0)
     for lowest, highest, opacity in FADING:
-        here = (known >= lowest) & (known < highest)
-        # One point more, so that the pieces meet.
-        joined = here | np.concatenate([[False], here[:-1]])
-        words = label if opacity == 1.0 else None
-        if words or joined.any():
-            axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=words, **style)
+        in_range = (finite >= lowest) & (finite < highest)
+        # One more point, so that the segments join.
+        joined = in_range | np.concatenate([[False], in_range[:-1]])
+        label_of_line = label if opacity == 1.0 else None
+        if label_of_line or joined.any():
+            axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=label_of_line, **style)
 
 
 def shade(

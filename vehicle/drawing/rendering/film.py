@@ -1,4 +1,4 @@
-"""The film of a run: the recording replayed with its motion exaggerated, never stepped."""
+"""Film of a run: replay of the recording with exaggerated motion, without simulation."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from vehicle.drawing.rendering.shot import FPS, Cut, Shot, Take
 from vehicle.errors import OutputError
 
 QUALITY = 20
-"""Constant rate factor of the encoder; about 18 cannot be told from the original, 23 is its default."""
+"""Constant rate factor of the encoder; about 18 is visually lossless, 23 is the default."""
 
 PRESET = "veryfast"
-"""Of the encoder: at the same quality files of cars on rigs are as small as with its default, in 0.4 of the time."""
+"""Preset of the encoder: for cars on rigs as small files as the default at the same quality, in 0.4 of the time."""
 
 
 def film(
@@ -33,18 +33,18 @@ def film(
     Args:
         run: the run.
         path: MP4 file.
-        take: what to show; ten seconds of the liveliest stretch by default.
+        take: settings of the film; by default, ten seconds with the largest motion.
         size: width and height [pixel], even.
-        jobs: processes that draw; the film does not depend on their number. A script that asks for several needs
-            `if __name__ == "__main__":` around what it does.
+        jobs: number of drawing processes, which does not change the film. A script with several processes needs an
+            `if __name__ == "__main__":` block.
         progress: called with the finished fraction.
 
     Returns:
-        What was shown.
+        The excerpt in the film.
 
     Raises:
         ConfigurationError: an option is out of range.
-        MissingPartError: no off-screen OpenGL library or no ffmpeg.
+        MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
         OutputError: the file cannot be written.
     """
     backend = choose_backend()
@@ -91,7 +91,7 @@ def write_film(path: Path, frames: Iterable[Picture], shape: tuple[int, int]) ->
                 writer.add_image(frame)
     except BaseException as error:
         path.unlink(missing_ok=True)
-        # What ffmpeg complains about comes as a RuntimeError with these words.
+        # imageio raises errors of ffmpeg as a RuntimeError with this text.
         if isinstance(error, OSError) or str(error).startswith("Error writing"):
             raise OutputError(f"{path}: the film cannot be written: {' '.join(str(error).split())}") from None
         raise

@@ -1,4 +1,4 @@
-"""The frame of a body in the design position, against which its motion is seen: thin rods that never move."""
+"""Fixed frame of a body in the design position, as a reference for its motion: thin rods."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from vehicle.model.shapes.shape import Shape
 from vehicle.model.shapes.solids import joined, rod
 
 RADIUS = 0.005
-"""Of the rods of a frame of beams [m]."""
+"""Radius of the rods of a frame of beams [m]."""
 
 COLOUR = (0.35, 0.38, 0.42, 1.0)
 
 
 def frame_at_rest(car: CarModel) -> dict[str, Shape]:
-    """The frame as one shape by its name; none of a body without lines."""
+    """Return the frame as one shape by name; empty for a body without lines."""
     lines, slim = members_of(car)
     if not len(lines):
         return {}

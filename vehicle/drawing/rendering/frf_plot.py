@@ -27,19 +27,19 @@ from vehicle.signals.analysis.dependence import motion_words
 from vehicle.signals.analysis.motion_response import MotionResponse
 
 OUTPUTS = {"seat_rail_acc_z": "Seat rail, vertical", "engine_acc_z": "Engine, vertical"}
-"""Channels that stand for a car beside the part that carries its first driven wheel."""
+"""Representative channels of a car, in addition to the part that carries its first driven wheel."""
 
 DECADES = 1e4
-"""Range of the magnitude axis: what is smaller is the error of a plate that does not reach the channel."""
+"""Range of the magnitude axis: smaller values are errors of a plate without effect on the channel."""
 
 
 def plot_frfs(path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str) -> None:
-    """Write the FRF picture of a run.
+    """Plot the FRFs of a run.
 
     Args:
         path: PNG file.
         run: the run.
-        responses: to each motion of its plates, rows of all acceleration channels.
+        responses: responses to each motion of the plates, with rows of all acceleration channels.
         caption: line under the picture.
     """
     if len(responses) > 1:
@@ -52,7 +52,7 @@ def plot_frfs(path: Path, run: RecordedRun, responses: Sequence[MotionResponse],
 
 
 def _plates(motion: Mapping[str, float], wheels: Sequence[str]) -> str:
-    """The plates of a motion in words: the plate front right, or the plates with their factors."""
+    """Describe the plates of a motion: the plate front right, or the plates with their factors."""
     names = {wheel: side_of(wheel, wheels) for wheel in motion}
     if len(motion) == 1:
         return f"plate {next(iter(names.values()))}"
@@ -62,7 +62,7 @@ def _plates(motion: Mapping[str, float], wheels: Sequence[str]) -> str:
 
 
 def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str) -> None:
-    """A column for each of a few channels, a line for each motion of the plates; the coherence is that with all."""
+    """Plot a column for each of a few channels, a line for each plate motion, and the multiple coherence."""
     vehicle = run.car.model.vehicle
     rows = {name: row for row, name in enumerate(vehicle.acceleration_channels)}
     hub = f"Wheel carrier {side_of(run.wheel, vehicle.wheels)}, vertical"
@@ -70,21 +70,24 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
     shown |= {name: hub for name in [hub_channel(vehicle.composition, run.wheel)] if name in rows}
     shown = shown or {next(iter(rows)): next(iter(rows))}
     frequency = responses[0].response.frequency
-    levels = np.abs([one.response.response[rows[name]] for one in responses for name in shown])
+    levels = np.abs([response.response.response[rows[name]] for response in responses for name in shown])
     inside = np.asarray(np.isfinite(levels).all(axis=0))
-    single = all(len(one.motion) == 1 for one in responses)
+    single = all(len(response.motion) == 1 for response in responses)
     title = f"FRFs to each of {len(responses)} {'plates' if single else 'motions of the plates'}, which act at once"
     with saved_figure(path, (max(7.2, 5.0 * len(shown)), 8.6), title, f"{caption}; {FADED}") as figure:
         axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False)
         for (magnitude, phase, coherence), (name, heading) in zip(axes.T, shown.items(), strict=True):
-            for colour, line, one in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
-                values, error = one.response.response[rows[name]], REGION * one.response.random_error[rows[name]]
+            for colour, line, response in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
+                values, error = (
+                    response.response.response[rows[name]],
+                    REGION * response.response.random_error[rows[name]],
+                )
                 size = np.abs(values)
                 low = np.maximum(size - error, 0.01 * size)
                 magnitude.fill_between(frequency, low, size + error, alpha=0.25, linewidth=0.0, color=colour)
                 style = {"color": colour, "linestyle": line}
                 coherent = responses[0].response.coherence[rows[name]]
-                fading(magnitude, frequency, size, coherent, _plates(one.motion, vehicle.wheels), **style)
+                fading(magnitude, frequency, size, coherent, _plates(response.motion, vehicle.wheels), **style)
                 phase.plot(frequency, wrapped_phase(values), linewidth=0.8, **style)
             coherence.plot(frequency, responses[0].response.coherence[rows[name]], color=INK)
             magnitude.set_title(heading)
@@ -93,6 +96,6 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
         axes[0, 0].legend(loc="upper left")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         axes[2, 0].set_ylabel("multiple coherence [-]")
-        known = levels[np.isfinite(levels) & (levels > 0.0)]
-        lowest, highest = (known.min(), known.max()) if known.size else NO_LEVELS
+        finite = levels[np.isfinite(levels) & (levels > 0.0)]
+        lowest, highest = (finite.min(), finite.max()) if finite.size else NO_LEVELS
         axes[0, 0].set_ylim(max(0.5 * lowest, highest / DECADES), 2.0 * highest)

@@ -1,4 +1,4 @@
-"""The front of a search as a picture: objectives against each other, and where its cars lie in their bounds."""
+"""Picture of the Pareto front of a search: pairs of objectives, and parameters relative to their bounds."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
 Vector = npt.NDArray[np.float64]
 
 MARKS, DOTS = "*DsP^v", "os^vDP"
-"""Of the named cars, and of parameters."""
+"""Markers of the named cars, and of parameters."""
 
 BELOW: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14)}
-"""Place of the legends: inside, they would cover cars."""
+"""Position of the legends outside of the axes, where they cover no cars."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrontPicture:
-    """What is drawn.
+    """Data of a picture of a Pareto front.
 
     Attributes:
-        objectives: labels with units.
-        tried: objectives of all cars that keep the limits; (n, goals).
-        front: of the front, by the first objective; (f, goals).
-        base: of the car as it is; (goals,).
-        named: label to objectives of the cars with a name.
-        other: label and front of another search; None for none.
-        parameters: labels with units.
-        shares: places of the cars of the front in their bounds, 0 to 1; (f, p).
-        base_shares: of the car as it is, NaN where it has none; (p,).
+        objectives: labels of the objectives with units.
+        tried: objectives of all cars within the limits; (n, goals).
+        front: objectives of the front, sorted by the first objective; (f, goals).
+        base: objectives of the base car; (goals,).
+        named: label to objectives of the named cars.
+        other: label and front of another search, or None.
+        parameters: labels of the parameters with units.
+        shares: parameters of the cars of the front relative to their bounds, 0 to 1; (f, p).
+        base_shares: parameters of the base car relative to their bounds, NaN if undefined; (p,).
     """
 
     objectives: Sequence[str]
@@ -55,7 +55,7 @@ def plot_front(path: Path, picture: FrontPicture, caption: str) -> None:
 
     Args:
         path: PNG or SVG file.
-        picture: what is drawn.
+        picture: data of the picture.
         caption: car, inputs, engine, number of cars.
     """
     pairs = list(combinations(range(len(picture.objectives)), 2))
@@ -78,7 +78,7 @@ def plot_front(path: Path, picture: FrontPicture, caption: str) -> None:
 
 
 def _objectives(axis: Any, picture: FrontPicture, x: int, y: int) -> None:
-    """Two objectives against each other."""
+    """Plot two objectives against each other."""
     axis.plot(*picture.tried[:, [x, y]].T, ".", color="#c9c9c9", markersize=3, zorder=1, label="cars tried")
     line = "-" if len(picture.objectives) == 2 else ""
     axis.plot(
@@ -99,9 +99,9 @@ def _objectives(axis: Any, picture: FrontPicture, x: int, y: int) -> None:
         axis.annotate("base car", base, (7, 7), textcoords="offset points", color=COLOURS[1], zorder=6)
     for mark, (label, values) in zip(MARKS, picture.named.items(), strict=False):
         axis.plot(*values[[x, y]], mark, color=COLOURS[1], markersize=8, zorder=4, label=label)
-    # Far cars of the first generations would press the front into a corner.
+    # Poor cars of the first generations would compress the front into a corner.
     shown = np.concatenate([picture.front, picture.base[None], *([picture.other[1]] if picture.other else [])])
-    shown = shown[np.all(np.isfinite(shown), axis=1)]  # a base car that cannot be run has no place
+    shown = shown[np.all(np.isfinite(shown), axis=1)]  # a base car that cannot be run has no objectives
     for column, limits in ((x, axis.set_xlim), (y, axis.set_ylim)):
         low, high = np.min(shown[:, column]), np.max(shown[:, column])
         margin = 0.15 * (high - low) or 0.05 * abs(high) or 1.0
@@ -110,7 +110,7 @@ def _objectives(axis: Any, picture: FrontPicture, x: int, y: int) -> None:
 
 
 def _along(axis: Any, picture: FrontPicture) -> None:
-    """Where the cars of the front lie between their bounds, along the first objective."""
+    """Plot the parameters of the front relative to their bounds, over the first objective."""
     for number, label in enumerate(picture.parameters):
         look = {"color": COLOURS[number % len(COLOURS)], "marker": DOTS[number % len(DOTS)]}
         axis.plot(picture.front[:, 0], picture.shares[:, number], linestyle="", markersize=4, label=label, **look)
@@ -123,7 +123,7 @@ def _along(axis: Any, picture: FrontPicture) -> None:
 
 
 def _course(axis: Any, picture: FrontPicture) -> None:
-    """How the only objective came to its best value."""
+    """Plot the convergence of a single objective."""
     values, best = picture.tried[:, 0], picture.front[0, 0]
     number = np.arange(1, len(values) + 1)
     so_far = np.minimum.accumulate(np.abs(values - best)) * np.sign(np.mean(values) - best) + best
@@ -135,17 +135,15 @@ def _course(axis: Any, picture: FrontPicture) -> None:
 
 
 def _bars(axis: Any, picture: FrontPicture) -> None:
-    """Where the best car lies between the bounds."""
-    places = np.arange(len(picture.parameters))
-    axis.barh(places, picture.shares[0], color=COLOURS[0], height=0.4, label="best car")
-    axis.plot(
-        picture.base_shares, places, "o", color="white", markeredgecolor=COLOURS[1], markersize=8, label="base car"
-    )
-    axis.set_yticks(places, picture.parameters)
-    axis.set(xlim=(0.0, 1.0), ylim=(-0.6, len(places) - 0.4), xlabel="place between the bounds [-]")
+    """Plot the parameters of the best car relative to their bounds as bars."""
+    rows = np.arange(len(picture.parameters))
+    axis.barh(rows, picture.shares[0], color=COLOURS[0], height=0.4, label="best car")
+    axis.plot(picture.base_shares, rows, "o", color="white", markeredgecolor=COLOURS[1], markersize=8, label="base car")
+    axis.set_yticks(rows, picture.parameters)
+    axis.set(xlim=(0.0, 1.0), ylim=(-0.6, len(rows) - 0.4), xlabel="place between the bounds [-]")
     axis.legend(**BELOW, ncols=2)
 
 
 def squared(label: str) -> str:
-    """A label with the unit m/s² as figures write it."""
+    """Replace the unit m/s2 in a label by m/s²."""
     return label.replace("m/s2", "m/s²")

@@ -1,7 +1,7 @@
-"""Grid lines as one collection of each axes, and ticks only where a label stands.
+"""Grid lines as one collection for each axes, and ticks only at labels.
 
-A tick of matplotlib is three lines and two texts, made for each place of each axes. Most places of a picture with
-shared scales have a grid line alone; five artists for each of them were most of the cost of such a picture.
+A tick of matplotlib consists of three lines and two texts. Most ticks of a picture with shared scales have only a grid
+line; five artists for each tick were most of the cost of these pictures.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ SIDES = {"x": ("bottom", "top"), "y": ("left", "right")}
 
 
 def bared(axes: Axes) -> dict[str, list[Group]]:
-    """Take the grid lines from the ticks, and the marks from ticks without a label: what has no part left is not made.
+    """Remove grid lines from ticks, and marks from ticks without a label, so that empty ticks are not created.
 
     Args:
-        axes: with its final limits, before a layout is found.
+        axes: axes with final limits, before the layout is computed.
 
     Returns:
-        "x" and "y" to the groups of ticks whose places had grid lines.
+        "x" and "y" to the groups of ticks that had grid lines.
     """
     from matplotlib.ticker import NullLocator
 
@@ -44,7 +44,7 @@ def bared(axes: Axes) -> dict[str, list[Group]]:
             if look["gridOn"]:
                 grid[name].append(group)
             labelled = any(look.get(f"label{side}", True) for side in sides)
-            # Of a logarithmic scale the small ticks have labels where it is short.
+            # Minor ticks of a short logarithmic scale have labels.
             if labelled and group == "minor":
                 labelled = any(axis.get_minor_formatter().format_ticks(axis.get_minorticklocs()))
             parts = () if labelled else (*sides, *(f"label{side}" for side in sides))
@@ -56,7 +56,7 @@ def draw_grid(axes: Axes, grid: Mapping[str, Sequence[Group]]) -> None:
     """Draw the lines of `bared` over the whole axes.
 
     Args:
-        axes: in its final place and size, which automatic ticks go by.
+        axes: axes with final position and size, which determine automatic ticks.
         grid: "x" and "y" to groups of ticks.
     """
     from matplotlib import rcParams
@@ -76,6 +76,6 @@ def draw_grid(axes: Axes, grid: Mapping[str, Sequence[Group]]) -> None:
             linestyles=rcParams["grid.linestyle"],
             capstyle="projecting",
             transform=getattr(axes, f"get_{name}axis_transform")(),
-            zorder=0.5,  # that of ticks which lie below the data
+            zorder=0.5,  # as ticks below the data
         )
         axes.add_collection(lines, autolim=False)

@@ -1,4 +1,4 @@
-"""The picture of an axle's kinematics: camber, toe, paths and load over the wheel travel."""
+"""Picture of axle kinematics: camber, toe, paths and load over the wheel travel."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ PANELS: dict[str, dict[str, str]] = {
 
 
 def plot_kinematics(path: Path, poses: Sequence[WheelPose], title: str, caption: str) -> None:
-    """Write the picture.
+    """Write the picture of axle kinematics.
 
     Args:
         path: PNG file.
-        poses: of the wheel on the right, in the order of their travel.
-        title: above the picture.
-        caption: below it.
+        poses: poses of the right wheel in the order of travel.
+        title: title above the picture.
+        caption: caption below the picture.
     """
 
     def values(name: str) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Where things are in a frame of a film, and how large what is written on it."""
+"""Positions and font sizes in a frame of a film."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from PIL import ImageFont
 from vehicle.errors import ConfigurationError
 
 Picture = npt.NDArray[np.uint8]
-"""Red, green and blue, (height, width, 3), first row on top."""
+"""Picture: red, green and blue, (height, width, 3), first row on top."""
 
 SMALLEST = (320, 180)
-"""Width and height of a frame that can still be read [pixel]."""
+"""Minimum width and height of a readable frame [pixel]."""
 
 
 INK = (28, 37, 48)
@@ -49,45 +49,45 @@ class Layout:
 
     @property
     def view_height(self) -> int:
-        """Height of the views of the car [pixel]."""
+        """Return the height of the views of the car [pixel]."""
         return round(0.79 * self.height)
 
     @property
     def main_width(self) -> int:
-        """Width of the view of the whole car [pixel]."""
+        """Return the width of the view of the whole car [pixel]."""
         return round(0.70 * self.width)
 
     @property
     def trace_left(self) -> int:
-        """Left edge of the traces [pixel]."""
+        """Return the left edge of the traces [pixel]."""
         return round(0.19 * self.width)
 
     def px(self, length: float) -> int:
-        """A length of the 720 line picture in this picture [pixel]."""
+        """Scale a length in a picture of 720 lines to this picture [pixel]."""
         return max(round(length * self.height / 720.0), 1)
 
     def font(self, size: float, bold: bool = False) -> ImageFont.FreeTypeFont:
-        """Letters of a size in the 720 line picture, never too small to read."""
+        """Return the font for a size in a picture of 720 lines, with a readable minimum."""
         return font(max(round(size * self.height / 720.0), 6), bold)
 
 
 class OneView(Layout):
-    """Frame that the whole car fills: nothing beside or below it."""
+    """Frame with a single view of the whole car."""
 
     @property
     def view_height(self) -> int:
-        """Height of the view of the car [pixel]."""
+        """Return the height of the view of the car [pixel]."""
         return self.height
 
     @property
     def main_width(self) -> int:
-        """Its width [pixel]."""
+        """Return the width of the view of the car [pixel]."""
         return self.width
 
 
 @cache
 def font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
-    """DejaVu Sans of a size [pixel], which comes with matplotlib."""
+    """Return DejaVu Sans of a size [pixel], which is a part of matplotlib."""
     import matplotlib
 
     name = "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf"

@@ -1,4 +1,4 @@
-"""The picture of load spectra: how many cycles reach a range, for the strongest loads of each kind."""
+"""Picture of load spectra: number of cycles over the range, for the largest loads of each type."""
 
 from __future__ import annotations
 
@@ -15,36 +15,41 @@ PANELS = {
     "suspension travel: range [mm]": (r".*", "m", 1e3),
     "joint springs: range [N m]": (r".*", "N m", 1.0),
 }
-"""Label of each panel to the names, the unit and the scale of its loads; a load is in the first that fits."""
+"""Label of each panel to the names, the unit and the scale of its loads; a load is in the first matching panel."""
 
 FEWEST = 0.25
 """Cycles at which the pictures begin: half of the half cycle that a record may hold."""
 
 
 def plot_loads(path: Path, loads: Sequence[LoadSpectrum], caption: str) -> None:
-    """Write the picture.
+    """Write the picture of load spectra.
 
     Args:
         path: PNG file.
-        loads: with their cycles; of each panel the strongest are drawn, as many as there are colours.
-        caption: below it.
+        loads: loads with their cycles; each panel shows as many of the largest as there are colours.
+        caption: caption below the picture.
     """
-    left = [one for one in loads if one.counted.ranges.size]
+    left = [load for load in loads if load.counted.ranges.size]
     panels: dict[str, list[LoadSpectrum]] = {}
     for label, (form, unit, _) in PANELS.items():
-        own = [one for one in left if one.unit == unit and re.match(form, one.name)]
-        left = [one for one in left if one not in own]
-        if own:
-            panels[label] = sorted(own, key=lambda one: -one.equivalent_amplitude)[: len(COLOURS)]
+        panel_loads = [load for load in left if load.unit == unit and re.match(form, load.name)]
+        left = [load for load in left if load not in panel_loads]
+        if panel_loads:
+            panels[label] = sorted(panel_loads, key=lambda load: -load.equivalent_amplitude)[: len(COLOURS)]
     with saved_figure(path, (12.0, 8.0), "Load spectra: cycles with at least a range", caption) as figure:
-        for number, (label, own) in enumerate(panels.items()):
+        for number, (label, panel_loads) in enumerate(panels.items()):
             axis = figure.add_subplot(2 if len(panels) > 2 else 1, 2 if len(panels) > 1 else 1, number + 1)
             scale = PANELS[label][2]
-            for colour, line, one in zip(COLOURS, LINES, own, strict=False):
-                # The largest range is reached by every smaller number of cycles.
-                cycles, ranges = one.counted.exceeded(), scale * one.counted.ranges
+            for colour, line, load in zip(COLOURS, LINES, panel_loads, strict=False):
+                # Extend the largest range to smaller numbers of cycles.
+                cycles, ranges = load.counted.exceeded(), scale * load.counted.ranges
                 axis.step(
-                    [*cycles, FEWEST], [*ranges, ranges[-1]], where="post", color=colour, linestyle=line, label=one.name
+                    [*cycles, FEWEST],
+                    [*ranges, ranges[-1]],
+                    where="post",
+                    color=colour,
+                    linestyle=line,
+                    label=load.name,
                 )
             axis.set(xscale="log", xlabel="cycles", ylabel=label)
             axis.set_xlim(left=FEWEST)

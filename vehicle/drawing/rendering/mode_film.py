@@ -1,4 +1,4 @@
-"""The film of a mode: a few of its cycles, which join without a seam where the film is repeated."""
+"""Film of a mode: a few cycles that repeat without a jump."""
 
 from __future__ import annotations
 
@@ -30,37 +30,37 @@ PERIOD, CYCLES = 40, 3
 """Frames of a cycle, and cycles of the film: 4 s."""
 
 FARTHEST = 1e-3
-"""Amplitude of the point of the car that moves farthest [m]: a mode has none of its own."""
+"""Amplitude of the point of the car with the largest displacement [m]; the amplitude of a mode is arbitrary."""
 
 EXAGGERATION = 100.0
-"""Factor of all motion: the farthest point is drawn with 10 cm."""
+"""Exaggeration of all motion: the largest displacement is drawn as 10 cm."""
 
 
 class MovingMode(Protocol):
-    """A damped mode u(t) = Re(shape exp(s t))."""
+    """Damped mode u(t) = Re(shape exp(s t))."""
 
     @property
     def frequency(self) -> float:
-        """Natural frequency |s| / 2 pi [Hz]."""
+        """Return the natural frequency |s| / 2 pi [Hz]."""
 
     @property
     def damping_ratio(self) -> float:
-        """-Re(s) / |s| [-]."""
+        """Return the damping ratio -Re(s) / |s| [-]."""
 
     @property
     def shape(self) -> npt.NDArray[np.complex128]:
-        """Displacement of the velocity coordinates, (nv,)."""
+        """Return the displacement of the velocity coordinates, (nv,)."""
 
     @property
     def description(self) -> str:
-        """What moves."""
+        """Return the name of the motion."""
 
 
 class ModeMotion(Motion):
-    """Motion of every body in a mode without its decay: u = Re(J shape exp(i phase)), J that of the design position.
+    """Motion of every body in a mode without its decay: u = Re(J shape exp(i phase)), J in the design position.
 
     Args:
-        model: the model, or one with the same joints.
+        model: the model, or a model with the same joints.
         shape: displacement of the velocity coordinates, (nv,).
     """
 
@@ -75,19 +75,21 @@ class ModeMotion(Motion):
         self.modal_amplitude = shape[model.jnt_dofadr[self.modal]]
 
     def at(self, phase: float) -> State:
-        """State at a phase [rad] of the cycle."""
-        turn = np.exp(1j * phase)
-        moved = (self.amplitude * turn).real
-        return State(translation=moved[:, 0], rotation=moved[:, 1], modal=(self.modal_amplitude * turn).real)
+        """Return the state at a phase [rad] of the cycle."""
+        phasor = np.exp(1j * phase)
+        displacement = (self.amplitude * phasor).real
+        return State(
+            translation=displacement[:, 0], rotation=displacement[:, 1], modal=(self.modal_amplitude * phasor).real
+        )
 
 
 class ModeShot:
-    """One cycle of a mode, ready to be drawn frame by frame.
+    """One cycle of a mode for drawing frame by frame.
 
     Args:
-        car: the car.
-        mode: one of its modes.
-        layout: frame.
+        car: compiled car.
+        mode: mode of the car.
+        layout: layout of the frame.
     """
 
     def __init__(self, car: CarModel, mode: MovingMode, layout: OneView) -> None:
@@ -136,15 +138,15 @@ def mode_film(
     """Write the film of a mode as H.264 in MP4.
 
     Args:
-        car: the car.
-        mode: one of its modes.
+        car: compiled car.
+        mode: mode of the car.
         path: MP4 file.
         size: width and height [pixel], even.
         progress: called with the finished fraction.
 
     Raises:
         ConfigurationError: the size cannot be encoded or read.
-        MissingPartError: no off-screen OpenGL library or no ffmpeg.
+        MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
         OutputError: the file cannot be written.
     """
     backend = choose_backend()

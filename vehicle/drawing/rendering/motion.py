@@ -39,13 +39,13 @@ class State:
 
 
 class Motion:
-    """Places of everything on the bodies in a state of motion.
+    """Positions and orientations of bodies, geoms and points in a state of motion.
 
     Args:
-        model: the model, or one with the same joints.
+        model: the model, or a model with the same joints.
 
     Attributes:
-        modal: numbers of the joints that are modal coordinates of the flexible body.
+        modal: indices of the joints that are modal coordinates of the flexible body.
         position, orientation: design pose of every body, (bodies, 3) [m] and (bodies, 3, 3).
         geom_position, geom_orientation: the same for the geoms inside their bodies.
     """
@@ -63,39 +63,39 @@ class Motion:
         ).as_matrix()
 
     def poses(self, state: State, factor: float) -> tuple[Vector, Vector]:
-        """Exaggerated poses of all bodies: positions [m], (bodies, 3), and orientations, (bodies, 3, 3)."""
-        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation).as_matrix()
-        return self.position + factor * state.translation, turned @ self.orientation
+        """Return exaggerated poses of all bodies: positions [m], (bodies, 3), and orientations, (bodies, 3, 3)."""
+        rotation_matrix = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation).as_matrix()
+        return self.position + factor * state.translation, rotation_matrix @ self.orientation
 
     def geoms(self, state: State, factor: float) -> tuple[Vector, Vector]:
-        """Exaggerated poses of all geoms: positions [m], (geoms, 3), and orientations, (geoms, 9)."""
+        """Return exaggerated poses of all geoms: positions [m], (geoms, 3), and orientations, (geoms, 9)."""
         position, orientation = self.poses(state, factor)
         body = self.model.geom_bodyid
-        where = position[body] + np.einsum("gij,gj->gi", orientation[body], self.geom_position)
-        return where, (orientation[body] @ self.geom_orientation).reshape(-1, 9)
+        geom_position = position[body] + np.einsum("gij,gj->gi", orientation[body], self.geom_position)
+        return geom_position, (orientation[body] @ self.geom_orientation).reshape(-1, 9)
 
     def moved(self, state: State, factor: float, body: int, points: Vector) -> Vector:
-        """Exaggerated places [m] of points that sit at `points` [m] in the design position, both (n, 3)."""
-        turned = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
+        """Return exaggerated positions [m] of points of a body, given in the design position [m], both (n, 3)."""
+        rotation_matrix = scipy.spatial.transform.Rotation.from_rotvec(factor * state.rotation[body]).as_matrix()
         arm = points - self.position[body]
-        return np.asarray(self.position[body] + factor * state.translation[body] + arm @ turned.T)
+        return np.asarray(self.position[body] + factor * state.translation[body] + arm @ rotation_matrix.T)
 
 
 class RecordedMotion(Motion):
-    """Motion of every body over a stretch of a recording, smooth between the stored poses.
+    """Motion of every body in a time window of a recording, interpolated between the stored poses.
 
     Args:
-        model: the model, or one with the same joints.
-        recording: what is replayed.
-        start, end: stretch [s].
+        model: the model, or a model with the same joints.
+        recording: recording to replay.
+        start, end: time window [s].
 
     Attributes:
-        time: times of the stored poses of the stretch [s], (f,).
+        time: times of the stored poses in the window [s], (f,).
     """
 
     def __init__(self, model: mujoco.MjModel, recording: Recording, start: float, end: float) -> None:
         super().__init__(model)
-        # One pose more on each side keeps the ends of the interpolation out of sight.
+        # One more pose on each side keeps the ends of the spline outside the window.
         first = max(int(np.searchsorted(recording.pose_time, start, side="right")) - 2, 0)
         last = min(int(np.searchsorted(recording.pose_time, end)) + 2, len(recording.pose_time))
         self.time = recording.pose_time[first:last]
@@ -103,28 +103,28 @@ class RecordedMotion(Motion):
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
         plates = {wheel: int(model.body_mocapid[model.body(f"plate_{wheel}").id]) for wheel in wheels_of(recording)}
-        rest, rows = data.mocap_pos.copy(), []
+        design_plates, rows = data.mocap_pos.copy(), []
         for index in range(first, last):
             data.qpos[:] = recording.poses[index]
             for wheel, plate in plates.items():
                 lift = np.interp(recording.pose_time[index], recording.time, recording[f"plate_{wheel}_displacement"])
-                data.mocap_pos[plate] = rest[plate] + np.array([0.0, 0.0, lift])
+                data.mocap_pos[plate] = design_plates[plate] + np.array([0.0, 0.0, lift])
             mujoco.mj_kinematics(model, data)
-            turned = data.xmat.reshape(-1, 3, 3) @ self.orientation.transpose(0, 2, 1)
-            rotation = scipy.spatial.transform.Rotation.from_matrix(turned).as_rotvec()
+            rotation_matrix = data.xmat.reshape(-1, 3, 3) @ self.orientation.transpose(0, 2, 1)
+            rotation = scipy.spatial.transform.Rotation.from_matrix(rotation_matrix).as_rotvec()
             rows.append(np.concatenate([(data.xpos - self.position).ravel(), rotation.ravel(), data.qpos[columns]]))
         self.curve = scipy.interpolate.CubicSpline(self.time, np.array(rows), axis=0)
         self.integral = self.curve.antiderivative()
 
     def at(self, time: float, exposure: float = 0.0) -> State:
-        """Motion at a time, or its mean over an exposure about that time.
+        """Return the motion at a time, or its mean over an exposure about that time.
 
-        A film of 30 pictures per second cannot show 28 Hz: sampled, it would look like 2 Hz. As in a camera with an
-        open shutter, the mean over the time between two pictures takes that away.
+        A film with 30 frames per second cannot show 28 Hz: aliasing would make it 2 Hz. As in a camera with an open
+        shutter, the mean over the time between two frames removes the alias.
 
         Args:
-            time: [s].
-            exposure: [s]; 0 for the instant.
+            time: time [s].
+            exposure: exposure time [s]; 0 for the instant.
 
         Returns:
             The motion.
@@ -144,7 +144,7 @@ class RecordedMotion(Motion):
 
 
 def coil_seats(composition: Composition, spring: PlacedSpring) -> list[str]:
-    """Bodies that carry the lower and the upper seat: parts that are drawn to its ends, else those that it acts on."""
+    """Return the bodies of the lower and the upper seat: parts drawn at its ends, else the parts of the spring."""
     drawn = [part for part in composition.parts if part.shape != "none"]
     return [
         next((part.name for part in drawn if end in part.points.values()), body)
@@ -153,15 +153,15 @@ def coil_seats(composition: Composition, spring: PlacedSpring) -> list[str]:
 
 
 class Coil:
-    """Coil between its seats.
+    """Mesh of a coil spring that deforms with its seats.
 
-    A vertex at the share s of the way up moves by (1 - s) times what the lower seat would move it, and s times what
-    the upper one would.
+    A vertex at the relative height s moves by (1 - s) times the motion of the lower seat plus s times that of the upper
+    seat.
 
     Args:
         motion: motion of the bodies.
-        composition: of the car.
-        spring: one of its springs.
+        composition: composition of the car.
+        spring: a spring of the car.
     """
 
     def __init__(self, motion: Motion, composition: Composition, spring: PlacedSpring) -> None:
@@ -181,12 +181,12 @@ class Coil:
         self.share = ((height - height.min()) / np.ptp(height))[:, None]
 
     def places(self, state: State, factor: float) -> Vector:
-        """Exaggerated places of the vertices [m], (n, 3)."""
+        """Return the exaggerated positions of the vertices [m], (n, 3)."""
         low, high = (self.motion.moved(state, factor, seat, self.rest) for seat in (self.lower, self.upper))
         return np.asarray((1.0 - self.share) * low + self.share * high)
 
     def write(self, data: mujoco.MjData, places: Vector) -> None:
-        """Put the vertices into the model and the geom back to its design pose; OpenGL needs the mesh again."""
+        """Write the vertices to the model and reset the geom to its design pose; OpenGL must then reload the mesh."""
         self.motion.model.mesh_vert[self.rows] = (places - self.origin) @ self.frame
         data.geom_xpos[self.geom] = self.origin
         data.geom_xmat[self.geom] = self.frame.ravel()

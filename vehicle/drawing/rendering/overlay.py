@@ -1,4 +1,4 @@
-"""What is written on a frame of a run: input, time, lamps, colour bar with its scale, traces."""
+"""Text on a frame of a run: input, time, lamps, colour bar, traces."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ STICK_COLOUR, SLIP_COLOUR = (tuple(bytes.fromhex(COLOURS[place][1:])) for place 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Overlay(Caption):
-    """Draws onto frames of a run."""
+    """Writer of text and traces on frames of a run."""
 
     strip: TraceStrip
-    """what runs along below"""
+    """traces below the views"""
 
     def draw(self, picture: Picture, time: float, lamps: Mapping[str, bool]) -> Picture:
-        """Finish a frame.
+        """Compose a frame.
 
         Args:
             picture: views of the car, (height above the traces, width, 3).
-            time: [s].
-            lamps: label of each damper, and whether it slips: is faster than `damper.slip_velocity`, as in all tables.
+            time: time [s].
+            lamps: label of each damper to True if it slips, that is, moves faster than `damper.slip_velocity`.
 
         Returns:
             The whole frame, (height, width, 3).
@@ -45,11 +45,11 @@ class Overlay(Caption):
         return np.asarray(image)
 
     def _lamps(self, pen: ImageDraw.ImageDraw, lamps: Mapping[str, bool]) -> None:
-        """One lamp for each damper on a white plate above the close-up."""
+        """Draw a lamp for each damper on a white background above the close-up."""
         px, font = self.layout.px, self.layout.font
         right, radius, row = self.layout.width - px(12), px(9), px(30)
         longest = max((font(16).getlength(label) for label in lamps), default=0.0)
-        # A label, its lamp on the left and the word on the right.
+        # A label, with the lamp on the left and the text on the right.
         left, top = right - max(px(236), round(longest) + px(112)), px(12)
         pen.rounded_rectangle([left, top, right, top + row * len(lamps) + px(6)], px(8), fill=PAPER)
         for number, (label, slipping) in enumerate(lamps.items()):

@@ -1,4 +1,4 @@
-"""The picture of modal participation: contributions to a place over frequency, and what makes it loud at one."""
+"""Picture of modal participation: contributions to an acceleration over frequency, and their shares at one line."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 OTHERS = "#bdbdbd"
-"""Colour of the sum of what has no colour of its own."""
+"""Colour of the sum of contributions without a separate colour."""
 
 HATCHES = ("", "//", "..", "\\\\", "xx")
-"""Beside the colours, so that print in black tells the areas apart."""
+"""Hatches in addition to the colours, to distinguish areas in black-and-white print."""
 
 MOST_BARS = 10
 
@@ -35,20 +35,20 @@ def plot_participation(
     driven: tuple[str, Mapping[str, float]],
     about: str,
 ) -> None:
-    """Write the picture.
+    """Write the picture of modal participation.
 
     Args:
         path: PNG file.
-        place: whose acceleration it is.
-        frequency: [Hz], (m,).
+        place: name of the acceleration channel.
+        frequency: lines [Hz], (m,).
         parts: contributions in phase with their sum [m/s2 per m], (m,) each; they add up to its magnitude.
         at: frequency of the bars [Hz].
-        shares: of the contributions there [-].
-        driven: a mode, and the shares of the attachments in the force on it there [-].
-        about: which place of which car, and how it is driven.
+        shares: shares of the contributions at that frequency [-].
+        driven: name of a mode, and the shares of the attachments in its modal force at that frequency [-].
+        about: description of car, channel and input.
     """
     total = np.sum(list(parts.values()), axis=0)
-    # The colours are for those that are large where the place is loud.
+    # Colour the contributions that are largest where the response is large.
     weight = {name: float(np.sum(np.abs(part) * total)) for name, part in parts.items()}
     own = sorted(weight, key=lambda name: -weight[name])[: len(COLOURS)]
     areas = {name: parts[name] for name in own}
@@ -90,25 +90,25 @@ def plot_participation(
 
 
 def _bars(axis: Axes, shares: Mapping[str, float], colours: Mapping[str, str], label: str) -> None:
-    """Bars of the largest shares, and one of the sum of the others."""
+    """Draw bars of the largest shares and a bar of the sum of the others."""
     order = sorted(shares, key=lambda name: -abs(shares[name]))
     shown = {name: shares[name] for name in order[:MOST_BARS]}
     if order[MOST_BARS:]:
         shown[f"the other {len(order) - MOST_BARS}"] = sum(shares[name] for name in order[MOST_BARS:])
     values = [100.0 * share for share in shown.values()]
-    places = np.arange(len(values))
-    axis.barh(places, values, color=[colours.get(name, OTHERS) for name in shown])
+    rows = np.arange(len(values))
+    axis.barh(rows, values, color=[colours.get(name, OTHERS) for name in shown])
     axis.axvline(0.0, color=INK, linewidth=0.6)
-    axis.set_yticks(places, list(shown))
+    axis.set_yticks(rows, list(shown))
     axis.invert_yaxis()
     axis.grid(visible=False, axis="y")
     axis.margins(x=0.18)
     axis.set(xlabel=label)
-    for place, value in zip(places, values, strict=True):
+    for row, value in zip(rows, values, strict=True):
         side = 3 if value >= 0.0 else -3
         axis.annotate(
             f"{round(value) + 0:+d}",
-            (value, float(place)),
+            (value, float(row)),
             (side, 0),
             textcoords="offset points",
             va="center",

@@ -1,7 +1,7 @@
-"""Axes at places given in inches.
+"""Axes at fixed positions in inches.
 
-A layout that is found from the words as they are drawn costs more than the drawing. The pictures of a run have the same
-words every time, so that the room they need is known.
+Computing a layout from the drawn text costs more than the drawing. The pictures of a run always have the same text, so
+its size is known in advance.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LABEL_DISTANCE = 0.52
-"""From an axis to the near edge of its vertical label [inch]: room for five digits, a sign and a point."""
+"""Distance from an axis to its vertical label [inch]: space for five digits, a sign and a point."""
 
 LABEL_DEPTH = 0.25
-"""From an axis to the upper edge of its horizontal label [inch]."""
+"""Distance from an axis to the upper edge of its horizontal label [inch]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Margins:
-    """Room around and between axes [inch]."""
+    """Margins around and between axes [inch]."""
 
     left: float
     right: float
@@ -46,14 +46,14 @@ def placed_axes(
     sharex: bool = False,
     sharey: Literal["row", "none"] = "none",
 ) -> npt.NDArray[Any]:
-    """Axes in rows and columns, whose labels and titles have fixed places too.
+    """Return axes in rows and columns, with labels and titles at fixed positions.
 
     Args:
-        figure: the figure, as of `saved_figure` with `placed`.
-        margins: room around them.
-        widths: of the columns, relative to each other.
-        heights: of the rows.
-        sharex: one horizontal scale for all.
+        figure: figure from `saved_figure` with `placed`.
+        margins: margins around and between the axes.
+        widths: relative widths of the columns.
+        heights: relative heights of the rows.
+        sharex: share one horizontal scale.
         sharey: "row" for one vertical scale in each row.
 
     Returns:
@@ -79,5 +79,5 @@ def placed_axes(
         for axis, along in zip(row, widths, strict=True):
             axis.yaxis.set_label_coords(-LABEL_DISTANCE * sum(widths) / (wide * along), 0.5)
             axis.xaxis.set_label_coords(0.5, -LABEL_DEPTH * sum(heights) / (high * upward))
-            axis.set_title("", y=1.0)  # left to itself, it looks for what it could stand on
+            axis.set_title("", y=1.0)  # otherwise matplotlib searches for a free position
     return axes

@@ -55,11 +55,11 @@ SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", INK, "#fff3c4"
 
 
 def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str, title: str = "") -> None:
-    """Write the FRF picture: magnitudes with the 95 % band of their random error, grey where the input tells nothing.
+    """Write the FRF picture: magnitudes with the 95 % band of their random error, grey outside the band of the input.
 
     Args:
         path: PNG file.
-        run: the run; tells the excited wheel.
+        run: the run, with its excited wheel.
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
         caption: line under the picture: input, level, estimator.
         title: what the FRFs are to, where that is not one plate.
@@ -91,13 +91,13 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         for column, (title, labels) in enumerate(groups.items()):
             magnitude, phase, coherence = axes[:, column]
             for number, (name, label) in enumerate(labels.items()):
-                # The mount stands in both columns and looks the same in both.
-                place = 4 if name in mount else number
-                style = {"color": COLOURS[place], "linestyle": LINES[place]}
+                # The mount is in both columns, with the same style.
+                colour = 4 if name in mount else number
+                style = {"color": COLOURS[colour], "linestyle": LINES[colour]}
                 row = rows[name]
                 values, error = np.abs(response.response[row]), REGION * response.random_error[row]
                 low = np.maximum(values - error, 0.01 * values)
-                magnitude.fill_between(frequency, low, values + error, alpha=0.25, linewidth=0.0, color=COLOURS[place])
+                magnitude.fill_between(frequency, low, values + error, alpha=0.25, linewidth=0.0, color=COLOURS[colour])
                 fading(magnitude, frequency, values, response.coherence[row], label, **style)
                 phase.plot(frequency, wrapped_phase(response.response[row]), **style)
                 coherence.plot(frequency, response.coherence[row], **style)
@@ -188,14 +188,14 @@ def plot_time(path: Path, run: RecordedRun) -> None:
 
 
 def outline(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
-    """A long history by the least and the largest value of short pieces, which looks the same at any width of a page.
+    """Reduce a long history to minimum and maximum of short segments, which looks the same at any width of a page.
 
     Args:
-        time: [s], (n,).
-        values: (n,).
+        time: sample times [s], (n,).
+        values: samples, (n,).
 
     Returns:
-        Both as they are up to `MOST_POINTS`; else (m,), m <= `MOST_POINTS`, both values at the first time of a piece.
+        Time and values, unchanged up to `MOST_POINTS`; otherwise both extremes at the first time of each segment.
     """
     if time.size <= MOST_POINTS:
         return time, values
@@ -205,27 +205,27 @@ def outline(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> t
 
 
 def distinct(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
-    """A cloud of dots without those that lie on others, so that a long record keeps its rare ones.
+    """Remove dots of a scatter plot that lie on others, so that rare dots of a long record remain.
 
     Args:
-        x: (n,).
-        y: (n,).
+        x: horizontal values, (n,).
+        y: vertical values, (n,).
 
     Returns:
-        One point of each occupied cell of the cloud's range, both (m,).
+        One point of each occupied cell of the range, both (m,).
     """
-    spans = [(float(place.min()), float(np.ptp(place)) or 1.0) for place in (x, y)]
-    cells = kept = np.zeros(0, dtype=np.int64)
+    spans = [(float(values.min()), float(np.ptp(values)) or 1.0) for values in (x, y)]
+    cells = selected = np.zeros(0, dtype=np.int64)
     for first in range(0, x.size, DOTS_AT_ONCE):
         column, row = (
-            np.rint((place[first : first + DOTS_AT_ONCE] - low) / span * CELLS).astype(np.int64)
-            for place, (low, span) in zip((x, y), spans, strict=True)
+            np.rint((values[first : first + DOTS_AT_ONCE] - low) / span * CELLS).astype(np.int64)
+            for values, (low, span) in zip((x, y), spans, strict=True)
         )
-        cells, at = np.unique(np.concatenate([cells, column * (CELLS + 1) + row]), return_index=True)
-        kept = np.concatenate([kept, np.arange(first, first + column.size)])[at]
-    return x[kept], y[kept]
+        cells, index = np.unique(np.concatenate([cells, column * (CELLS + 1) + row]), return_index=True)
+        selected = np.concatenate([selected, np.arange(first, first + column.size)])[index]
+    return x[selected], y[selected]
 
 
-def _each(channel: str, label: str, these: Sequence[str], wheels: Sequence[str]) -> dict[str, str]:
-    """Channel of each of these wheels to its legend text; `wheels` are all of the car."""
-    return {channel.format(wheel): f"{label} {side_of(wheel, wheels)}" for wheel in these}
+def _each(channel: str, label: str, selected: Sequence[str], wheels: Sequence[str]) -> dict[str, str]:
+    """Return the channel of each selected wheel with its legend text; `wheels` are all wheels of the car."""
+    return {channel.format(wheel): f"{label} {side_of(wheel, wheels)}" for wheel in selected}

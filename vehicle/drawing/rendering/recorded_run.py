@@ -1,4 +1,4 @@
-"""What a plot or a film asks of a run: any object with these properties will do; its wheels and its best moment."""
+"""Protocol of a run for plots and films, and functions for its wheels and for the choice of an excerpt."""
 
 from __future__ import annotations
 
@@ -17,79 +17,79 @@ Vector = npt.NDArray[np.float64]
 
 
 class RecordedSignal(Protocol):
-    """The excitation of a run."""
+    """Excitation of a run."""
 
     @property
     def source(self) -> str:
-        """Name of the file or of the generator."""
+        """Return the name of the file or of the generator."""
 
     def rms(self, wheel: str) -> float:
-        """RMS of the displacement of a plate [m]."""
+        """Return the RMS of the displacement of a plate [m]."""
 
 
 class RecordedCar(Protocol):
-    """The car of a run."""
+    """Car of a run."""
 
     @property
     def model(self) -> CarModel:
-        """Its compiled model with the parameters behind it."""
+        """Return the compiled model with the parameters of the car."""
 
 
 class RecordedRun(Protocol):
-    """A finished run."""
+    """Finished run."""
 
     @property
     def car(self) -> RecordedCar:
-        """The car that ran."""
+        """Return the car."""
 
     @property
     def signal(self) -> RecordedSignal:
-        """The signal it ran on."""
+        """Return the input signal."""
 
     @property
     def recording(self) -> Recording:
-        """What the run left behind."""
+        """Return the recording."""
 
     @property
     def wheel(self) -> str:
-        """The excited wheel; the right one where both are."""
+        """Return the excited wheel; the right wheel if both are excited."""
 
 
 def wheels_of(recording: Recording) -> tuple[str, ...]:
-    """Names of the wheels of a car: those whose plates are recorded, in the order of the channels."""
+    """Return the names of the wheels with recorded plates, in the order of the channels."""
     return _between(recording, "plate_", "_displacement")
 
 
 def dampers_of(recording: Recording) -> tuple[str, ...]:
-    """Names of the dampers behind "damper_": those of their wheels, in the order of the channels."""
+    """Return the names of the dampers after "damper_", the names of their wheels, in the order of the channels."""
     return _between(recording, "damper_", "_velocity")
 
 
 def _between(recording: Recording, start: str, end: str) -> tuple[str, ...]:
-    found = [name for name in recording.channels if name.startswith(start) and name.endswith(end)]
-    return tuple(name.removeprefix(start).removesuffix(end) for name in found)
+    names = [name for name in recording.channels if name.startswith(start) and name.endswith(end)]
+    return tuple(name.removeprefix(start).removesuffix(end) for name in names)
 
 
 def hub_of(composition: Composition, wheel: str) -> str:
-    """The part that carries a wheel."""
-    rolling = next(one.part for one in composition.wheels if one.name == wheel)
+    """Return the name of the part that carries a wheel."""
+    rolling = next(placed.part for placed in composition.wheels if placed.name == wheel)
     return next(part.parent for part in composition.parts if part.name == rolling)
 
 
 def hub_channel(composition: Composition, wheel: str) -> str:
-    """Channel of the vertical acceleration on the part that carries a wheel; the tyre force where none is recorded."""
+    """Return the vertical acceleration channel of the part that carries a wheel, or else the tyre force channel."""
     hub = hub_of(composition, wheel)
     names = [output.name for output in composition.outputs if output.on == hub]
     return f"{names[0]}_acc_z" if names else f"tyre_{wheel}_force_z"
 
 
 def level_words(recording: Recording, wheel: str, rms: float) -> str:
-    """How large a plate moves, in words: a bump by its height, what goes on by its RMS.
+    """Describe the size of a plate motion: the height of a bump, or the RMS of a continuous motion.
 
     Args:
-        recording: the run.
-        wheel: whose plate.
-        rms: of its displacement [m].
+        recording: recording of the run.
+        wheel: wheel of the plate.
+        rms: RMS of the plate displacement [m].
     """
     plate = 1e3 * recording[f"plate_{wheel}_displacement"]
     largest = float(np.max(np.abs(plate, out=plate)))
@@ -99,19 +99,19 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
 
 
 BUMP_SHARE = 0.5
-"""Share of the record below which a plate that moves is one single event."""
+"""Maximum share of the record in which the plate is displaced for a motion to count as a single bump."""
 
 
 def liveliest(time: Vector, values: Vector, length: float) -> float:
-    """Start [s] of the stretch of a given length with the largest mean square of a channel.
+    """Return the start [s] of the time window of a given length with the largest mean square of a channel.
 
     Args:
         time: uniform sample times [s], (n,).
         values: channel, (n,).
-        length: of the stretch [s]; the whole record where it is shorter.
+        length: length of the window [s]; limited to the record.
 
     Returns:
-        First time of the stretch [s].
+        First time of the window [s].
     """
     count = min(round(length / (time[1] - time[0])) + 1, len(time))
     sums = np.zeros(len(time) + 1)
@@ -120,17 +120,17 @@ def liveliest(time: Vector, values: Vector, length: float) -> float:
 
 
 def excerpt_start(recording: Recording, wheel: str, hub: str, slip_velocity: float, length: float) -> tuple[float, str]:
-    """Choose a stretch: where the damper of a wheel works most; where it never slips, where the knuckle shakes most.
+    """Choose the time window with the largest damper motion of a wheel; without slip, with the largest knuckle motion.
 
     Args:
-        recording: the run.
+        recording: recording of the run.
         wheel: the excited wheel.
-        hub: channel that tells how the part shakes that carries it.
-        slip_velocity: [m/s].
-        length: of the stretch [s].
+        hub: acceleration channel of the part that carries the wheel.
+        slip_velocity: damper velocity above which the damper slips [m/s].
+        length: length of the window [s].
 
     Returns:
-        First time [s], and why.
+        First time [s], and the reason for the choice.
     """
     velocity = recording.channels.get(f"damper_{wheel}_velocity")
     if velocity is not None and np.any(np.abs(velocity) > slip_velocity):

@@ -1,4 +1,4 @@
-"""Any FRFs over each other: magnitude, phase and coherence."""
+"""Plot of FRFs over each other: magnitude, phase and coherence."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from vehicle.signals.analysis.frf import FrequencyResponse
 def plot_response(
     path: Path, response: FrequencyResponse, names: Sequence[str], title: str = "", caption: str = ""
 ) -> None:
-    """Write FRFs over each other.
+    """Plot FRFs over each other.
 
     Args:
         path: PNG or SVG file.
         response: FRFs to the plate displacement [m/s2 per m].
-        names: of its rows.
+        names: names of the rows.
         title, caption: above and below the figure.
     """
     with saved_figure(path, (8.0, 7.2), title, caption) as figure:

@@ -1,10 +1,11 @@
-"""The road that passes under the wheels: a strip for each track, as high as the plates that stood for it.
+"""Road under the wheels: a strip for each track, whose height is computed from the plate displacement.
 
-A wheel at x0 whose plate has the height z(t) meets at the time t what lies at x at the time t + (x0 - x) / V, so
+A wheel at x0 with the plate displacement z(t) reaches at the time t the point of the road that is at x at the time
+t + (x0 - x) / V, so
 
     h(x, t) = z(t + (x0 - x) / V),    x to the rear,
 
-and every wheel behind it meets the same. Beyond the record the road goes on level.
+and every following wheel has the same road. Outside the record the road is level.
 """
 
 from __future__ import annotations
@@ -22,36 +23,36 @@ from vehicle.model.parameters.composition import PlacedWheel
 Vector = npt.NDArray[np.float64]
 
 PIECE = 0.05
-"""Length of a straight piece of the strip [m]."""
+"""Length of a straight segment of the strip [m]."""
 
 REACH = 1.3
-"""Length of the strip before the foremost and behind the last wheel [m]."""
+"""Length of the strip in front of the first and after the last wheel [m]."""
 
 HALF_WIDTH, THICKNESS = 0.15, 0.03
-"""Of the strip [m]."""
+"""Half width and thickness of the strip [m]."""
 
 COLOURS = np.array([(0.20, 0.21, 0.22, 1.0), (0.47, 0.48, 0.49, 1.0)], dtype=np.float32)
-"""Of the stripes across it, by turns: they show how it moves."""
+"""Alternating colours of the stripes across the strip, which show its motion."""
 
 SHORTEST_STRIPE = 0.25
-"""[m]"""
+"""Minimum length of a stripe [m]."""
 
 
 class RoadStrip:
-    """The tracks of a car on a road.
+    """Road strips under the tracks of a car.
 
     Args:
-        wheels: of the car.
-        recording: the run, with the displacement of every plate.
-        speed: of the car [m/s].
-        interval: time between two frames [s]; stripes are long enough to be followed.
+        wheels: wheels of the car.
+        recording: recording with the displacement of every plate.
+        speed: speed of the car [m/s].
+        interval: time between two frames [s], which determines the length of a stripe.
     """
 
     def __init__(self, wheels: Sequence[PlacedWheel], recording: Recording, speed: float, interval: float) -> None:
         self.time, self.speed = recording.time, speed
         self.stripe = max(SHORTEST_STRIPE, np.ceil(8.0 * speed * interval) / 4.0)
-        places = [wheel.patch[0] for wheel in wheels]
-        self.ends = min(places) - REACH, max(places) + REACH
+        positions = [wheel.patch[0] for wheel in wheels]
+        self.ends = min(positions) - REACH, max(positions) + REACH
         self.leaders = [
             min((wheel for wheel in wheels if wheel.side == side), key=lambda wheel: wheel.patch[0])
             for side in sorted({wheel.side for wheel in wheels})
@@ -64,7 +65,7 @@ class RoadStrip:
             self.integrals.append((height, np.concatenate([[0.0], np.cumsum(means)])))
 
     def height(self, track: int, x: Vector, time: float, exposure: float) -> Vector:
-        """True height of the road [m] at places x [m], the mean over an exposure [s] about a time [s]."""
+        """Return the true height of the road [m] at positions x [m], averaged over an exposure [s] about a time [s]."""
         height, integral = self.integrals[track]
         at = time + (self.leaders[track].patch[0] - x) / self.speed
 
@@ -77,16 +78,16 @@ class RoadStrip:
         return (total(at + 0.5 * exposure) - total(at - 0.5 * exposure)) / exposure
 
     def draw(self, scene: mujoco.MjvScene, time: float, exposure: float, factor: float) -> None:
-        """Append the strips to a scene; heights are exaggerated as all motion is.
+        """Append the strips to a scene, with heights exaggerated like all motion.
 
         Args:
             scene: scene that has been updated; must have room.
-            time: [s].
-            exposure: [s], as of the bodies.
+            time: time [s].
+            exposure: exposure time of the frame [s].
             factor: exaggeration.
         """
         for track, wheel in enumerate(self.leaders):
-            # Joints stay with the road, which moves to the rear.
+            # Segment ends move with the road to the rear.
             moved = self.speed * time
             first, last = (int(np.floor((end - moved) / PIECE)) for end in self.ends)
             numbers = np.arange(first, last + 1)

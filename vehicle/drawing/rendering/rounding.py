@@ -1,4 +1,4 @@
-"""Ends of scales and factors that are round numbers."""
+"""Round numbers for ends of scales and for factors."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def round_up(value: float) -> float:
-    """The next 1, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for zero."""
+    """Round up to 1, 1.5, 2, 3, 4, 5, 6, 8 or 10 times a power of ten; 1 for zero."""
     if value <= 0.0:
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))

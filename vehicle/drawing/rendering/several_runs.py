@@ -1,4 +1,4 @@
-"""Runs over each other: their FRFs, and on a road the densities of their accelerations."""
+"""Comparison of several runs: FRFs, and acceleration densities on a road."""
 
 from __future__ import annotations
 
@@ -33,19 +33,19 @@ def plot_responses(
     title: str = "",
     caption: str = "",
 ) -> None:
-    """Write FRFs of several runs over each other: a column for each channel.
+    """Plot FRFs of several runs over each other, with a column for each channel.
 
     Args:
         path: PNG or SVG file.
         runs: name to run and FRFs of all its acceleration channels.
-        channels: channel that all of them have to the words above its column.
+        channels: channel recorded in all runs to the title of its column.
         title, caption: above and below the figure.
     """
     with saved_figure(path, (13.0, 7.6), title, caption) as figure:
         axes = figure.subplots(
             3, len(channels), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False
         )
-        for (channel, words), column in zip(channels.items(), axes.T, strict=True):
+        for (channel, title_of_column), column in zip(channels.items(), axes.T, strict=True):
             for (name, (run, response)), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
                 row = run.car.model.vehicle.acceleration_channels.index(channel)
                 style = {"color": colour, "linestyle": line}
@@ -53,7 +53,7 @@ def plot_responses(
                 fading(column[0], response.frequency, size, response.coherence[row], name, **style)
                 column[1].plot(response.frequency, wrapped_phase(response.response[row]), **style)
                 column[2].plot(response.frequency, response.coherence[row], **style)
-            column[0].set_title(words)
+            column[0].set_title(title_of_column)
         axes[0, 0].legend(loc="upper left")
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
 
@@ -65,24 +65,26 @@ def plot_densities(
     title: str = "",
     caption: str = "",
 ) -> None:
-    """Write power spectral densities of accelerations of one or several runs.
+    """Plot power spectral densities of accelerations of one or several runs.
 
     Args:
         path: PNG or SVG file.
         runs: name to run.
-        channels: channel that all of them have to the words above its panel.
+        channels: channel recorded in all runs to the title of its panel.
         title, caption: above and below the figure.
     """
     with saved_figure(path, (13.0, 4.2), title, caption) as figure:
         axes = figure.subplots(1, len(channels), sharex=True, squeeze=False)[0]
-        for axis, (channel, words) in zip(axes, channels.items(), strict=True):
+        for axis, (channel, title_of_panel) in zip(axes, channels.items(), strict=True):
             for (name, run), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
                 recording = run.recording
                 window = min(WINDOW, float(recording.time[-1]) / AVERAGES)
-                found = power_spectral_density(recording.timestep, recording[channel][None], window_s=window)
-                inside = (found.frequency >= FRF_BAND[0]) & (found.frequency <= FRF_BAND[1])
-                axis.plot(found.frequency[inside], found.density[0, inside], color=colour, linestyle=line, label=name)
-            axis.set(xscale="log", yscale="log", xlim=FRF_BAND, title=words, xlabel="frequency [Hz]")
+                densities = power_spectral_density(recording.timestep, recording[channel][None], window_s=window)
+                inside = (densities.frequency >= FRF_BAND[0]) & (densities.frequency <= FRF_BAND[1])
+                axis.plot(
+                    densities.frequency[inside], densities.density[0, inside], color=colour, linestyle=line, label=name
+                )
+            axis.set(xscale="log", yscale="log", xlim=FRF_BAND, title=title_of_panel, xlabel="frequency [Hz]")
             axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
             axis.set_xticks([], minor=True)
         axes[0].set_ylabel("density of the acceleration [(m/s²)²/Hz]")
@@ -91,10 +93,10 @@ def plot_densities(
 
 
 def shared_channels(runs: Sequence[RecordedRun], wanted: Mapping[str, str]) -> dict[str, str]:
-    """The channels that all runs recorded.
+    """Return the wanted channels that all runs recorded.
 
     Args:
         runs: the runs.
-        wanted: channel to words.
+        wanted: channel to its label.
     """
-    return {name: words for name, words in wanted.items() if all(name in run.recording.channels for run in runs)}
+    return {name: label for name, label in wanted.items() if all(name in run.recording.channels for run in runs)}

@@ -1,4 +1,4 @@
-"""One excerpt of a run, drawn frame by frame: the car, a close-up, and what is written on them."""
+"""Excerpt of a run, drawn frame by frame: the car, a close-up, and text."""
 
 from __future__ import annotations
 
@@ -40,16 +40,16 @@ VISIBLE_TRAVEL = 0.08
 """Travel [m] to which the largest displacement of the excerpt is exaggerated."""
 
 LARGEST_FACTOR = 1000.0
-"""Largest exaggeration that is chosen by itself: a car at rest stays at rest in the film."""
+"""Maximum automatic exaggeration, so that a car at rest stays at rest in the film."""
 
 FASTEST_MOTION = 40.0
-"""Frequency [Hz] up to which the car moves visibly; a film with fewer than two frames per period says so."""
+"""Maximum frequency [Hz] of visible motion; the heading of a film with fewer than two frames per period states it."""
 
 VISIBLE_TIME = 2.0
-"""Seconds of the record that the traces show at once in real time; over the root of the slow motion otherwise."""
+"""Visible time of the traces in real time [s]; divided by the square root of the slow-motion factor otherwise."""
 
 GHOST_OPACITY = 0.22
-"""The wheel hides the strut in the close-up."""
+"""Opacity of the wheel in the close-up, where it would hide the strut."""
 
 
 FPS = 30.0
@@ -58,22 +58,22 @@ FPS = 30.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Take:
-    """What a film is asked to show.
+    """Settings of a film.
 
     Raises:
         ConfigurationError: a number is out of range.
     """
 
     start: float | None = None
-    """first time of the record [s]; the liveliest stretch where it is not given"""
+    """first time of the record [s]; by default, the window with the largest motion"""
     duration: float = 10.0
-    """length of the film [s]; it shows duration / slow of the record, less where the record ends"""
+    """length of the film [s], which shows duration / slow of the record at most"""
     slow: float = 1.0
-    """how many times slower than the record, at least 1"""
+    """slow-motion factor, at least 1"""
     exaggeration: float | None = None
-    """factor of all motion; where it is not given, the largest displacement becomes 5 to 8 cm"""
+    """factor of all motion; by default, the largest displacement becomes 5 to 8 cm"""
     speed: float | None = None
-    """speed on the road [m/s], which then passes under the wheels; None on a rig"""
+    """speed on the road [m/s], to draw the moving road; None on a rig"""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.duration < np.inf:
@@ -86,7 +86,7 @@ class Take:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Cut:
-    """What of a record a film shows, and how."""
+    """Excerpt of a record in a film."""
 
     start: float
     """first time [s]"""
@@ -97,28 +97,28 @@ class Cut:
     exaggeration: float
     """factor of all motion"""
     reason: str
-    """why it starts there"""
+    """reason for the start"""
 
     @property
     def end(self) -> float:
-        """Time of the last frame [s]."""
+        """Return the time of the last frame [s]."""
         return self.start + (self.frames - 1) * self.interval
 
 
 class Shot:
-    """One excerpt of a run, ready to be drawn frame by frame.
+    """Excerpt of a run for drawing frame by frame.
 
     Args:
         run: the run.
-        layout: frame.
-        take: what to show.
+        layout: layout of the frame.
+        take: settings of the film.
 
     Raises:
-        ConfigurationError: the record does not hold the start.
+        ConfigurationError: the start is outside the record.
     """
 
     def __init__(self, run: RecordedRun, layout: Layout, take: Take) -> None:
-        # What is kept can be sent to another process, so nothing that a compiler of models holds is; there, drawing
+        # Attributes must be picklable for other processes, so they contain no model specification; there, drawing
         # imports no shapes.
         from vehicle.drawing.rendering.stage import stage_model, unveiled
 
@@ -142,7 +142,7 @@ class Shot:
         length = min(length, record - start)
         frames = max(int(length * take.slow * FPS + 1e-9), 1)
         self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
-        self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes that of the model
+        self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes the values of the model
         self.unveiled = unveiled(self.model)
         self.motion = Motion(self.model)
         self.wireframe = Wireframe(run.car.model, self.motion)
@@ -190,10 +190,10 @@ class Shot:
                 yield self.overlay.draw(canvas.read(), time, self._lamps(time))
 
     def _views(self) -> list[tuple[mujoco.MjvCamera, tuple[int, int, int, int], Vector]]:
-        """Camera, viewport and opacity of all materials of each view."""
+        """Return camera, viewport and opacity of all materials of each view."""
         layout, wheel, model = self.layout, self.wheel, self.model
         cleared = self.unveiled.copy()
-        rolling = next(one.part for one in self.composition.wheels if one.name == wheel)
+        rolling = next(placed.part for placed in self.composition.wheels if placed.name == wheel)
         cleared[model.geom_matid[model.geom_bodyid == model.body(rolling).id]] = GHOST_OPACITY
         right = (layout.main_width, 0, layout.width - layout.main_width, layout.view_height)
         return [
@@ -202,18 +202,20 @@ class Shot:
         ]
 
     def _largest(self) -> tuple[float, float]:
-        """Largest displacement of a part or node, and the one that nearly all nodes stay below [m]."""
-        parts, nodes = [], []
+        """Return the largest displacement of a part or node, and the 97 % quantile of the node displacements [m]."""
+        part_displacements, node_displacements = [], []
         bodies = [(hub_of(self.composition, wheel.name), wheel.plate) for wheel in self.composition.wheels]
         moving = [int(self.model.body(name).id) for pair in bodies for name in pair]
         for state in self.states:
-            parts.append(np.linalg.norm(state.translation[moving], axis=1))
-            nodes.append(self.wireframe.displacement(state))
-        largest = max(float(np.max(parts)), float(np.max(nodes)), VISIBLE_TRAVEL / LARGEST_FACTOR)
-        return largest, float(np.quantile(nodes, 0.97))
+            part_displacements.append(np.linalg.norm(state.translation[moving], axis=1))
+            node_displacements.append(self.wireframe.displacement(state))
+        largest = max(
+            float(np.max(part_displacements)), float(np.max(node_displacements)), VISIBLE_TRAVEL / LARGEST_FACTOR
+        )
+        return largest, float(np.quantile(node_displacements, 0.97))
 
     def _heading(self, run: RecordedRun, slow: float) -> list[str]:
-        """Input and level; factors and excerpt."""
+        """Return the heading: input and level, factors and excerpt."""
         cut = self.cut
         level = level_words(run.recording, run.wheel, run.signal.rms(run.wheel))
         wheel = run.car.model.vehicle.wheel_text(run.wheel, source=False)
@@ -238,7 +240,7 @@ class Shot:
         recording, wheel = self.recording, self.wheel
         ahead = 0.5 * self.visible
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
-        found = []
+        traces = []
         for label, channel, scale, band in (
             ("plate [mm]" if self.road is None else "road [mm]", f"plate_{wheel}_displacement", 1e3, None),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
@@ -248,8 +250,8 @@ class Shot:
                 continue
             values = scale * recording[channel]
             top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
-            found.append(Trace(label=label, values=values, top=top, band=band))
-        return found
+            traces.append(Trace(label=label, values=values, top=top, band=band))
+        return traces
 
     def _lamps(self, time: float) -> dict[str, bool]:
         """Label of each damper, and whether it slipped at any sample of the time between two frames."""

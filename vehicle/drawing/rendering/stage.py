@@ -1,4 +1,4 @@
-"""The scene of a film: the car with its shapes, translucent shell, lights and floor."""
+"""Scene of a film: the car with its shapes, translucent shell, lights and floor."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SAMPLES = 0
 """Multisampling of the picture: four samples take twice as long on a processor; a film halves its colours anyway."""
 
 HIDDEN = ("body_lining",)
-"""Shapes that only matter when the shell is opaque."""
+"""Shapes that are drawn only with an opaque shell."""
 
 OPACITY = {
     **dict.fromkeys(SHELL, 0.16),
@@ -29,14 +29,14 @@ OPACITY = {
     "body_dashboard": 0.35,
     "body_exhaust": 0.6,
 }
-"""Opacity of the shapes that would hide suspension and wireframe; the close-up leaves them out."""
+"""Opacity of the shapes that would hide suspension and wireframe; the close-up omits them."""
 
 
 GROUND = -0.002
 """Height of the floor under a rig [m]."""
 
 BELOW_ROAD = 0.30
-"""Height of the road above the floor, which the exaggerated road does not reach [m]."""
+"""Height of the road above the floor [m], more than the depth of the exaggerated road."""
 
 
 def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> mujoco.MjModel:
@@ -45,10 +45,10 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
     Args:
         car: the simulated car.
         size: width and height of the largest picture [pixel].
-        road: the car drives: no shakers, no plates, and the floor below the road.
+        road: draw a driving car, without shakers and plates, and the floor below the road.
 
     Returns:
-        The model; generalised positions mean the same as in the simulated one.
+        The model, with the same generalised positions as the simulated model.
     """
     spec = car.spec.copy()
     shapes = {name: shape for name, shape in visible_shapes(car.vehicle, rig=not road).items() if name not in HIDDEN}
@@ -66,7 +66,7 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
 
 
 def unveiled(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
-    """Opacity of all materials of a stage, (materials,), without the shapes that would hide the suspension."""
+    """Return the opacity of all materials, (materials,), zero for shapes that would hide the suspension."""
     names = {model.mat(number).name: number for number in range(model.nmat)}
     opacity = model.mat_rgba[:, 3].copy()
     opacity[[names[name] for name in OPACITY if name in names]] = 0.0

@@ -1,4 +1,4 @@
-"""Traces that run along under the picture of a film, with the present in the middle."""
+"""Scrolling traces below the picture of a film, with the current time in the middle."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ GRID = (208, 212, 218)
 TRACE_COLOURS = tuple(tuple(bytes.fromhex(COLOURS[place][1:])) for place in (4, 0, 1))
 BAND = (221, 233, 246)
 FINE = 2
-"""Traces are drawn this many times larger and reduced, which smooths their lines."""
+"""Factor by which traces are drawn larger and then reduced, to smooth their lines."""
 
 AXIS, TICKS = 15, 5
-"""Height of the time axis in a picture of 720 lines [pixel], and about how many times it names."""
+"""Height of the time axis in a picture of 720 lines [pixel], and approximate number of its labels."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Trace:
-    """A channel that runs along under the picture."""
+    """Channel drawn as a scrolling trace."""
 
     label: str
     """quantity and unit"""
     values: Vector
-    """in that unit, (n,)"""
+    """samples in that unit, (n,)"""
     top: float
     """value at the upper edge; the lower edge is its negative"""
     band: float | None = None
@@ -42,12 +42,12 @@ class Trace:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TraceStrip:
-    """Draws the traces of a run.
+    """Strip with the traces of a run.
 
     Attributes:
-        layout: where things are.
+        layout: layout of the frame.
         time: sample times of the traces [s], (n,).
-        traces: what runs along.
+        traces: traces to draw.
         visible: length of the traces on the screen [s].
     """
 
@@ -58,7 +58,7 @@ class TraceStrip:
 
     @cached_property
     def backdrop(self) -> Image.Image:
-        """Everything in the strip of the traces that stands still."""
+        """Return the static parts of the strip."""
         px, font = self.layout.px, self.layout.font
         layout = self.layout
         image = Image.new("RGB", (layout.width, layout.height), PAPER)
@@ -73,14 +73,14 @@ class TraceStrip:
 
     @cached_property
     def _rows(self) -> list[tuple[int, int]]:
-        """Upper and lower edge of each trace in the frame [pixel]."""
+        """Return the upper and lower edge of each trace in the frame [pixel]."""
         layout, gap = self.layout, self.layout.px(6)
         height = (layout.height - layout.view_height - gap - self.layout.px(AXIS)) // max(len(self.traces), 1)
         first = layout.view_height + gap
         return [(first + height * row, first + height * (row + 1) - gap) for row in range(len(self.traces))]
 
     def _time_axis(self, image: Image.Image, begin: float, width: int) -> None:
-        """Times of the record under the traces, which run along with them."""
+        """Draw the scrolling time labels under the traces."""
         px, font = self.layout.px, self.layout.font
         layout, pen = self.layout, ImageDraw.Draw(image)
         top = self._rows[-1][1] if self._rows else layout.view_height
@@ -100,7 +100,7 @@ class TraceStrip:
                 )
 
     def draw(self, image: Image.Image, now: float) -> None:
-        """Traces with the present in the middle."""
+        """Draw the traces with the current time in the middle."""
         layout = self.layout
         width = layout.width - layout.trace_left - self.layout.px(10)
         begin = now - self.visible / 2

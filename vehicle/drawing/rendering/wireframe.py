@@ -1,4 +1,4 @@
-"""The car as points and lines, and how far each point moves with the velocity coordinates: what shows a mode."""
+"""Car as points and lines, with the displacement of each point over the velocity coordinates, to show modes."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from vehicle.signals.analysis.thinned_wireframe import MOST_NODES, thinned
 Vector = npt.NDArray[np.float64]
 
 GROUPS = ("body", "mass", "link", "spring", "wheel", "ground")
-"""What a line belongs to."""
+"""Groups of lines."""
 
 SPOKES, TREAD, PLATE = 24, 0.18, 0.22
-"""Corners of a wheel; its width and half the side of a plate [m], as they are drawn."""
+"""Corners of a drawn wheel; its width and half the side of a plate [m]."""
 
 BOX_MASS = 40.0
-"""A part from this mass [kg] on that is no wheel is drawn as the box of its mass and moments of inertia too."""
+"""Minimum mass [kg] of a part, other than a wheel, that is also drawn as the box of its mass and inertia."""
 
 COIL_TURNS, COIL_RADIUS, COIL_POINTS = 5, 0.06, 61
-"""How a spring is drawn [-, m, -]."""
+"""Turns [-], radius [m] and points [-] of a drawn spring."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -33,9 +33,9 @@ class CarWireframe:
     """Points of a car, lines between them, and their motion.
 
     Attributes:
-        points: in the design position [m], (n, 3).
+        points: points in the design position [m], (n, 3).
         lines: pairs of points, (m, 2).
-        groups: of each line, index of `GROUPS`; (m,).
+        groups: group of each line, as an index of `GROUPS`; (m,).
         motion: displacement of the points over the velocity coordinates, (n, 3, coordinates).
     """
 
@@ -45,18 +45,18 @@ class CarWireframe:
     motion: Vector
 
     def displacement(self, shape: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
-        """Displacement of the points [m], (n, 3), in a motion of the velocity coordinates, (coordinates,)."""
+        """Return the displacement of the points [m], (n, 3), in a shape over the velocity coordinates."""
         return np.asarray(self.motion @ shape)
 
 
 def unit_factor(displacement: npt.NDArray[np.complex128]) -> complex:
-    """Number that scales and turns a shape so that its farthest point moves 1, its largest component in phase.
+    """Return the complex factor that makes the largest displacement of a shape 1, with a real largest component.
 
     Args:
-        displacement: of points, (n, 3), not all zero.
+        displacement: displacement of the points, (n, 3), not all zero.
 
     Returns:
-        The number; times the displacements no point moves farther than 1.
+        The complex factor.
     """
     size = np.linalg.norm(displacement, axis=1)
     farthest = displacement[int(np.argmax(size))]
@@ -68,31 +68,31 @@ def car_wireframe(car: CarModel) -> CarWireframe:
     """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, and the plates.
 
     Args:
-        car: the car.
+        car: compiled car.
 
     Returns:
-        Its points and lines, and J of u_point = J u; plates move with nothing.
+        Points and lines of the car, and J of u_point = J u, which is zero for plates.
     """
     pen = _Pen(car)
-    element, own = car.superelement, car.vehicle.composition
+    element, composition = car.superelement, car.vehicle.composition
     lines = thinned(element.positions, np.asarray(element.edges, dtype=int))
     shown = np.unique(lines) if len(lines) else range(min(len(element.positions), MOST_NODES))
     nodes = {int(node): pen.point(element.positions[node], "body") for node in shown}
     pen.join([(nodes[int(first)], nodes[int(second)]) for first, second in lines], "body")
-    wheels = {wheel.part for wheel in own.wheels}
-    for part in own.parts:
+    wheels = {wheel.part for wheel in composition.wheels}
+    for part in composition.parts:
         if part.shape != "none" and part.name not in wheels and part.seat is None:
-            _part(pen, own, part)
-    for spring in own.springs:
+            _part(pen, composition, part)
+    for spring in composition.springs:
         low, high = (np.asarray(at) for at in spring.at)
         pen.polyline(_coil(low, high), "spring", spring.parts)
-    for wheel in own.wheels:
+    for wheel in composition.wheels:
         _wheel(pen, wheel)
     return pen.finished()
 
 
 class _Pen:
-    """Collects points with the part that each sits on, and lines."""
+    """Collector of points, their parts, and lines."""
 
     def __init__(self, car: CarModel) -> None:
         self.model, self.data = car.model, mujoco.MjData(car.model)
@@ -109,13 +109,13 @@ class _Pen:
         self.groups: list[int] = []
 
     def point(self, at: Sequence[float] | Vector, part: str) -> int:
-        """A point [m] that sits on a part; its number."""
+        """Add a point [m] on a part and return its index."""
         self.points.append(np.asarray(at, dtype=float))
         self.motion.append(self._motion(self.points[-1], part))
         return len(self.points) - 1
 
     def _motion(self, at: Vector, part: str) -> Vector:
-        """Displacement of a point of a part over the velocity coordinates, (3, coordinates)."""
+        """Return the displacement of a point of a part over the velocity coordinates, (3, coordinates)."""
         rows = np.zeros((3, self.model.nv))
         if part not in self.bodies:
             return rows
@@ -126,21 +126,21 @@ class _Pen:
         return rows
 
     def join(self, pairs: Sequence[tuple[int, int]], group: str) -> None:
-        """Lines between points."""
+        """Add lines between points."""
         self.lines += pairs
         self.groups += [GROUPS.index(group)] * len(pairs)
 
-    def polyline(self, places: Vector, group: str, parts: tuple[str, str]) -> None:
-        """A line over places (n, 3) that moves at its beginning with one part, at its end with another."""
+    def polyline(self, points: Vector, group: str, parts: tuple[str, str]) -> None:
+        """Add a line over points (n, 3) whose ends move with two parts."""
         first = len(self.points)
-        for share, at in zip(np.linspace(0.0, 1.0, len(places)), places, strict=True):
-            low, high = (self._motion(end, part) for end, part in zip((places[0], places[-1]), parts, strict=True))
+        for share, at in zip(np.linspace(0.0, 1.0, len(points)), points, strict=True):
+            low, high = (self._motion(end, part) for end, part in zip((points[0], points[-1]), parts, strict=True))
             self.points.append(at)
             self.motion.append((1.0 - share) * low + share * high)
         self.join([(index, index + 1) for index in range(first, len(self.points) - 1)], group)
 
     def finished(self) -> CarWireframe:
-        """All of it."""
+        """Return the collected wireframe."""
         return CarWireframe(
             points=np.array(self.points),
             lines=np.array(self.lines, dtype=np.intp),
@@ -149,13 +149,15 @@ class _Pen:
         )
 
 
-def _part(pen: _Pen, own: Composition, part: PlacedPart) -> None:
-    """A line where a part has two points, a star about its centre of gravity where it has more, a box where heavy."""
+def _part(pen: _Pen, composition: Composition, part: PlacedPart) -> None:
+    """Draw a part: a line between two points, a star about the CoG for more points, a box for a heavy part."""
     group = "mass" if part.numbers.mass >= BOX_MASS else "link"
-    places = [part.points[name] for name in part.points]
-    places += [one.at for one in own.connections if part.name in (one.moving, one.carrier)]
-    places += [joint.at for child in own.parts if child.parent == part.name for joint in child.joints[:1]]
-    anchors = [pen.point(at, part.name) for at in dict.fromkeys(tuple(float(x) for x in at) for at in places)]
+    points = [part.points[name] for name in part.points]
+    points += [
+        connection.at for connection in composition.connections if part.name in (connection.moving, connection.carrier)
+    ]
+    points += [joint.at for child in composition.parts if child.parent == part.name for joint in child.joints[:1]]
+    anchors = [pen.point(at, part.name) for at in dict.fromkeys(tuple(float(x) for x in at) for at in points)]
     if len(anchors) == 2:
         pen.join([(anchors[0], anchors[1])], group)
     elif len(anchors) > 2:
@@ -166,7 +168,7 @@ def _part(pen: _Pen, own: Composition, part: PlacedPart) -> None:
 
 
 def _box(pen: _Pen, part: PlacedPart, group: str) -> None:
-    """The box of the mass and moments of inertia of a part: Ixx = m (b^2 + c^2) / 12 and so on."""
+    """Draw the box with the mass and moments of inertia of a part: Ixx = m (b^2 + c^2) / 12 and so on."""
     body = pen.bodies[part.name]
     mass, inertia = float(pen.model.body_mass[body]), np.asarray(pen.model.body_inertia[body])
     sides = np.sqrt(np.maximum(6.0 / mass * (inertia.sum() - 2.0 * inertia), 0.0))
@@ -178,7 +180,7 @@ def _box(pen: _Pen, part: PlacedPart, group: str) -> None:
 
 
 def _wheel(pen: _Pen, wheel: PlacedWheel) -> None:
-    """Two circles and their tread about the y axis, four spokes, and the plate below."""
+    """Draw a wheel: two circles and their tread about the y axis, four spokes, and the plate below."""
     centre = np.asarray(wheel.center)
     radius = float(centre[2] - wheel.patch[2])
     angle = 2.0 * np.pi * np.arange(SPOKES) / SPOKES
@@ -199,7 +201,7 @@ def _wheel(pen: _Pen, wheel: PlacedWheel) -> None:
 
 
 def _coil(low: Vector, high: Vector) -> Vector:
-    """A helix between two points [m], (n, 3), with straight ends."""
+    """Return a helix between two points [m], (n, 3), with straight ends."""
     axis = high - low
     across = np.cross(axis, (1.0, 0.0, 0.0))
     across /= np.linalg.norm(across)

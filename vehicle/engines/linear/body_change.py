@@ -1,14 +1,15 @@
-"""Coordinates of a car whose trimmed body has another mass or centre of gravity, over those of a car that is known.
+"""Transformation from the coordinates of a modified car to those of a reference car with another body mass or CoG.
 
-The six rigid coordinates r of the body are displacement and rotation at its CoG, the modal ones q are those of the body
-with what is fixed to it. With the body alone scaled by f both cars move in the space of the same rigid motions R and
-elastic modes Phi of the body alone: u = R r + (Phi X - R Y) q. So, of the known car (0) by the new one,
+The six rigid coordinates r of the body are displacement and rotation at its CoG. The modal coordinates q belong to the
+body with the parts fixed to it. If the mass of the body alone is scaled by f, both cars move in the space of the same
+rigid motions R and elastic modes Phi of the body alone: u = R r + (Phi X - R Y) q. The coordinates of the reference car
+(index 0) are therefore
 
     q_0 = A q,  A = X_0^-1 X f^-1/2;    r_0 = r + D r + R (Y_0 A - Y f^-1/2) q,    D: v_0 = v + d x omega
 
-with d the way of the CoG. Forces in the axes of the body turn with r and not with q, so that the geometric stiffness
-of preloads differs by the rigid part of the modes: by 5e-11 of the largest entry of K and 4e-8 of a frequency of the
-Focus with 2 % of mass, by 5e-10 and 4e-7 with 16 %. Without parts that are fixed to the body there is no such part.
+with the displacement d of the CoG. Forces in the axes of the body rotate with r and not with q, so the geometric
+stiffness of preloads differs by the rigid part of the modes: by 5e-11 of the largest entry of K and 4e-8 of a frequency
+of the `focus` car with 2 % more mass, by 5e-10 and 4e-7 with 16 %. Without parts fixed to the body it does not differ.
 """
 
 from __future__ import annotations
@@ -30,18 +31,18 @@ from vehicle.model.parameters.vehicle import Vehicle
 Vector = npt.NDArray[np.float64]
 
 SAME = 1e-12
-"""Relative difference of two moments of one body model that is round-off of a factor."""
+"""Maximum relative difference of moments of inertia that counts as round-off of a factor."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BodyChange:
-    """Transformation from the coordinates of a car to those of a known one; by default they are the same.
+    """Transformation from the coordinates of a car to those of a reference car; the identity by default.
 
     Attributes:
-        trimmed, body: body model alone and with what is fixed to it.
-        move: known coordinates over the new ones where only the origin of the body moves; (n, n).
-        whole: the same with its modes; (n, n).
-        shift: way of the CoG d [m]; (3,).
+        trimmed, body: body model alone and with the parts fixed to it.
+        move: reference coordinates over the new ones for a displaced origin of the body alone; (n, n).
+        whole: the same for a displaced origin and changed modes; (n, n).
+        shift: displacement d of the CoG [m]; (3,).
         first: first velocity coordinate of the body.
         modes: velocity coordinates of the flexible modes.
         hanging: d(torque)/d(rotation) of a unit force along z at the new CoG, about the old one; (n, n).
@@ -58,85 +59,85 @@ class BodyChange:
 
     @property
     def same(self) -> bool:
-        """True if the coordinates are the same."""
+        """Return True if both cars have the same coordinates."""
         return self.whole is None
 
     def columns(self, rows: Vector) -> Vector:
-        """Return rows over the known coordinates, (..., n), or with inputs behind them, as rows over the new ones."""
+        """Transform rows over the reference coordinates, (..., n) or (..., n + inputs), to rows over the new ones."""
         if self.whole is None:
             return rows
         size = len(self.whole)
         return np.concatenate([rows[..., :size] @ self.whole, rows[..., size:]], axis=-1)
 
-    def rotations(self, turned: Vector) -> Vector:
-        """Return rotations over the known coordinates, (..., n), over the new ones.
+    def rotations(self, rotation: Vector) -> Vector:
+        """Transform rotations over the reference coordinates, (..., n), to rotations over the new ones.
 
-        Where a body model has no rotation of a node, an element there turns with the rigid coordinates alone.
+        If a body model has no rotations of a node, an element there rotates with the rigid coordinates alone.
         """
         if self.whole is None or self.move is None:
-            return turned
-        known = np.any(turned[..., self.modes] != 0.0, axis=-1, keepdims=True)
-        return np.where(known, turned @ self.whole, turned @ self.move)
+            return rotation
+        has_modes = np.any(rotation[..., self.modes] != 0.0, axis=-1, keepdims=True)
+        return np.where(has_modes, rotation @ self.whole, rotation @ self.move)
 
-    def carried(self, weight: Vector) -> Vector:
-        """Return what K has of the rigid translations b in the new modes, which turn with the body, (n, n).
+    def weight_stiffness(self, weight: Vector) -> Vector:
+        """Return the stiffness due to the rigid translations b in the new modes, which rotate with the body; (n, n).
 
-        In r_0 they are along the axes of the world. V changes by -F (theta x b) q, F being the force of all elements on
-        the body, which is against its weight and that of what is fixed to it.
+        In r_0 they are along the world axes. V changes by -F (theta x b) q with the force F of all elements on the
+        body, which balances the weight of the body and of the parts fixed to it.
 
         Args:
             weight: generalised force of gravity; (n,).
         """
-        found = np.zeros((len(weight), len(weight)))
+        stiffness = np.zeros((len(weight), len(weight)))
         if self.whole is not None:
-            ways = self.whole[self.first : self.first + 3, self.modes]
-            held = -weight[self.first : self.first + 3]
-            found[self.first + 3 : self.first + 6, self.modes] = -np.cross(ways, held, axis=0)
-        return found + found.T
+            displacements = self.whole[self.first : self.first + 3, self.modes]
+            support_force = -weight[self.first : self.first + 3]
+            stiffness[self.first + 3 : self.first + 6, self.modes] = -np.cross(displacements, support_force, axis=0)
+        return stiffness + stiffness.T
 
-    def both(self, matrix: Vector) -> Vector:
-        """Return T' A T of a matrix over the known coordinates, (n, n)."""
+    def transformed(self, matrix: Vector) -> Vector:
+        """Transform a matrix A over the reference coordinates to T' A T, (n, n)."""
         return matrix if self.whole is None else self.whole.T @ matrix @ self.whole
 
-    def frames(self, matrix: Vector) -> Vector:
-        """Return T' A T where the origin of the body alone moves: of what does not act on its modes."""
+    def displaced_matrix(self, matrix: Vector) -> Vector:
+        """Transform a matrix A to T' A T for a displaced origin of the body: for terms that do not act on its modes."""
         return matrix if self.move is None else self.move.T @ matrix @ self.move
 
-    def shifted(self, rows: Vector) -> Vector:
-        """Return rows over the known coordinates, (..., n), where the origin of the body alone moves."""
+    def displaced_rows(self, rows: Vector) -> Vector:
+        """Transform rows over the reference coordinates, (..., n), for a displaced origin of the body."""
         return rows if self.move is None else rows @ self.move
 
 
-def same_body(body: TrimmedBody, known: TrimmedBody) -> bool:
-    """Return True if two bodies differ in rigid-body properties and in factors on their modes alone.
+def same_body(body: TrimmedBody, reference: TrimmedBody) -> bool:
+    """Return True if two bodies differ only in rigid-body properties and in factors on their modes.
 
-    A flexible body has to be that of the same elastic model: only its mass may be varied.
+    A flexible body must have the same elastic model: only its mass may differ.
     """
-    numbers = {name: getattr(known, name) for name in ("mass", "cog", "inertia", "model_mass", "frequency_scale")}
-    if replace(body, **numbers) != known or not body.flexible:
-        return replace(body, **numbers) == known
+    scalars = {name: getattr(reference, name) for name in ("mass", "cog", "inertia", "model_mass", "frequency_scale")}
+    if replace(body, **scalars) != reference or not body.flexible:
+        return replace(body, **scalars) == reference
     pairs = [
-        (body.of_model.mass, known.of_model.mass),
-        *((getattr(body.of_model.inertia, name), getattr(known.of_model.inertia, name)) for name in MOMENTS),
+        (body.of_model.mass, reference.of_model.mass),
+        *((getattr(body.of_model.inertia, name), getattr(reference.of_model.inertia, name)) for name in MOMENTS),
     ]
-    about = body.inertia.about == known.inertia.about
-    return about and body.cog == known.cog and all(math.isclose(*pair, rel_tol=SAME) for pair in pairs)
+    same_point = body.inertia.about == reference.inertia.about
+    return same_point and body.cog == reference.cog and all(math.isclose(*pair, rel_tol=SAME) for pair in pairs)
 
 
-def body_change(vehicle: Vehicle, known: CarModel, trimmed: Superelement) -> BodyChange:
-    """Return the coordinates of a car over those of a known one with the same body model.
+def body_change(vehicle: Vehicle, reference: CarModel, trimmed: Superelement) -> BodyChange:
+    """Return the coordinate transformation between a car and a reference car with the same body model.
 
     Args:
-        vehicle: the car; `same_body` holds.
-        known: the known car.
-        trimmed: its body model without what is fixed to it.
+        vehicle: the new car; `same_body` must be true.
+        reference: the reference car.
+        trimmed: body model of the reference car without the parts fixed to it.
     """
-    body, other = vehicle.body, known.vehicle.body
-    factor = body.model_factor / other.model_factor if body.flexible else 1.0
-    shift = np.array(body.cog) - np.array(other.cog)
+    body, reference_body = vehicle.body, reference.vehicle.body
+    factor = body.model_factor / reference_body.model_factor if body.flexible else 1.0
+    shift = np.array(body.cog) - np.array(reference_body.cog)
     if factor == 1.0 and not shift.any():
-        return BodyChange(trimmed=trimmed, body=known.superelement)
-    size, model = known.model.nv, known.model
+        return BodyChange(trimmed=trimmed, body=reference.superelement)
+    size, model = reference.model.nv, reference.model
     first = int(model.joint("body").dofadr[0])
     move, hanging = np.eye(size), np.zeros((size, size))
     turns = slice(first + 3, first + 6)
@@ -144,9 +145,11 @@ def body_change(vehicle: Vehicle, known: CarModel, trimmed: Superelement) -> Bod
     up = np.array([0.0, 0.0, 1.0])
     hanging[turns, turns] = shift[2] * np.eye(3) - np.outer(up, shift)
     if factor == 1.0:
-        return BodyChange(trimmed=trimmed, body=known.superelement, move=move, whole=move, shift=shift, hanging=hanging)
+        return BodyChange(
+            trimmed=trimmed, body=reference.superelement, move=move, whole=move, shift=shift, hanging=hanging
+        )
     scaled, modes = trimmed.scaled(factor), read_layout(model).modes.velocities
-    before, after = (attached(one, fixed_masses(vehicle, one)) for one in (trimmed, scaled))
+    before, after = (attached(shape, fixed_masses(vehicle, shape)) for shape in (trimmed, scaled))
     elastic = np.linalg.solve(before.elastic, after.elastic) * factor**-0.5
     rigid = before.rigid @ elastic - after.rigid * factor**-0.5
     shapes, rotations = trimmed.rigid.rigid_motions(np.array([body.cog]))
@@ -159,6 +162,6 @@ def body_change(vehicle: Vehicle, known: CarModel, trimmed: Superelement) -> Bod
 
 
 def _cross(d: Vector) -> Vector:
-    """d x as a matrix, (3, 3)."""
+    """Return the matrix of the cross product d x, (3, 3)."""
     x, y, z = d
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

@@ -1,4 +1,4 @@
-"""The scale of a complex mode: its share in every response."""
+"""Scale of a complex mode: Modal A, which determines its share in every response."""
 
 from __future__ import annotations
 
@@ -9,25 +9,26 @@ from vehicle.engines.linear.system import LinearSystem
 
 
 def modal_a(system: LinearSystem, pole: complex, shape: npt.NDArray[np.complex128]) -> complex:
-    """Modal A of a mode with pole s and shape u: u^T D'(s) u, D the dynamic stiffness.
+    """Return Modal A of a mode with pole s and shape u: u^T D'(s) u with the dynamic stiffness D.
 
     D(s) = s^2 M + s C + K + sum_b h_b^T K2 tau / (1 + s tau) (s e_b + g_b), so near s the receptance is
-    u u^T / (A (j w - s)): the residue of the response at i to a force at k is u_i u_k / A. It is exact where the
-    matrices are symmetric, which preloads disturb slightly; those of a rolling car are not: slip, gyroscopic moments.
+    u u^T / (A (j w - s)): the residue of the response at i to a force at k is u_i u_k / A. It is exact for
+    symmetric matrices. Preloads disturb the symmetry slightly; the matrices of a rolling car are unsymmetric (slip,
+    gyroscopic moments).
 
     Args:
         system: the matrices.
         pole: s [rad/s].
-        shape: u, (n,), of motions that joints and locked pairs allow.
+        shape: displacements u, (n,), that joints and locked pairs allow.
 
     Returns:
-        A [kg/s] for a shape without unit.
+        Modal A [kg/s] for a shape without unit.
 
     Source: Ewins, Modal Testing, 2nd ed., section 2.8; field "Modal A" of dataset 55 of the universal files.
     """
     time = system.branch_time
     rate = system.branch_stiffness * time / (1.0 + pole * time) ** 2
-    motion, felt = system.branch_rows @ shape, system.effects @ shape
+    motion, effect = system.branch_rows @ shape, system.effects @ shape
     if system.branch_drifts is not None:
         motion = motion - time * (system.branch_drifts @ shape)
-    return complex(shape @ (2.0 * pole * system.mass + system.damping) @ shape + np.sum(rate * motion * felt))
+    return complex(shape @ (2.0 * pole * system.mass + system.damping) @ shape + np.sum(rate * motion * effect))

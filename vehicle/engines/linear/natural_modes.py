@@ -1,4 +1,4 @@
-"""Natural frequencies, damping ratios and shapes of a linear system; what grows by itself."""
+"""Natural frequencies, damping ratios and shapes of a linear system, and the test for unstable poles."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from vehicle.engines.linear.first_order import FirstOrder
 from vehicle.errors import ConfigurationError
 
 GROWTH_FLOOR = 1e-4
-"""Growth [1/s] below which a pole counts as neutral: e-fold in three hours, far beyond any record."""
+"""Growth rate [1/s] below which a pole counts as neutral: a factor e in three hours, longer than any record."""
 
 ROUND_OFF = 1e-6
-"""Growth over |s| below which it is round-off of the matrices, whose differences are good to 1e-8."""
+"""Growth rate over |s| below which it is round-off of the matrices, whose differences are accurate to 1e-8."""
 
 
 def grows(poles: npt.NDArray[np.complex128]) -> npt.NDArray[np.bool_]:
-    """Which poles [rad/s] grow beyond round-off."""
+    """Return True for each unstable pole [rad/s], whose growth rate is above round-off."""
     return np.asarray(poles.real > GROWTH_FLOOR + ROUND_OFF * np.abs(poles))
 
 
@@ -28,7 +28,7 @@ class NaturalModes:
 
     Attributes:
         pole: s [1/s], (m,).
-        motion: complex displacements of the coordinates, as the eigenvector of the states has them, (m, n).
+        motion: complex displacements of the coordinates in the scale of the eigenvector of the states, (m, n).
     """
 
     pole: npt.NDArray[np.complex128]
@@ -36,41 +36,43 @@ class NaturalModes:
 
     @property
     def frequency(self) -> npt.NDArray[np.float64]:
-        """Undamped natural frequency |s| / (2 pi) [Hz], (m,)."""
+        """Return the undamped natural frequency |s| / (2 pi) [Hz], (m,)."""
         return np.abs(self.pole) / (2.0 * np.pi)
 
     @property
     def damped_frequency(self) -> npt.NDArray[np.float64]:
-        """Frequency Im(s) / (2 pi) of the free decay [Hz], (m,)."""
+        """Return the frequency Im(s) / (2 pi) of the free decay [Hz], (m,)."""
         return np.asarray(self.pole.imag / (2.0 * np.pi))
 
     @property
     def damping_ratio(self) -> npt.NDArray[np.float64]:
-        """-Re(s) / |s| [-], (m,)."""
+        """Return the damping ratio -Re(s) / |s| [-], (m,)."""
         return np.asarray(-self.pole.real / np.abs(self.pole))
 
     @property
     def shape(self) -> npt.NDArray[np.complex128]:
-        """Motion of the coordinates, largest one equal to 1, (m, n)."""
-        return np.array([one / one[np.argmax(np.abs(one))] for one in self.motion])
+        """Return the motion of the coordinates scaled to a largest entry of 1, (m, n)."""
+        return np.array([motion / motion[np.argmax(np.abs(motion))] for motion in self.motion])
 
 
 def natural_modes(form: FirstOrder) -> NaturalModes:
-    """Modes of one system from the eigenvalues of A.
+    """Return the modes of one system from the eigenvalues of A.
 
     Args:
-        form: a single system.
+        form: first-order form of a single system.
 
     Returns:
-        The oscillating modes, and what grows even on the real axis; other real poles are left out.
+        The oscillating modes and all unstable poles; other real poles are left out.
 
     Raises:
         ConfigurationError: a stack of systems, or a system with sliding pairs.
     """
     if form.models or form.system.slides:
-        raise ConfigurationError("natural_modes: needed is one linear model (damper='slip' or damper='stick')")
+        raise ConfigurationError(
+            "natural_modes: the model must be a single linear model; use damper='slip' or damper='stick'"
+        )
     poles, vectors = np.linalg.eig(form.state)
-    kept = (poles.imag > 1e-6) | (grows(poles) & (poles.imag >= 0.0))
-    order = [i for i in np.argsort(np.abs(poles), kind="stable") if kept[i]]
+    selected = (poles.imag > 1e-6) | (grows(poles) & (poles.imag >= 0.0))
+    order = [i for i in np.argsort(np.abs(poles), kind="stable") if selected[i]]
     motion = form.shapes(vectors[:, order], poles[order]).T.astype(complex)
     return NaturalModes(pole=poles[order].astype(complex), motion=motion)

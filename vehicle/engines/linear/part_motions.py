@@ -1,12 +1,12 @@
 """Kinetic energy of the parts of a car, split into rigid translations and rotations.
 
-The parts of a unit (the body with what is welded to it; a wheel with its knuckle, links and damper) move with the
+The parts of a unit (the body with the parts welded to it; a wheel with its knuckle, links and damper) move with the
 velocities v_b of their centres of gravity and the angular velocities w_b. The rigid motion with the same momentum and
 the same angular momentum L about the centre of gravity of the unit has the energy
 
     2 T = m |v|^2 + L' J^-1 L,    m v = sum m_b v_b,    L = sum J_b w_b + m_b (r_b - r) x v_b
 
-and what is left, the motion of the parts relative to it, is orthogonal to it in M (Tisserand's mean axes), so that both
+and the remaining motion of the parts relative to it is orthogonal to it in M (Tisserand's mean axes), so that both
 energies add up. sqrt(m) v and J^-1/2 L are six coordinates whose squares are the energies of the three translations and
 of the three rotations.
 
@@ -22,20 +22,20 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from vehicle.engines.linear.matrices import CarMatrices
+    from vehicle.engines.linear.car_matrices import CarMatrices
 
 Vector = npt.NDArray[np.float64]
 
 _NO_INERTIA = 1e-12
-"""Principal moment of inertia over the largest, at and below which a unit has none: a point mass, masses on a line."""
+"""Maximum ratio of a principal moment of inertia to the largest that counts as zero: point mass, masses on a line."""
 
 
 def group_of(matrices: CarMatrices, body: str) -> str:
-    """Group of parts that a rigid body belongs to in the energy shares.
+    """Return the group of parts to which a rigid body belongs in the energy shares.
 
     Args:
-        matrices: of the car.
-        body: its name.
+        matrices: matrices of the car.
+        body: name of the body.
     """
     if matrices.carried_by.get(body) == "body":
         return "body"
@@ -46,13 +46,13 @@ def group_of(matrices: CarMatrices, body: str) -> str:
 
 
 def rigid_rows(matrices: CarMatrices) -> dict[str, Vector]:
-    """Rows that turn u' into the energy coordinates of each group of parts.
+    """Return the rows that map u' to the energy coordinates of each group of parts (see `group_of`).
 
     Args:
-        matrices: of the car.
+        matrices: matrices of the car.
 
     Returns:
-        Group to rows (6, n): translations along x, y, z, rotations about them [kg^1/2 m/s]; by `group_of`.
+        Group to rows (6, n): translations along x, y, z, rotations about them [kg^1/2 m/s].
     """
     groups: dict[str, list[str]] = {}
     for body in matrices.body_rows:
@@ -61,25 +61,29 @@ def rigid_rows(matrices: CarMatrices) -> dict[str, Vector]:
 
 
 def _unit_rows(matrices: CarMatrices, bodies: list[str]) -> Vector:
-    """Energy coordinates of the bodies of a unit; (6, n)."""
+    """Return the rows of the energy coordinates of the bodies of a unit; (6, n)."""
     masses = [float(matrices.body_masses[body][0, 0]) for body in bodies]
     total = sum(masses)
-    places = [matrices.body_places[body] for body in bodies]
-    centre = sum(mass * place for mass, place in zip(masses, places, strict=True)) / total
+    centres = [matrices.body_centres[body] for body in bodies]
+    centre = sum(mass * position for mass, position in zip(masses, centres, strict=True)) / total
     momentum = np.zeros_like(matrices.body_rows[bodies[0]][:3])
-    turning, inertia = np.zeros_like(momentum), np.zeros((3, 3))
-    for body, mass, place in zip(bodies, masses, places, strict=True):
-        rows, own, arm = matrices.body_rows[body], matrices.body_masses[body][3:, 3:], _cross(place - centre)
+    angular_momentum, inertia = np.zeros_like(momentum), np.zeros((3, 3))
+    for body, mass, position in zip(bodies, masses, centres, strict=True):
+        rows, body_inertia, arm = (
+            matrices.body_rows[body],
+            matrices.body_masses[body][3:, 3:],
+            _cross(position - centre),
+        )
         momentum += mass * rows[:3]
-        turning += own @ rows[3:] + mass * arm @ rows[:3]
-        inertia += own - mass * arm @ arm
+        angular_momentum += body_inertia @ rows[3:] + mass * arm @ rows[:3]
+        inertia += body_inertia - mass * arm @ arm
     moments, axes = np.linalg.eigh(inertia)
     real = moments > _NO_INERTIA * moments[-1]
     root = (axes[:, real] / np.sqrt(moments[real])) @ axes[:, real].T
-    return np.vstack([momentum / np.sqrt(total), root @ turning])
+    return np.vstack([momentum / np.sqrt(total), root @ angular_momentum])
 
 
 def _cross(arm: Vector) -> Vector:
-    """Matrix of the cross product arm x v."""
+    """Return the matrix of the cross product arm x v."""
     x, y, z = arm
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

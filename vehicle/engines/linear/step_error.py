@@ -1,17 +1,17 @@
-"""How well a step of the time integration answers a car, known before the run.
+"""A priori check of the MuJoCo time step: stability and discretisation error of the linearised car.
 
-Three things are asked of the one-step map (`vehicle.engines.linear.step_map`), with the dampers stuck and sliding, and
-a fourth of the laws over displacement:
+The one-step map (`vehicle.engines.linear.step_map`), with the dampers stuck and sliding, must meet three criteria, and
+the laws over displacement a fourth:
 
-- none of its eigenvalues grows, as none of the car's poles does;
-- every pole up to 100 Hz stands where the matrices have it. Near its resonance a pole answers with 1/(i w - s), so
+- the map is stable: no eigenvalue has a magnitude above 1;
+- every pole up to 100 Hz agrees with the pole of the matrices. Near resonance the response to a pole is 1/(i w - s), so
   |s_h - s| / |Re s| is the error of its peak;
-- light parts behind stiff mounts vibrate above 100 Hz and ring when the damper breaks away or stops. Each acceleration
-  a(t) after a step of the friction force is judged by its norm, int a2 exp(-2 t/T) dt with T = 1 s, of the map against
-  that of the matrices; both are sums over pairs of poles;
-- a step takes the tangent of a table into account as it goes, but what a piece is steeper by, dk, only as it begins: a
-  stop that is hit. With 1/m = r N (N' M_h N)^-1 N' r', the mobility of the step along the row r, w = sqrt(dk/m) becomes
-  2 asin(w h/2)/h (leapfrog), and w h = 2 is the end of stability.
+- low-mass parts on stiff mounts vibrate above 100 Hz and ring when the damper breaks away or sticks. Each acceleration
+  a(t) after a step of the friction force is compared by its norm, int a2 exp(-2 t/T) dt with T = 1 s, between the map
+  and the matrices; both norms are sums over pairs of poles;
+- the step treats the tangent of a table implicitly, but the stiffness increase dk of another segment explicitly, for
+  example a bump stop. With 1/m = r N (N' M_h N)^-1 N' r', the mobility of the step along the row r, w = sqrt(dk/m)
+  becomes 2 asin(w h/2)/h (leapfrog), with the stability limit w h = 2.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.car_modes import require_stable
 from vehicle.engines.linear.first_order import FirstOrder, first_order
-from vehicle.engines.linear.matrices import CarMatrices
-from vehicle.engines.linear.modes import require_stable
 from vehicle.engines.linear.step_map import StepMap, StepRows, step_map, step_rows
 from vehicle.engines.linear.strained_part import holding_parameter, moving_part
 from vehicle.engines.simulation.car_model import CarModel
@@ -35,62 +35,65 @@ Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
 HIGHEST_POLE = 2.0 * np.pi * 100.0
-"""|s| [rad/s] up to which every pole is judged: the comfort band ends at 50 Hz, the weightings at 80."""
+"""Maximum |s| [rad/s] of the poles that are checked: the comfort band ends at 50 Hz, the weightings at 80."""
 
 POLE_LIMIT = 0.10
-"""Largest error of the peak of a pole. The `focus` car has 0.02 at its vibrations and 0.05 at a real pole of 71 Hz,
+"""Maximum error of the peak of a pole. The `focus` car has 0.02 at its vibrations and 0.05 at a real pole of 71 Hz,
 where every RMS below 100 Hz is within 0.4 % of an eighth of the step; up to 0.22 it stayed within 1 %."""
 
-LEAST_DAMPING = 0.01
-"""An undamped pole has a peak without bound; it is judged as if it had this damping ratio."""
+MINIMUM_DAMPING = 0.01
+"""Minimum damping ratio in the error of a peak, since the peak of an undamped pole is unbounded."""
 
 LOCAL_LIMIT = 0.10
-"""Largest error of the ringing after a step of friction. Friction is a part of the motion only: over 10 s of the high
-input the RMS of the damper top was off by 2.4 % at 0.07 (the car of Bommer 2006), 5.3 % at 0.08, 10 % at 0.12, 16 % at
-0.19 and 20 % at 0.31 (stiffer and stiffer suspension mounts); body, engine and knuckle stayed within 0.15 %."""
+"""Maximum error of the ringing after a step of friction. Friction causes only a part of the motion: over 10 s of the
+high input the RMS of the damper top was off by 2.4 % at 0.07 (the car of Bommer 2006), 5.3 % at 0.08, 10 % at 0.12, 16
+% at 0.19 and 20 % at 0.31 (stiffer and stiffer suspension mounts); body, engine and knuckle stayed within 0.15 %."""
 
-STEEP_LIMIT = 1.0
-"""Largest w h of a steeper piece of a table: its vibration is 4.7 % high there. Stops of the dampers of `focus`, hit
+SEGMENT_LIMIT = 1.0
+"""Maximum w h of a stiffer segment of a table, whose frequency is then 4.7 % high. Stops of the dampers of `focus`, hit
 at 12 mm on a road of 6 mm RMS, against an eighth of the step: the vertical RMS of the damper top was off by 2 % at 0.2
 (friction alone), 3 % at 0.75, 5 % at 1.2 and 31 % at 1.7, that of the seat rail by 0.05 % at most."""
 
 FADING = 1.0
-"""1/T [1/s] of the norm: keeps the ringing of undamped parts finite."""
+"""Decay rate 1/T [1/s] in the norm, so that the norm of undamped ringing is finite."""
 
 SMALLEST_STEP = 1e-5
-"""Shortest step [s] that is offered: where even this does not do, a parameter is the mistake."""
+"""Minimum step [s] that is suggested: if it is too long, a parameter of the car is wrong."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Fault:
-    """Why a step does not do.
+class StepError:
+    """Violated criterion of the time-step check.
 
     Attributes:
-        words: what goes wrong, with the part and the parameter.
+        message: description of the error for the user.
         severity: error over its limit.
-        pole, shape: the motion in which it shows.
-        held: what holds it; the element that works most in that motion where it is empty.
+        pole, shape: pole [rad/s] and shape (n,) of the affected motion.
+        element: name of the responsible element; empty for the most strained element of the motion.
     """
 
-    words: str
+    message: str
     severity: float
     pole: complex
     shape: Complex
-    held: str = ""
+    element: str = ""
 
 
 def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
-    """The step of a car, halved until it answers the car [s].
+    """Halve the time step of a car until it passes all criteria.
 
     Args:
-        car: the car with the first step to try.
-        matrices: of the same car.
+        car: compiled and trimmed car with the first step to try.
+        matrices: matrices of the car.
+
+    Returns:
+        The time step [s].
 
     Raises:
-        ConfigurationError: a pole of the car grows, or no step down to `SMALLEST_STEP` does.
+        ConfigurationError: the car is unstable, or fails at every step down to `SMALLEST_STEP`.
     """
-    judge, step = _Judge(car, matrices), float(car.model.opt.timestep)
-    while judge.worst(step) is not None:
+    check, step = _StepCheck(car, matrices), float(car.model.opt.timestep)
+    while check.worst(step) is not None:
         step /= 2.0
         if step < SMALLEST_STEP:
             require_accurate_step(car, matrices)
@@ -98,42 +101,45 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
 
 
 def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
-    """Refuse a step that would not answer a car, with the step that does.
+    """Raise an error if the time step of a car is too long, and name a sufficient step.
 
     Args:
-        car: the car with its step.
-        matrices: of the same car.
+        car: compiled and trimmed car with its time step.
+        matrices: matrices of the car.
 
     Raises:
-        ConfigurationError: a pole of the car grows, or the step does not do: which part, which parameter, which step.
+        ConfigurationError: the car is unstable, or the step is too long; the message names the moving part, the
+            responsible parameter and a sufficient step.
     """
-    judge = _Judge(car, matrices)
-    found = float(car.model.opt.timestep)
-    fault = judge.worst(found)
-    if fault is None:
+    check = _StepCheck(car, matrices)
+    timestep = float(car.model.opt.timestep)
+    violation = check.worst(timestep)
+    if violation is None:
         return
-    step = found / 2.0
-    while step >= SMALLEST_STEP and judge.worst(step) is not None:
+    step = timestep / 2.0
+    while step >= SMALLEST_STEP and check.worst(step) is not None:
         step /= 2.0
-    culprit = (
-        f"{fault.words} ({abs(fault.pole) / (2.0 * np.pi):.0f} Hz: {moving_part(matrices, fault.shape)} moves, held by "
-        f"{fault.held or holding_parameter(car, fault.pole, fault.shape)})"
+    cause = (
+        f"{violation.message} ({abs(violation.pole) / (2.0 * np.pi):.0f} Hz: "
+        f"{moving_part(matrices, violation.shape)} moves, held by "
+        f"{violation.element or holding_parameter(car, violation.pole, violation.shape)})"
     )
-    mend = (
-        f"give solver.timestep={step:g}, or another value of that parameter where it is a mistake"
+    remedy = (
+        f"set solver.timestep={step:g}, or correct that parameter"
         if step >= SMALLEST_STEP
-        else f"no step down to {SMALLEST_STEP:g} s does, so look at that parameter, and at the mass of the part"
+        else f"every step down to {SMALLEST_STEP:g} s is too long: check that parameter and the mass of the part"
     )
     raise ConfigurationError(
-        f"solver.timestep: found {found:g} s, {culprit}; {mend}; the reduced engine does not depend on this step"
+        f"solver.timestep: found {timestep:g} s, {cause}; {remedy}; the reduced engine does not depend on this step"
     )
 
 
-class _Judge:
-    """Poles of a car with dampers stuck and sliding, against which steps are judged.
+class _StepCheck:
+    """Time-step check of one car against its poles with stuck and sliding dampers.
 
     Args:
-        car, matrices: the car.
+        car: compiled and trimmed car.
+        matrices: matrices of the car.
     """
 
     def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
@@ -144,113 +150,126 @@ class _Judge:
         self.stuck_poles = np.linalg.eigvals(self.forms[True].state)
         self.names = list(matrices.system.outputs)
 
-    def worst(self, step: float) -> Fault | None:
-        """What is worst at a step [s]; None where the step does."""
+    def worst(self, step: float) -> StepError | None:
+        """Return the most severe violation at a step [s], or None."""
         rows = step_rows(self.car, self.matrices, step)
-        found = self._steep(rows, step)
+        violations = self._stiff_segments(rows, step)
         for stuck, form in self.forms.items():
-            made = step_map(rows, form)
-            values = np.linalg.eigvals(made.matrix).astype(complex)
-            found += self._growing(values, made.matrix, form, step) or self._poles(values, step, stuck)
-        return max(found, key=lambda fault: fault.severity, default=None) or self._ringing(made, step)
+            one_step = step_map(rows, form)
+            values = np.linalg.eigvals(one_step.matrix).astype(complex)
+            violations += self._growing(values, one_step.matrix, form, step) or self._poles(values, step, stuck)
+        return max(violations, key=lambda violation: violation.severity, default=None) or self._ringing(one_step, step)
 
-    def _steep(self, rows: StepRows, step: float) -> list[Fault]:
-        """The law over displacement with a piece that is too steep for a step."""
-        bends = [bend for bend in self.matrices.bends if bend.steeper > 0.0]
-        if not bends:
+    def _stiff_segments(self, rows: StepRows, step: float) -> list[StepError]:
+        """Return the law over displacement with a segment too stiff for the step, if any."""
+        segments = [segment for segment in self.matrices.segments if segment.stiffness_increase > 0.0]
+        if not segments:
             return []
         basis = self.forms[False].basis
-        along = np.array([bend.row for bend in bends])
-        moved = basis @ np.linalg.solve(basis.T @ rows.mass @ basis, basis.T @ along.T)  # (n, bends)
-        speeds = np.sqrt([bend.steeper for bend in bends] * np.sum(along * moved.T, axis=1))
-        worst = int(np.argmax(speeds))
-        angle = float(speeds[worst]) * step
-        if angle <= STEEP_LIMIT:
+        directions = np.array([segment.row for segment in segments])
+        mobility = basis @ np.linalg.solve(basis.T @ rows.mass @ basis, basis.T @ directions.T)  # (n, segments)
+        frequencies = np.sqrt(
+            [segment.stiffness_increase for segment in segments] * np.sum(directions * mobility.T, axis=1)
+        )
+        worst = int(np.argmax(frequencies))
+        angle = float(frequencies[worst]) * step
+        if angle <= SEGMENT_LIMIT:
             return []
-        words = (
+        message = (
             "at which the integration is unstable"
             if angle >= 2.0
-            else "at which a vibration on a piece of a table is "
+            else "at which a vibration on a stiffer segment of a table is "
             f"{100.0 * (2.0 * np.arcsin(angle / 2.0) / angle - 1.0):.0f} % high"
         )
-        held = f"{bends[worst].name}, up to {bends[worst].steeper:.3g} N/m steeper than where the car stands"
-        severity = angle / STEEP_LIMIT
-        shape = moved[:, worst].astype(np.complex128)
-        return [Fault(words=words, severity=severity, pole=1j * speeds[worst], shape=shape, held=held)]
+        element = f"{segments[worst].name}, up to {segments[worst].stiffness_increase:.3g} N/m stiffer than at rest"
+        severity = angle / SEGMENT_LIMIT
+        shape = mobility[:, worst].astype(np.complex128)
+        return [
+            StepError(message=message, severity=severity, pole=1j * frequencies[worst], shape=shape, element=element)
+        ]
 
     def _shape(self, matrix: Vector, value: complex, form: FirstOrder) -> Complex:
-        """Displacements of the eigenvector of a value, by one step of inverse iteration."""
+        """Return the displacements of the eigenvector of an eigenvalue, by one step of inverse iteration."""
         shifted = matrix - value * (1.0 + 1e-10) * np.eye(len(matrix))
         start = np.random.default_rng(0).standard_normal(len(matrix))
         return form.shape(np.linalg.solve(shifted, start))
 
-    def _growing(self, values: Complex, matrix: Vector, form: FirstOrder, step: float) -> list[Fault]:
-        """The motion that grows fastest from step to step."""
+    def _growing(self, values: Complex, matrix: Vector, form: FirstOrder, step: float) -> list[StepError]:
+        """Return the fastest growing motion of the one-step map, if any grows."""
         index = int(np.argmax(np.abs(values)))
         growth = float(abs(values[index]))
         if growth <= 1.0 + 1e-6:  # round-off of close eigenvalues
             return []
         shape = self._shape(matrix, values[index], form)
         pole = complex(np.log(complex(values[index])) / step)
-        return [Fault(words="at which the integration is unstable", severity=1e6 * growth, pole=pole, shape=shape)]
+        return [
+            StepError(message="at which the integration is unstable", severity=1e6 * growth, pole=pole, shape=shape)
+        ]
 
-    def _poles(self, values: Complex, step: float, stuck: bool) -> list[Fault]:
-        """The pole up to 100 Hz whose peak is farthest off."""
+    def _poles(self, values: Complex, step: float, stuck: bool) -> list[StepError]:
+        """Return the pole up to 100 Hz with the largest error of its peak, if above the limit."""
         poles = self.stuck_poles if stuck else self.poles
-        kept = poles[poles.imag >= 0.0]
-        # What a step forgets at once, z = 0, stands for no pole.
+        upper_poles = poles[poles.imag >= 0.0]
+        # Eigenvalues at z = 0 (states eliminated within one step) have no continuous counterpart.
         lasting = values[(values.imag >= 0.0) & (np.abs(values) > 1e-12)]
-        exact, made = kept.astype(complex), np.log(lasting.astype(complex)) / step
-        away = np.minimum(np.abs(exact[:, None] - made) / np.abs(exact)[:, None], 1e3)
-        row, column = scipy.optimize.linear_sum_assignment(away)
-        least = LEAST_DAMPING * np.abs(exact[row])
-        error = np.abs(made[column] - exact[row]) / np.maximum(np.abs(exact[row].real), least)
+        exact, mapped = upper_poles.astype(complex), np.log(lasting.astype(complex)) / step
+        distance = np.minimum(np.abs(exact[:, None] - mapped) / np.abs(exact)[:, None], 1e3)
+        row, column = scipy.optimize.linear_sum_assignment(distance)
+        decay_floor = MINIMUM_DAMPING * np.abs(exact[row])
+        error = np.abs(mapped[column] - exact[row]) / np.maximum(np.abs(exact[row].real), decay_floor)
         error[np.abs(exact[row]) > HIGHEST_POLE] = 0.0
         worst = int(np.argmax(error))
         if error[worst] <= POLE_LIMIT:
             return []
         pole = complex(exact[row[worst]])
-        words = (
+        message = (
             f"at which the peak of a {'vibration' if pole.imag else 'creeping motion'} of the car is "
-            f"{100.0 * error[worst]:.0f} % off, allowed are {100.0 * POLE_LIMIT:g} %"
+            f"{100.0 * error[worst]:.0f} % off, must be at most {100.0 * POLE_LIMIT:g} %"
         )
         severity = float(error[worst]) / POLE_LIMIT
         form = self.forms[stuck]
-        return [Fault(words=words, severity=severity, pole=pole, shape=self._shape(form.state, pole, form))]
+        return [StepError(message=message, severity=severity, pole=pole, shape=self._shape(form.state, pole, form))]
 
-    def _ringing(self, made: StepMap, step: float) -> Fault | None:
-        """The acceleration whose ringing after a step of friction is farthest off; the map is that of sliding."""
-        values, vectors = np.linalg.eig(made.matrix)
+    def _ringing(self, one_step: StepMap, step: float) -> StepError | None:
+        """Return the acceleration with the largest error of its ringing after a step of friction, if above the limit.
+
+        Args:
+            one_step: one-step map of the car with sliding dampers.
+            step: time step [s].
+        """
+        values, vectors = np.linalg.eig(one_step.matrix)
         form = self.forms[False]
         velocity = slice(form.placed, 2 * form.placed)
-        places = np.array([form.output(name)[0] for name in self.names])
+        output_rows = np.array([form.output(name)[0] for name in self.names])
         poles, shapes = self.poles, self.shapes
-        # a(t) = sum_i r_i exp(s_i t), and of the map r_i z_i^n.
-        exact = _residues(places @ shapes[velocity], np.linalg.solve(shapes, form.friction))
-        stepped = _residues(places @ vectors[velocity], np.linalg.solve(vectors, made.load) / step)
+        # a(t) = sum_i r_i exp(s_i t); for the map, sum_i r_i z_i^n.
+        exact = _residues(output_rows @ shapes[velocity], np.linalg.solve(shapes, form.friction))
+        stepped = _residues(output_rows @ vectors[velocity], np.linalg.solve(vectors, one_step.load) / step)
         faded, shrunk = poles - FADING, values * np.exp(-FADING * step)
         weight = -1.0 / (faded[:, None] + faded.conj())
-        wanted = _norm(exact, weight)
-        error = _norm(stepped, step / (1.0 - shrunk[:, None] * shrunk.conj())) / wanted - 1.0
+        exact_norm = _norm(exact, weight)
+        error = _norm(stepped, step / (1.0 - shrunk[:, None] * shrunk.conj())) / exact_norm - 1.0
         worst = int(np.argmax(np.abs(error)))
         if abs(error[worst]) <= LOCAL_LIMIT:
             return None
-        # The motion that carries most of it, among those that a step resolves badly.
+        # Find the motion with the largest share, among those above the checked poles.
         share = np.sum(np.abs(exact[worst]) ** 2, axis=0) * np.diag(weight).real * (np.abs(poles) > HIGHEST_POLE)
         index = int(np.argmax(share))
-        words = (
+        message = (
             f"at which the ringing of {self.names[worst]} after the damper breaks away is "
-            f"{100.0 * error[worst]:+.0f} % off, allowed are {100.0 * LOCAL_LIMIT:g} %"
+            f"{100.0 * error[worst]:+.0f} % off, must be at most {100.0 * LOCAL_LIMIT:g} %"
         )
         severity = float(abs(error[worst])) / LOCAL_LIMIT
-        return Fault(words=words, severity=severity, pole=complex(poles[index]), shape=form.shape(shapes[:, index]))
+        return StepError(
+            message=message, severity=severity, pole=complex(poles[index]), shape=form.shape(shapes[:, index])
+        )
 
 
 def _residues(outputs: npt.NDArray[Any], inputs: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Products of every output (outputs, p) with every input (p, 2); (outputs, 2, p)."""
+    """Return the products of every output (outputs, p) with every input (p, 2); (outputs, 2, p)."""
     return np.asarray(outputs[:, None] * inputs.T, dtype=complex)
 
 
 def _norm(residues: npt.NDArray[Any], weight: npt.NDArray[Any]) -> Vector:
-    """sqrt(sum_ij r_i w_ij r_j*) of each output over both dampers; residues (outputs, 2, p)."""
+    """Return sqrt(sum_ij r_i w_ij r_j*) of each output over both dampers; residues (outputs, 2, p)."""
     return np.asarray(np.sqrt(np.sum((residues @ weight * residues.conj()).real, axis=(1, 2))))

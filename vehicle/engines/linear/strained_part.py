@@ -1,4 +1,4 @@
-"""Which part moves most in a mode of the car, and which parameter holds it: the words of a refusal."""
+"""The part with the largest motion in a mode, and the parameter of the most strained element, for error messages."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.matrices import CarMatrices
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import numeric
@@ -20,7 +20,7 @@ Complex = npt.NDArray[np.complex128]
 
 
 def moving_part(matrices: CarMatrices, shape: Complex) -> str:
-    """Name of the rigid part, or "flexible body", with the largest kinetic energy in a shape (n,)."""
+    """Return the name of the rigid part, or "flexible body", with the largest kinetic energy in a shape (n,)."""
     energy = {
         body: float(np.real(np.vdot(rows @ shape, matrices.body_masses[body] @ (rows @ shape))))
         for body, rows in matrices.body_rows.items()
@@ -30,15 +30,15 @@ def moving_part(matrices: CarMatrices, shape: Complex) -> str:
 
 
 def holding_parameter(car: CarModel, pole: complex, shape: Complex) -> str:
-    """Path and value of the parameter whose element works most in a mode, K |r|2 or |s| B |r|2.
+    """Return path and value of the parameter whose element has the largest work K |r|2 or |s| B |r|2 in a mode.
 
     Args:
-        car: the car.
-        pole: s [rad/s].
-        shape: displacements; (n,).
+        car: compiled and trimmed car.
+        pole: pole s of the mode [rad/s].
+        shape: displacements of the mode; (n,).
 
     Returns:
-        As "bushings.suspension_mount.stiffness.z (3e+07)".
+        Path and value, for example "bushings.suspension_mount.stiffness.z (3e+07)".
     """
     rows = Rows(car.model, car.static.preload)
     data = mujoco.MjData(car.model)
@@ -49,29 +49,31 @@ def holding_parameter(car: CarModel, pole: complex, shape: Complex) -> str:
     square = np.abs(jacobian @ shape) ** 2
     speed = abs(pole)
     work: dict[str, float] = {}
-    for name, own, k, c, k2 in zip(rows.names, b.rows, b.stiffness, b.damping, b.branch_stiffness, strict=True):
-        for axis, r, stiffness, drag in zip(AXES, own, k + k2, speed * c, strict=True):
-            kind = "stiffness" if stiffness >= drag else "damping"
-            work[element_parameter(car.vehicle, name, kind, axis)] = float(max(stiffness, drag) * square[r])
-    turned = rows.rotation_jacobian(data) @ shape
+    for name, row_indices, k, c, k2 in zip(rows.names, b.rows, b.stiffness, b.damping, b.branch_stiffness, strict=True):
+        for axis, r, stiffness, drag in zip(AXES, row_indices, k + k2, speed * c, strict=True):
+            parameter = "stiffness" if stiffness >= drag else "damping"
+            work[element_parameter(car.vehicle, name, parameter, axis)] = float(max(stiffness, drag) * square[r])
+    rotations = rows.rotation_jacobian(data) @ shape
     resisting = [name for name in rows.names if numeric(car.model, f"law/{name}")[12] > 0.0]  # type: ignore[index]
-    for name, stiffness, turn in zip(resisting, e.rotations.stiffness, turned, strict=True):
+    for name, stiffness, turn in zip(resisting, e.rotations.stiffness, rotations, strict=True):
         work[element_parameter(car.vehicle, name, "rotational_stiffness", "")] = float(
             stiffness * np.sum(np.abs(turn) ** 2)
         )
     strained = e.springs.stiffness * square[e.springs.rows]
     slid = speed * dampers.laws["viscous_damping"] * np.abs(shape[dampers.dofs]) ** 2
-    placed = car.vehicle.composition
-    listed = [(f"{one.path}.stiffness", value) for one, value in zip(placed.springs, strained, strict=True)]
-    listed += [(f"{one.path}.viscous", value) for one, value in zip(placed.dampers, slid, strict=True)]
+    composition = car.vehicle.composition
+    listed = [
+        (f"{element.path}.stiffness", value) for element, value in zip(composition.springs, strained, strict=True)
+    ]
+    listed += [(f"{element.path}.viscous", value) for element, value in zip(composition.dampers, slid, strict=True)]
     for path, value in listed:
         work[path] = max(work.get(path, 0.0), float(value))
     inside = joint_springs(car.model) * np.abs(shape) ** 2
-    # Unscaled modes are as stiff as their file says.
+    # The stiffness of unscaled modes is that of their file.
     scaled = car.vehicle.body.frequency_scale != 1.0
     modes = "body.frequency_scale" if scaled else f"the modes of body.superelement = {car.vehicle.body.superelement}"
     work[modes] = float(np.sum(inside[e.modes.velocities]))
-    for spring in placed.joint_springs:
+    for spring in composition.joint_springs:
         work[f"{spring.path}.{spring.parameter}"] = float(inside[car.model.joint(spring.joint).dofadr[0]])
     path = max(work, key=lambda name: work[name])
     try:

@@ -1,13 +1,13 @@
-"""The one linear system that every model of the house makes: quarter car, half car, engine on mounts, complete car.
+"""Linear system M, C, K with Maxwell branches, sliding pairs and joints: the form of every model of this package.
 
     M x'' + C x' + K x + sum_b h_b' f_b + sum_p s_p' phi_p = Bc z' + Bk z + l F,    Jc x = 0
     f_b' = K2 (e_b x' + g_b x + r_b z') - f_b / tau_b,    v_p = s_p x' + d_p z'
 
-x are the coordinates, z the driven displacements, f_b the forces of Maxwell branches, phi_p those of sliding pairs
-(friction, and what else depends on their velocity v_p alone), F an applied force, Jc the ideal joints. Leading axes
-"..." stand for many systems at once. Of most branches g_b = 0 and h_b = e_b; a tyre that rolls slips sideways by its
-heading too, and its side force acts behind its middle. No force depends on the place of a cyclic coordinate, as the
-angle of a free wheel: its velocity alone is a state.
+x are the coordinates, z the driven displacements, f_b the forces of Maxwell branches, phi_p the forces of sliding pairs
+(friction and other forces that depend on their velocity v_p only), F an applied force, Jc the ideal joints. Leading
+axes "..." denote a stack of systems. Most branches have g_b = 0 and h_b = e_b; a rolling tyre also slips sideways by
+its heading, and its side force acts behind its centre. No force depends on the value of a cyclic coordinate, for
+example the angle of a free wheel: only its velocity is a state.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from vehicle.model.laws.law import ForceLaw, Numbers
 
 Array = npt.NDArray[np.float64]
 Row = Mapping[str, Numbers]
-"""Linear form: name of a coordinate or an input -> coefficient [-]; arrays of coefficients stand for many systems."""
+"""Linear form: name of a coordinate or an input -> coefficient [-]; arrays for a stack of systems."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Slide:
-    """Sliding pair along one direction; its velocity is row . (x', z')."""
+    """Sliding pair along one direction with the velocity row . (x', z')."""
 
     row: Row
     friction: ForceLaw
@@ -40,7 +40,8 @@ class LinearSystem:
     """Matrices of the equations above; n coordinates, w inputs, b branches, p sliding pairs, k joints.
 
     Attributes:
-        coordinates: names, or empty where they have none; inputs: names of the driven displacements.
+        coordinates: names of the coordinates, may be empty.
+        inputs: names of the driven displacements.
         mass, damping, stiffness: M, C, K; (..., n, n).
         input_damping, input_stiffness: Bc, Bk; (..., n, w).
         branch_rows, branch_inputs: e_b and r_b; (..., b, n), (..., b, w).
@@ -49,9 +50,9 @@ class LinearSystem:
         branch_drifts, branch_effects: g_b and h_b, (b, n); None for 0 and e_b.
         cyclic: positions of the cyclic coordinates; (c,).
         constraints: Jc; (k, n).
-        load: l, where the applied force acts; (..., n).
-        outputs: name -> coefficients of the coordinates and behind them those of the inputs; (..., n + w).
-        slides: laws of the sliding pairs; empty where somebody else gives their forces.
+        load: l, direction of the applied force; (..., n).
+        outputs: name -> coefficients of the coordinates followed by those of the inputs; (..., n + w).
+        slides: laws of the sliding pairs; empty if their forces are given from outside.
     """
 
     coordinates: tuple[str, ...]
@@ -77,19 +78,19 @@ class LinearSystem:
 
     @property
     def size(self) -> int:
-        """Number of coordinates n."""
+        """Return the number of coordinates n."""
         return int(self.mass.shape[-1])
 
     @property
     def effects(self) -> Array:
-        """h_b; (..., b, n)."""
+        """Return h_b; (..., b, n)."""
         return self.branch_rows if self.branch_effects is None else self.branch_effects
 
     def output(self, name: str) -> tuple[Array, Array]:
-        """Coefficients of an output on the coordinates (..., n) and on the inputs (..., w).
+        """Return the coefficients of an output on the coordinates (..., n) and on the inputs (..., w).
 
         Raises:
-            ConfigurationError: there is no such output.
+            ConfigurationError: the output is unknown.
         """
         if name not in self.outputs:
             raise ConfigurationError(f"output {name!r}: unknown; this model has {', '.join(self.outputs)}")
@@ -97,7 +98,7 @@ class LinearSystem:
         return row[..., : self.size], row[..., self.size :]
 
     def with_slide(self, slide: Slide) -> LinearSystem:
-        """The system with one more sliding pair: a law between any coordinates and inputs; errors as of `form_row`."""
+        """Add a sliding pair between any coordinates and inputs; raises the errors of `form_row`."""
         row = self.row(slide.row)[..., None, :]
         return replace(
             self,
@@ -107,27 +108,27 @@ class LinearSystem:
         )
 
     def row(self, form: Row) -> Array:
-        """Coefficients of a linear form of coordinates and inputs, (..., n + w); errors as of `form_row`."""
+        """Return the coefficients of a linear form, (..., n + w); raises the errors of `form_row`."""
         return form_row(form, (*self.coordinates, *self.inputs), self.mass.shape[:-2])
 
 
 def form_row(form: Row, names: tuple[str, ...], shape: tuple[int, ...] = ()) -> Array:
-    """A linear form as an array over names.
+    """Convert a linear form to an array of coefficients.
 
     Args:
         form: name -> coefficient.
-        names: what the columns stand for.
-        shape: of the stack of systems.
+        names: names of the columns.
+        shape: shape of the stack of systems.
 
     Returns:
-        (*shape, len(names)).
+        Coefficients, (*shape, len(names)).
 
     Raises:
-        ConfigurationError: the form names what does not exist.
+        ConfigurationError: the form contains an unknown name.
     """
     row = np.zeros((*shape, len(names)))
     for name, coefficient in form.items():
         if name not in names:
-            raise ConfigurationError(f"linear form: found {name!r}, allowed are {', '.join(names)}")
+            raise ConfigurationError(f"linear form: found {name!r}, must be one of {', '.join(names)}")
         row[..., names.index(name)] = coefficient
     return row

@@ -1,9 +1,9 @@
-"""A half-sine bump met by one wheel after the other, and the exact response of a linear model to it.
+"""Passage of the wheels over a half-sine bump, and the exact response of a linear model to the bump.
 
 While wheel i is on the bump its road height obeys z_i'' = -omega^2 z_i. Coordinates, velocities and road heights
 together are therefore an autonomous linear system s' = A s between the four instants at which a wheel enters or
-leaves the bump; there only (z_i, z_i') jumps, x and x' are continuous. s(t) = expm(A (t - t_k)) s(t_k) holds no
-time-step error.
+leaves the bump; there only (z_i, z_i') jumps, while x and x' are continuous. s(t) = expm(A (t - t_k)) s(t_k) has
+no time-step error.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from vehicle.model.parameters.half_car_rider_parameters import BumpShape
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BumpPassage:
-    """z_i = h0 sin(omega (t - t_i)) while wheel i is on the bump, else 0."""
+    """Road height z_i = h0 sin(omega (t - t_i)) while wheel i is on the bump, otherwise 0."""
 
     height: float
     """h0 [m]."""
@@ -35,26 +35,28 @@ class BumpPassage:
 
     @property
     def contact(self) -> float:
-        """Time wb / v that one wheel spends on the bump [s]."""
+        """Return the time wb / v of a wheel on the bump [s]."""
         return math.pi / self.omega
 
     def heights(self, time: npt.ArrayLike) -> Array:
-        """Road height under each wheel [m], shape (wheels, *time.shape)."""
-        return np.stack([self.height * np.sin(self.omega * since) * on for since, on in self._phases(time)])
+        """Return the road height under each wheel [m], shape (wheels, *time.shape)."""
+        return np.stack(
+            [self.height * np.sin(self.omega * elapsed) * on_bump for elapsed, on_bump in self._phases(time)]
+        )
 
     def rates(self, time: npt.ArrayLike) -> Array:
-        """Rate of the road height under each wheel [m/s], shape (wheels, *time.shape)."""
-        top = self.height * self.omega
-        return np.stack([top * np.cos(self.omega * since) * on for since, on in self._phases(time)])
+        """Return the rate of the road height under each wheel [m/s], shape (wheels, *time.shape)."""
+        peak_rate = self.height * self.omega
+        return np.stack([peak_rate * np.cos(self.omega * elapsed) * on_bump for elapsed, on_bump in self._phases(time)])
 
     def _phases(self, time: npt.ArrayLike) -> list[tuple[Array, npt.NDArray[np.bool_]]]:
         instants = np.asarray(time, dtype=float)
-        since = [instants - arrival for arrival in self.arrivals]
-        return [(phase, (phase >= 0.0) & (phase < self.contact)) for phase in since]
+        elapsed = [instants - arrival for arrival in self.arrivals]
+        return [(phase, (phase >= 0.0) & (phase < self.contact)) for phase in elapsed]
 
 
 def bump_passage(shape: BumpShape, speed: float, wheelbase: float, start: float = 0.0) -> BumpPassage:
-    """Passage of a two-axled car over a bump at constant speed; the rear wheel follows (a1 + a2) / v later.
+    """Return the passage of a two-axle car over a bump at constant speed; the rear wheel arrives (a1 + a2) / v later.
 
     Args:
         shape: height and length of the bump.
@@ -80,16 +82,16 @@ def bump_passage(shape: BumpShape, speed: float, wheelbase: float, start: float 
 
 
 def bump_response(model: LinearSystem, passage: BumpPassage, *, time_step: float, duration: float) -> History:
-    """Response of a model at rest to a bump, exact at every sample.
+    """Compute the response of a model at rest to a bump, exact at every sample.
 
     Args:
         model: linear model with one road for each arrival of the passage.
         passage: the bump under each wheel.
-        time_step: sampling of the answer [s]; no influence on its accuracy.
-        duration: length of the answer [s].
+        time_step: sample interval of the response [s]; no influence on its accuracy.
+        duration: duration of the response [s].
 
     Returns:
-        The motion from t = 0 to the duration. At the instant of an arrival the acceleration is the one just after it.
+        The motion from t = 0 to the duration. At an arrival, the acceleration is the value just after it.
 
     Raises:
         ConfigurationError: time step or duration not positive, or roads and arrivals differ in number.
@@ -100,7 +102,7 @@ def bump_response(model: LinearSystem, passage: BumpPassage, *, time_step: float
         raise ConfigurationError(f"bump response: duration: found {duration!r} s, must be at least one time step")
     if len(passage.arrivals) != len(model.inputs):
         raise ConfigurationError(
-            f"bump response: found {len(passage.arrivals)} arrivals for {len(model.inputs)} roads, needed is one each"
+            f"bump response: found {len(passage.arrivals)} arrivals for {len(model.inputs)} roads, must be equal"
         )
     form, w = first_order(model), len(model.inputs)
     size = form.state.shape[-1]
@@ -108,23 +110,25 @@ def bump_response(model: LinearSystem, passage: BumpPassage, *, time_step: float
     time = np.asarray(time_step * np.arange(round(duration / time_step) + 1), dtype=np.float64)
     states = np.zeros((system.shape[0], time.size))
     powers = [scipy.linalg.expm(system * time_step)]
-    state, since = np.zeros(system.shape[0]), 0.0
+    state, start = np.zeros(system.shape[0]), 0.0
     for instant, wheel, rate in [*_events(passage), (math.inf, 0, 0.0)]:
-        inside = np.flatnonzero((time >= since) & (time < instant))
-        if inside.size:
-            first = scipy.linalg.expm(system * (time[inside[0]] - since)) @ state
-            states[:, inside] = _steps(first, powers, inside.size)
+        samples = np.flatnonzero((time >= start) & (time < instant))
+        if samples.size:
+            first = scipy.linalg.expm(system * (time[samples[0]] - start)) @ state
+            states[:, samples] = _steps(first, powers, samples.size)
         if math.isinf(instant):
             break
-        state, since = scipy.linalg.expm(system * (instant - since)) @ state, instant
+        state, start = scipy.linalg.expm(system * (instant - start)) @ state, instant
         state[size + wheel], state[size + w + wheel] = 0.0, rate
     state_of, inputs, input_rates = np.split(states.T, (size, size + w), axis=1)
-    none = np.zeros((time.size, form.slide.shape[-2]))
-    return History(model=form, time=time, state=state_of, inputs=inputs, input_rates=input_rates, sliding_force=none)
+    no_pairs = np.zeros((time.size, form.slide.shape[-2]))
+    return History(
+        model=form, time=time, state=state_of, inputs=inputs, input_rates=input_rates, sliding_force=no_pairs
+    )
 
 
 def _autonomous(form: FirstOrder, omega: float) -> Array:
-    """A of s = (states, z, z'), shape (s + 2w, s + 2w)."""
+    """Return the matrix A of s = (states, z, z'), shape (s + 2w, s + 2w)."""
     w = len(form.system.inputs)
     return np.block(
         [
@@ -136,14 +140,14 @@ def _autonomous(form: FirstOrder, omega: float) -> Array:
 
 
 def _events(passage: BumpPassage) -> list[tuple[float, int, float]]:
-    """Instants at which a wheel enters (road rate h0 omega) or leaves (0) the bump, in order."""
+    """Return the instants at which a wheel enters (road rate h0 omega) or leaves (rate 0) the bump, in order."""
     entering = [(arrival, wheel, passage.height * passage.omega) for wheel, arrival in enumerate(passage.arrivals)]
     leaving = [(arrival + passage.contact, wheel, 0.0) for wheel, arrival in enumerate(passage.arrivals)]
     return sorted(entering + leaving)
 
 
 def _steps(first: Array, powers: list[Array], count: int) -> Array:
-    """States P^0 s, P^1 s, ... of a uniform grid by doubling, shape (len(s), count); powers grows as P^(2^k)."""
+    """Compute states P^0 s, P^1 s, ... of a uniform grid by doubling, (len(s), count); appends P^(2^k) to `powers`."""
     states = first[:, None]
     level = 0
     while states.shape[1] < count:

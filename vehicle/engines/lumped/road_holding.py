@@ -1,4 +1,4 @@
-"""Quarter and half car on a random road: how much the load of each tyre fluctuates, comfort and suspension travel."""
+"""Quarter and half car on a random road: fluctuation of the tyre loads, comfort and suspension travel."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.first_order import first_order
-from vehicle.engines.linear.parts import ROAD, Network, masses_of
+from vehicle.engines.linear.network import ROAD, Network, masses_of
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.lumped.half_car_rider import ENDS, GRAVITY, ROADS, axle_links
+from vehicle.engines.lumped.half_car_rider_model import ENDS, GRAVITY, ROADS, axle_links
 from vehicle.model.parameters.axle import Axle
 from vehicle.model.parameters.damper_choice import (
     ExponentialRoad,
@@ -23,55 +23,55 @@ from vehicle.model.parameters.damper_choice import (
 Array = npt.NDArray[np.float64]
 
 LINES_PER_BAND = 10
-"""Midpoints for the mean over a band; twice as many change R by less than 0.1 %."""
+"""Number of midpoints for the mean over a band; twice as many change R by less than 0.1 %."""
 
 LINES_PER_HERTZ = 20
-"""Midpoints for the integral of the physical measure; twice as many change it by less than 0.1 %."""
+"""Midpoints per hertz for the integral of the physical measure; twice as many change it by less than 0.1 %."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Tyre:
-    """One tyre: the coordinate it carries, its axle, its load at rest."""
+    """Tyre of an axle, with its share of the sprung mass."""
 
     wheel: str
     """Coordinate of the unsprung mass."""
     axle: Axle
-    """Its spring kt and damper ct."""
+    """Axle with tyre stiffness kt and tyre damping ct."""
     sprung_share: float
-    """Share of the sprung mass on it [kg]."""
+    """Share of the sprung mass on the tyre [kg]."""
 
     @property
     def static_load(self) -> float:
-        """(share of the sprung mass + unsprung mass) g [N]."""
+        """Return the static load (share of the sprung mass + unsprung mass) g [N]."""
         return (self.sprung_share + self.axle.unsprung_mass) * GRAVITY
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadHoldingModel:
-    """A linear model with its tyres, in the order of its roads."""
+    """Linear model with its tyres in the order of its roads."""
 
     model: LinearSystem
     tyres: tuple[Tyre, ...]
 
-    def response(self, frequency: npt.ArrayLike, *places: str) -> npt.NDArray[np.complex128]:
-        """Motion per road height, the same road under every wheel at the same time.
+    def response(self, frequency: npt.ArrayLike, *coordinates: str) -> npt.NDArray[np.complex128]:
+        """Return the motion per road height, with the same road under every wheel at the same time.
 
         Args:
             frequency: lines [Hz], shape (m,).
-            places: coordinates; all of them by default.
+            coordinates: coordinates; all of them by default.
 
         Returns:
-            [m/m] or [rad/m], shape (places, m).
+            Response [m/m] or [rad/m], shape (coordinates, m).
         """
-        return frequency_response(first_order(self.model), frequency, places or self.model.coordinates)
+        return frequency_response(first_order(self.model), frequency, coordinates or self.model.coordinates)
 
 
 def quarter_car_model(car: RoadHoldingQuarterCar, damping: float | None = None) -> RoadHoldingModel:
-    """Quarter car with the coordinates wheel, body.
+    """Return a quarter car with the coordinates wheel and body.
 
     Args:
-        car: parameters.
-        damping: damper coefficient in place of the car's own [N s/m].
+        car: parameters of the car.
+        damping: damper coefficient that replaces the value of the car [N s/m].
     """
     network = Network(
         coordinates=("wheel", "body"),
@@ -85,23 +85,23 @@ def quarter_car_model(car: RoadHoldingQuarterCar, damping: float | None = None) 
 def half_car_model(
     car: RoadHoldingHalfCar, front_damping: float | None = None, rear_damping: float | None = None
 ) -> RoadHoldingModel:
-    """Half car with the coordinates front_wheel, rear_wheel, heave [m] and pitch [rad] (front down positive).
+    """Return a half car with the coordinates front_wheel, rear_wheel, heave [m] and pitch [rad] (front down positive).
 
     Args:
-        car: parameters.
-        front_damping: front damper coefficient in place of the car's own [N s/m].
-        rear_damping: the same at the rear.
+        car: parameters of the car.
+        front_damping: front damper coefficient that replaces the value of the car [N s/m].
+        rear_damping: rear damper coefficient that replaces the value of the car [N s/m].
     """
     axles = dict(zip(ENDS, (car.front, car.rear), strict=True))
     masses = {f"{end}_wheel": axle.unsprung_mass for end, axle in axles.items()}
     masses |= {"heave": car.sprung_mass, "pitch": car.pitch_inertia}
-    places = zip(axles.items(), (-car.front_arm, car.rear_arm), (front_damping, rear_damping), strict=True)
+    axle_data = zip(axles.items(), (-car.front_arm, car.rear_arm), (front_damping, rear_damping), strict=True)
     network = Network(
         coordinates=tuple(masses),
         masses=masses_of(masses),
         links=tuple(
             link
-            for (end, axle), arm, damping in places
+            for (end, axle), arm, damping in axle_data
             for link in axle_links(
                 axle, {"heave": 1.0, "pitch": arm, f"{end}_wheel": -1.0}, f"{end}_wheel", f"{end}_road", damping
             )
@@ -118,17 +118,20 @@ def half_car_model(
 
 
 def exponential_density(road: ExponentialRoad, frequency: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """G(f) = a exp(-b f) [m2/Hz] at lines [Hz] of any shape. Source: Tamboli and Joshi (1999), as cited there."""
+    """Return G(f) = a exp(-b f) [m2/Hz] at lines [Hz] of any shape.
+
+    Source: Tamboli and Joshi (1999), as cited in "Dynamic Modeling of Vehicles and Damper" (2014).
+    """
     return np.asarray(road.roughness * np.exp(-road.decay * np.asarray(frequency, dtype=float)))
 
 
 def band_amplitudes(road: ExponentialRoad, edges: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Root mean square displacement in bands, in closed form.
+    """Return the root mean square displacement in bands, in closed form.
 
     x_r = sqrt(int_f1^f2 a exp(-b f) df) = sqrt(a / b (exp(-b f1) - exp(-b f2)))
 
     Args:
-        road: the density.
+        road: displacement density of the road.
         edges: band edges, rising [Hz], shape (m + 1,).
 
     Returns:
@@ -142,11 +145,11 @@ def band_amplitudes(road: ExponentialRoad, edges: npt.ArrayLike) -> npt.NDArray[
 def printed_load_fluctuation(
     car: RoadHoldingModel, road: ExponentialRoad, bands: FrequencyBands, *, signed: bool = False
 ) -> Array:
-    """Load fluctuation rate R of each tyre as printed: a plain sum of band amplitudes.
+    """Return the load fluctuation rate R of each tyre as printed: a plain sum of band amplitudes.
 
     R = kt sum_n |x_r,n - x_u,n| / (m g),  x_u,n = x_r,n mean_n |H_u|
 
-    The magnitude bars are lost in the print. Without them bands with |H_u| > 1 count negative and R has no minimum.
+    The magnitude bars are missing in the print. Without them, bands with |H_u| > 1 are negative and R has no minimum.
 
     Args:
         car: model with tyres.
@@ -155,7 +158,7 @@ def printed_load_fluctuation(
         signed: leave the magnitude bars out.
 
     Returns:
-        R [-], one for each tyre.
+        R [-] of each tyre.
 
     Source: "Dynamic Modeling of Vehicles and Damper" (2014), equation 10.
     """
@@ -164,8 +167,8 @@ def printed_load_fluctuation(
     amplitude = band_amplitudes(road, bands.width * np.arange(count + 1))
     response = np.abs(car.response(lines, *(tyre.wheel for tyre in car.tyres)))
     rates = []
-    for tyre, found in zip(car.tyres, response, strict=True):
-        magnitude = found.reshape(count, LINES_PER_BAND).mean(axis=1)
+    for tyre, wheel_response in zip(car.tyres, response, strict=True):
+        magnitude = wheel_response.reshape(count, LINES_PER_BAND).mean(axis=1)
         difference = amplitude * (1.0 - magnitude)
         total = difference.sum() if signed else np.abs(difference).sum()
         rates.append(tyre.axle.tyre_stiffness * total / tyre.static_load)
@@ -173,17 +176,17 @@ def printed_load_fluctuation(
 
 
 def tyre_load_ratio(car: RoadHoldingModel, road: ExponentialRoad, bands: FrequencyBands) -> Array:
-    """Physical measure: RMS of the dynamic tyre force over the static load.
+    """Return the physical measure: RMS of the dynamic tyre force over the static load.
 
     sqrt(int |kt + j w ct|^2 |1 - H_u|^2 G df) / (m g)
 
     Args:
         car: model with tyres.
         road: displacement density.
-        bands: its highest frequency ends the integral.
+        bands: frequency bands; the integral ends at the highest frequency.
 
     Returns:
-        Ratio [-], one for each tyre. Above about 1/3 the tyre leaves the road (three standard deviations).
+        Ratio [-] of each tyre. Above about 1/3 the tyre leaves the road (three standard deviations).
     """
     width = 1.0 / LINES_PER_HERTZ
     lines = np.asarray(width * (np.arange(round(bands.highest * LINES_PER_HERTZ)) + 0.5), dtype=np.float64)
@@ -191,7 +194,7 @@ def tyre_load_ratio(car: RoadHoldingModel, road: ExponentialRoad, bands: Frequen
 
 
 def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Array, density: Array, width: Array | float) -> Array:
-    """RMS tyre force over static load on a road given by its density at midpoints.
+    """Return RMS tyre force over static load on a road given by its density at midpoints.
 
     Args:
         car: model with tyres.
@@ -200,12 +203,12 @@ def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Array, density: Arr
         width: width of each interval [Hz], shape (m,) or one for all.
 
     Returns:
-        Ratio [-], one for each tyre.
+        Ratio [-] of each tyre.
     """
     response = car.response(lines, *(tyre.wheel for tyre in car.tyres))
     ratios = []
-    for tyre, found in zip(car.tyres, response, strict=True):
-        deflection = 1.0 - found
+    for tyre, wheel_response in zip(car.tyres, response, strict=True):
+        deflection = 1.0 - wheel_response
         rate = np.abs(tyre.axle.tyre_stiffness + 2j * np.pi * lines * tyre.axle.tyre_damping)
         ratios.append(np.sqrt(np.sum((rate * np.abs(deflection)) ** 2 * density * width)) / tyre.static_load)
     return np.array(ratios)
@@ -213,7 +216,7 @@ def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Array, density: Arr
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RideMeasures:
-    """Root mean squares of one damper on one road."""
+    """Ride measures of a damper on a road, as root mean squares."""
 
     tyre_load: float
     """Dynamic tyre force over static load [-]."""
@@ -226,7 +229,7 @@ class RideMeasures:
 def ride_measures(
     car: RoadHoldingQuarterCar, damping: float, lines: Array, density: Array, width: Array, weight: npt.ArrayLike = 1.0
 ) -> RideMeasures:
-    """Root mean squares from spectra: y_rms^2 = int |H_y|^2 G df by the midpoint rule.
+    """Return the ride measures from spectra: y_rms^2 = int |H_y|^2 G df by the midpoint rule.
 
     Args:
         car: quarter car.
@@ -234,7 +237,7 @@ def ride_measures(
         lines: midpoints [Hz], shape (m,).
         density: displacement density of the road at the midpoints [m2/Hz], shape (m,).
         width: width of each interval [Hz], shape (m,).
-        weight: spectrum factor on the acceleration, as Wk of ISO 2631-1 [-], shape (m,); 1 leaves it unweighted.
+        weight: frequency weighting of the acceleration, for example Wk of ISO 2631-1 [-], shape (m,); 1 for none.
 
     Returns:
         The three measures.

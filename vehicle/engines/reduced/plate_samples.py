@@ -1,4 +1,4 @@
-"""Height and velocity of the driven plates at the ends of the steps, once per signal."""
+"""Displacement and velocity of the driven plates at the ends of the steps, computed once per signal."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ Vector = npt.NDArray[np.float64]
 
 
 LARGEST_TABLE = 64_000_000
-"""Largest table that is kept [byte]: two minutes of both plates at 8 kHz. Longer ones are made piece by piece, so that
-memory does not grow with the steps of a long record."""
+"""Maximum size of a cached table [byte]: two minutes of both plates at 8 kHz. Longer tables are computed in slices, so
+that memory does not grow with the steps of a long record."""
 
 
-class LongPlates:
-    """The rows of `plate_samples`, made when they are asked for; arguments as there."""
+class LongPlateSamples:
+    """Rows of `plate_samples`, computed on access; same arguments."""
 
     def __init__(self, signal: Signal, step: float, steps: int, beyond: int) -> None:
         self.signal, self.step, self.steps, self.rows = signal, step, steps, steps + 1 + beyond
 
     def __getitem__(self, part: slice) -> Vector:
-        """Rows (z, z') of each driven plate."""
+        """Return the rows of a slice, (z, z') of each driven plate."""
         index, signal = np.arange(*part.indices(self.rows)), self.signal
         inside, last = index <= self.steps, min(self.step * self.steps, signal.duration)
         at = np.clip(self.step * index[inside], 0.0, signal.duration)
@@ -40,26 +40,26 @@ class LongPlates:
         return np.stack(columns, axis=1)
 
 
-def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vector | LongPlates:
-    """(z, z') of each driven plate [m, m/s], from the spline of the signal; (steps + 1 + beyond, 2 per driven plate).
+def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vector | LongPlateSamples:
+    """Return (z, z') of each driven plate [m, m/s] from the spline of the signal; (steps + 1 + beyond, 2 per plate).
 
     Args:
         signal: displacement of the plates.
         step: time step [s].
         steps: number of steps.
-        beyond: further steps with the last acceleration.
+        beyond: number of further steps after the end, with the last acceleration.
 
     Returns:
-        The table, or what makes its slices where it would be longer than `LARGEST_TABLE`.
+        The table, or an object that computes its slices if the table would be larger than `LARGEST_TABLE`.
     """
     long = 16 * (steps + 1 + beyond) * len(signal.wheels) > LARGEST_TABLE
-    return (LongPlates if long else _table)(signal, step, steps, beyond)
+    return (LongPlateSamples if long else _table)(signal, step, steps, beyond)
 
 
 # A sweep runs hundreds of cars over the same few signals.
 @lru_cache(maxsize=4)
 def _table(signal: Signal, step: float, steps: int, beyond: int) -> Vector:
-    """All rows."""
-    table = LongPlates(signal, step, steps, beyond)[:]
+    """Return all rows as a read-only table."""
+    table = LongPlateSamples(signal, step, steps, beyond)[:]
     table.setflags(write=False)
     return table

@@ -1,4 +1,4 @@
-"""Channels from the states of the poles at the samples of a run."""
+"""Computation of channels from the states of the poles at the samples of a run."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ class Readout:
 
     Args:
         outputs: rows of the channels.
-        factors: of the step.
+        factors: factors of the step.
         pairs: number of complex poles.
-        columns: columns of (z, z') of all plates that the plate samples hold.
+        columns: columns of (z, z') of all plates that are in the plate samples.
     """
 
     def __init__(self, outputs: Outputs, factors: StepFactors, pairs: int, columns: Sequence[int]) -> None:
-        rows, chosen = outputs.poles, list(columns)
+        rows, driven = outputs.poles, list(columns)
         self.rows = np.hstack([rows[:, :pairs].real, -rows[:, :pairs].imag, rows[:, pairs:].real])
         direct = np.hstack([outputs.height, outputs.velocity])
-        self.by_plate = ((rows @ factors.ahead).real + direct)[:, chosen]
+        self.by_plate = ((rows @ factors.ahead).real + direct)[:, driven]
         self.by_step = (rows @ factors.force).real
 
     def at(self, states: Vector, plates: Vector, before: Vector) -> Vector:
-        """Outputs at samples.
+        """Return the outputs at samples.
 
         Args:
             states: eta without the forces of the last step; (samples, 2 p + q).
@@ -39,7 +39,7 @@ class Readout:
             before: damper forces of the last step [N]; (samples, w).
 
         Returns:
-            (outputs, samples).
+            Outputs, (outputs, samples).
         """
         table = np.asarray(self.rows @ states.T)
         table += self.by_plate @ plates.T

@@ -1,8 +1,8 @@
-"""Where the motion leaves what the matrices can say.
+"""Valid range of the reduced engine: small rotations, tyres in contact, laws within their linear segments.
 
-The matrices are those of the design position. A part that turns by an angle a changes the direction of its forces by a
-and lengths by a^2/2; a tyre that lifts off would pull; a spring with a table, or a stop, is its tangent only on the
-piece on which the car stands. All are watched, and the run says so.
+The matrices belong to the design position. A part that rotates by an angle a changes the direction of its forces by a
+and lengths by a^2/2. A linear tyre that lifts off would pull. A spring with a table, or a bump stop, is linear only in
+the segment in which the car is at rest. All three are monitored during a run and reported as warnings.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.matrices import Bend, CarMatrices
+from vehicle.engines.linear.car_matrices import CarMatrices, LinearSegment
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.readout import Readout
 from vehicle.engines.reduced.step_factors import StepFactors
@@ -21,126 +21,131 @@ from vehicle.engines.reduced.step_factors import StepFactors
 Vector = npt.NDArray[np.float64]
 
 LARGEST_ANGLE = 0.05
-"""Rotation of a part [rad] up to which the matrices hold. Measured against MuJoCo on roads of growing level: up to here
-the comfort value agrees within 0.1 %, the RMS of every channel of body, engine and dampers within 0.2 %, and only the
-lateral acceleration of the knuckle, which is made of such rotations, is 1 % off. At 0.13 rad (a road of 43 mm RMS) that
-one is 5 % off, and comfort still below 0.1 %. Where it is small it may be more: with one rear wheel of `focus_road`
-driven alone 20 %, of a lateral acceleration that is a tenth of the vertical one."""
+"""Maximum rotation of a part [rad]. Measured against MuJoCo on roads of increasing level: up to this rotation the
+comfort value agrees within 0.1 %, the RMS of every channel of body, engine and dampers within 0.2 %, and only the
+lateral acceleration of the knuckle, which consists of such rotations, is 1 % off. At 0.13 rad (a road of 43 mm RMS) it
+is 5 % off, and comfort still below 0.1 %. A small lateral acceleration may have a larger relative error: 20 % with only
+one rear wheel of `focus_road` driven, where it is a tenth of the vertical acceleration."""
 
-LOOK_EVERY = 16
-"""Samples between two looks: 16 ms at 1 kHz, a tenth of the period of the fastest rigid-body mode."""
+CHECK_EVERY = 16
+"""Samples between two checks: 16 ms at 1 kHz, a tenth of the period of the fastest rigid-body mode."""
 
-LONGEST_LOOK = 0.016
-"""Longest time between two looks [s]: where samples are further apart than at 1 kHz, fewer are passed over."""
+LONGEST_CHECK_INTERVAL = 0.016
+"""Maximum time between two checks [s], which limits the stride for sample rates below 1 kHz."""
 
 
-def samples_of_a_look(interval: float) -> int:
-    """From one sample that is looked at to the next, samples being `interval` [s] apart."""
-    return max(min(LOOK_EVERY, int(LONGEST_LOOK / interval + 1e-9)), 1)
+def check_stride(interval: float) -> int:
+    """Return the number of samples from one check to the next for a sample interval [s]."""
+    return max(min(CHECK_EVERY, int(LONGEST_CHECK_INTERVAL / interval + 1e-9)), 1)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Validity:
-    """What a run has shown of the limits of the matrices.
+    """Extremes of a run, compared with the valid range of the matrices.
 
     Attributes:
         angles: largest rotation of each body [rad].
         loads: lowest tyre load of each wheel [N].
-        one_sided: wheels whose tyres do not pull.
-        left: how far a law over displacement left its piece [m], where it did.
+        one_sided: wheels whose tyres cannot pull.
+        exceeded: element name to displacement beyond its linear segment [m].
     """
 
     angles: Mapping[str, float]
     loads: Mapping[str, float]
     one_sided: frozenset[str]
-    left: Mapping[str, float]
+    exceeded: Mapping[str, float]
 
     @property
     def small_angles(self) -> bool:
-        """Whether all parts turned little enough."""
+        """Return True if no part rotated by more than `LARGEST_ANGLE`."""
         return all(angle <= LARGEST_ANGLE for angle in self.angles.values())
 
     @property
-    def held(self) -> bool:
-        """Whether the motion stayed within what the matrices hold for."""
-        return self.small_angles and not self.left and not self.lifted
+    def within_limits(self) -> bool:
+        """Return True if the motion stayed within the valid range of the matrices."""
+        return self.small_angles and not self.exceeded and not self.lifted
 
     @property
     def lifted(self) -> dict[str, float]:
-        """Lowest load [N] of each one-sided tyre that would have to pull: MuJoCo lets it go."""
+        """Return the lowest loads [N] of lifted one-sided tyres, by wheel; MuJoCo releases a lifted tyre."""
         return {wheel: load for wheel, load in self.loads.items() if wheel in self.one_sided and load < 0.0}
 
     def warnings(self) -> tuple[str, ...]:
-        """A sentence for each way in which the motion left the validity of the matrices."""
-        found = []
-        worst = max(self.angles, key=lambda body: self.angles[body])
+        """Return warnings for the exceeded limits."""
+        messages = []
+        largest = max(self.angles, key=lambda body: self.angles[body])
         if not self.small_angles:
-            found.append(
-                f"{worst} turned by {self.angles[worst]:.3f} rad; the reduced engine, which takes the car "
-                f"as linear but for its dampers, holds up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine"
+            messages.append(
+                f"{largest} rotated by {self.angles[largest]:.3f} rad; the reduced engine, in which only the dampers "
+                f"are nonlinear, is valid up to {LARGEST_ANGLE:g} rad: use the MuJoCo engine"
             )
-        for name, distance in self.left.items():
-            found.append(
-                f"{name} left the piece of its table on which the car stands by {1e3 * distance:.2g} mm; the reduced "
-                "engine knows that piece alone: use the MuJoCo engine"
+        for name, distance in self.exceeded.items():
+            messages.append(
+                f"{name} left the linear segment of its table by {1e3 * distance:.2g} mm; the reduced engine is valid "
+                "only in the segment in which the car is at rest: use the MuJoCo engine"
             )
         for wheel, load in self.lifted.items():
-            found.append(
+            messages.append(
                 f"tyre {wheel} lifts off its plate (load {load:.0f} N in the reduced engine, which is linear): use the "
                 "MuJoCo engine"
             )
         for wheel, load in self.loads.items():
             if load < 0.0 and wheel not in self.lifted:
-                found.append(
-                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); the model pulls there, so the "
-                    "result is out of its validity"
+                messages.append(
+                    f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); its linear tyre pulls, so the "
+                    "result is outside the valid range"
                 )
-        return tuple(found)
+        return tuple(messages)
 
 
-def turning_bodies(matrices: CarMatrices) -> tuple[str, ...]:
-    """The first body of each part that turns by itself: bodies that are fixed to each other turn alike."""
-    first: dict[str, str] = {}
+def rotating_bodies(matrices: CarMatrices) -> tuple[str, ...]:
+    """Return one representative of each group of rigidly connected bodies, which have equal rotations."""
+    representative: dict[str, str] = {}
     for body in matrices.body_rows:
-        first.setdefault(matrices.carried_by.get(body, body), body)
-    return tuple(body for body in first.values() if body not in matrices.spinning)
+        representative.setdefault(matrices.carried_by.get(body, body), body)
+    return tuple(body for body in representative.values() if body not in matrices.spinning)
 
 
 def rotation_outputs(model: PoleModel, bodies: Sequence[str]) -> Outputs:
-    """Rotations of bodies about three axes; (3 bodies, ...)."""
-    turns = np.vstack([model.matrices.body_rows[body][3:] for body in bodies]) @ model.modal
-    none = np.zeros((len(turns), len(model.matrices.system.inputs)))
-    return Outputs(poles=turns, height=none, velocity=none)
+    """Return the rotations of bodies about three axes as outputs; (3 bodies, ...)."""
+    rotations = np.vstack([model.matrices.body_rows[body][3:] for body in bodies]) @ model.modal
+    no_plates = np.zeros((len(rotations), len(model.matrices.system.inputs)))
+    return Outputs(poles=rotations, height=no_plates, velocity=no_plates)
 
 
-def bend_outputs(model: PoleModel) -> Outputs:
-    """Displacements of the laws that bend; (bends, ...)."""
-    bends, wheels = model.matrices.bends, len(model.matrices.system.inputs)
-    stretch = np.array([bend.row @ model.modal for bend in bends], dtype=complex).reshape(-1, len(model.poles))
-    height = np.array([-1.0 * (np.arange(wheels) == bend.plate) for bend in bends]).reshape(-1, wheels)
-    return Outputs(poles=stretch, height=height, velocity=np.zeros_like(height))
+def segment_outputs(model: PoleModel) -> Outputs:
+    """Return the displacements of the laws with linear segments as outputs; (segments, ...)."""
+    segments, wheels = model.matrices.segments, len(model.matrices.system.inputs)
+    displacements = np.array([segment.row @ model.modal for segment in segments], dtype=complex).reshape(
+        -1, len(model.poles)
+    )
+    height = np.array([-1.0 * (np.arange(wheels) == segment.plate) for segment in segments]).reshape(-1, wheels)
+    return Outputs(poles=displacements, height=height, velocity=np.zeros_like(height))
 
 
 def tyre_outputs(model: PoleModel) -> Outputs:
-    """Tyre loads without their static values."""
+    """Return the dynamic tyre loads, without static values, as outputs."""
     return model.outputs([f"tyre_{wheel}_force_z" for wheel in model.matrices.system.inputs])
 
 
-def left_pieces(bends: Sequence[Bend], low: Vector, high: Vector) -> dict[str, float]:
-    """How far each bend left its piece [m], of those that did; low, high: extremes of the displacements; (bends,)."""
-    beyond = [max(bend.low - a, b - bend.high) for bend, a, b in zip(bends, low.tolist(), high.tolist(), strict=True)]
-    return {bend.name: distance for bend, distance in zip(bends, beyond, strict=True) if distance > 0.0}
+def exceeded_segments(segments: Sequence[LinearSegment], low: Vector, high: Vector) -> dict[str, float]:
+    """Return the displacement beyond each exceeded segment [m] by element; low, high: extremes [m], (segments,)."""
+    excess = [
+        max(segment.low - a, b - segment.high)
+        for segment, a, b in zip(segments, low.tolist(), high.tolist(), strict=True)
+    ]
+    return {segment.name: distance for segment, distance in zip(segments, excess, strict=True) if distance > 0.0}
 
 
 class ValidityWatch:
-    """Largest rotation of the parts and lowest tyre loads of a run.
+    """Monitor of the largest rotations, lowest tyre loads and extreme displacements of a run.
 
     Args:
-        model: the car.
-        factors: of the step.
-        columns: driven columns, as for `Readout`.
+        model: pole model of the car.
+        factors: factors of the step.
+        columns: driven columns, see `Readout`.
         tyre_load: static tyre loads [N] by wheel.
-        interval: between two samples [s].
+        interval: time between two samples [s].
     """
 
     def __init__(
@@ -151,35 +156,37 @@ class ValidityWatch:
         tyre_load: Mapping[str, float],
         interval: float,
     ) -> None:
-        self.every = samples_of_a_look(interval)
+        self.every = check_stride(interval)
         self.matrices, self.bodies = (
             model.matrices,
             tuple(body for body in model.matrices.body_rows if body not in model.matrices.spinning),
         )
         self.rotations, self.tyres, self.stretches = (
             Readout(outputs, factors, model.pairs, columns)
-            for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), bend_outputs(model))
+            for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), segment_outputs(model))
         )
         self.static = np.array([tyre_load[wheel] for wheel in model.matrices.system.inputs])
         self.angle, self.load = np.zeros(len(self.bodies)), self.static.copy()
-        self.low, self.high = np.zeros((2, len(model.matrices.bends)))
+        self.low, self.high = np.zeros((2, len(model.matrices.segments)))
 
-    def look(self, states: Vector, plates: Vector, before: Vector) -> None:
-        """Take a block of samples into account; arguments as of `Readout.at`."""
-        seen = slice(None, None, self.every)
-        turns = self.rotations.at(states[seen], plates[seen], before[seen]).reshape(len(self.bodies), 3, -1)
-        self.angle = np.maximum(self.angle, np.sqrt(np.max(np.sum(turns**2, axis=1), axis=1)))
-        loads = self.tyres.at(states[seen], plates[seen], before[seen]) + self.static[:, None]
+    def update(self, states: Vector, plates: Vector, before: Vector) -> None:
+        """Update the extremes by a block of samples; see `Readout.at` for the arguments."""
+        checked = slice(None, None, self.every)
+        rotations = self.rotations.at(states[checked], plates[checked], before[checked]).reshape(
+            len(self.bodies), 3, -1
+        )
+        self.angle = np.maximum(self.angle, np.sqrt(np.max(np.sum(rotations**2, axis=1), axis=1)))
+        loads = self.tyres.at(states[checked], plates[checked], before[checked]) + self.static[:, None]
         self.load = np.minimum(self.load, np.min(loads, axis=1))
-        if self.matrices.bends:
+        if self.matrices.segments:
             values = self.stretches.at(states, plates, before)
             self.low, self.high = np.minimum(self.low, values.min(axis=1)), np.maximum(self.high, values.max(axis=1))
 
-    def found(self) -> Validity:
-        """What was seen."""
+    def result(self) -> Validity:
+        """Return the extremes of the run."""
         return Validity(
             angles=dict(zip(self.bodies, self.angle.tolist(), strict=True)),
             loads=dict(zip(self.matrices.system.inputs, self.load.tolist(), strict=True)),
             one_sided=self.matrices.one_sided,
-            left=left_pieces(self.matrices.bends, self.low, self.high),
+            exceeded=exceeded_segments(self.matrices.segments, self.low, self.high),
         )

@@ -7,7 +7,7 @@ hub about e leaves it at rest. The rows of a tyre at the point of the hub become
 
     J -> J + w x (c + r - p_hub),   J_spin = e x r,
 
-and their branches along x and y represent the slip (`docs/theory.md`, "The rolling tyre"). The input of the branch
+and their branches along x and y represent the slip (`docs/theory/rolling-tyre.md`). The input of the branch
 along y is v_y + V psi, psi being the heading of the axle, in the middle of the past step. The known part of
 
 - the slope of the road, F_z w'/V along x at the wheel centre, with the present load;

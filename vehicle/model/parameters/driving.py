@@ -27,7 +27,7 @@ class Driving(Validated):
     """Constant speed straight ahead with freely rolling wheels; at speed 0 the tyres are at rest, as on a rig.
 
     The hold of the course represents the driver: free rolling leaves the position of the car along x and y and its
-    heading without any stiffness. Comfort does not depend on it: `docs/theory.md`.
+    heading without any stiffness. Comfort does not depend on it: `docs/theory/rolling-tyre.md`.
     """
 
     speed: float = quantity(

@@ -12,17 +12,17 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.notebook.cards import car_card
+from vehicle.engines.linear.car_matrices import CarMatrices, car_matrices
+from vehicle.engines.linear.car_modes import Mode, car_modes, require_stable
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.load_rows import LoadRows, load_rows
-from vehicle.engines.linear.matrices import CarMatrices, car_matrices
-from vehicle.engines.linear.modes import Mode, car_modes, require_stable
 from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
-from vehicle.engines.linear.varied import Terms, VariedCar
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
-from vehicle.engines.reduced.run import simulate_reduced
+from vehicle.engines.reduced.pole_stepping import has_compiler
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.static_trim import StaticTrim
@@ -101,8 +101,8 @@ class Car:
         """Return a variant of this car with changed parameters; fast for many variants.
 
         If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
-        terms of this car, computed once (`vehicle.engines.linear.varied`), and its MuJoCo model is built at its first
-        use. Every other variant is built like a loaded car.
+        terms of this car, computed once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built at
+        its first use. Every other variant is built like a loaded car.
 
         Args:
             overrides: changes in the form of `load`, in addition to those of this car.
@@ -142,13 +142,13 @@ class Car:
         return build_model(self.vehicle, self.trimmed_body)
 
     @cached_property
-    def _terms(self) -> Terms:
-        return Terms(self.model, self.matrices, self.trimmed_body)
+    def _terms(self) -> VariantTerms:
+        return VariantTerms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
-    def _from_terms(self) -> VariedCar | None:
+    def _from_terms(self) -> CarVariant | None:
         """Matrices from the terms of the base car; None if this car must be built."""
-        return None if self._base is None else self._base._terms.car_of(self.vehicle)
+        return None if self._base is None else self._base._terms.variant(self.vehicle)
 
     @cached_property
     def matrices(self) -> CarMatrices:

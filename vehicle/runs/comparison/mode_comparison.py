@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.runs.car import Car

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle.engines.linear.participation import participation
+from vehicle.engines.linear.mode_participation import participation
 from vehicle.runs.report.finished_run import FinishedRun
 
 PLACE, WORDS = "seat_rail_acc_z", "seat rail"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.names import side_of
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions

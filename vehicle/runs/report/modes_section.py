@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from vehicle.drawing.rendering.wireframe import car_wireframe
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, folded, joined, table, tag
 from vehicle.runs.report.moving_modes import mode_set

@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe, unit_factor
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 
 FULL = 999
 """Maximum displacement of a mode in the data of the page: a step of 1/999 is finer than a pixel."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.several_runs import plot_densities, shared_channels
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.findings import main_places, nearest_mode, of_plate
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag

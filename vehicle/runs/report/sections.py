@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.drawing.rendering.plots import plot_time
-from vehicle.engines.linear.modes import Mode
+from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.names import side_of
 from vehicle.runs.report.comfort_class import reactions

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle.engines.reduced.equivalent import equivalent_damping, linearised_response
+from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.plausibility import (
     LARGEST_ACCELERATION,

@@ -13,9 +13,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle.engines.reduced.lane_rows import LANES
-from vehicle.engines.reduced.many import COARSE_STEP, ManyRuns, simulate_many
-from vehicle.engines.reduced.march import has_compiler
+from vehicle.engines.reduced.batch_layout import LANES
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP, BatchRuns, simulate_batch
+from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError, VehicleError
@@ -189,7 +189,7 @@ def measured_batch(
     return results
 
 
-def _measured(cars: Sequence[Car], simulated: ManyRuns, rows: list[int], measure: BatchMeasure) -> list[Result]:
+def _measured(cars: Sequence[Car], simulated: BatchRuns, rows: list[int], measure: BatchMeasure) -> list[Result]:
     """Return the values of selected rows of a simulated batch."""
     whole = len(rows) == len(cars)
     runs = Runs(
@@ -236,9 +236,9 @@ def recordings_of(cases: Sequence[Case], channels: Sequence[str]) -> list[Record
     return [simulated.recording(row) for row in range(len(simulated))]
 
 
-def _simulated(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float) -> ManyRuns:
+def _simulated(cars: Sequence[Car], signal: Signal, channels: Sequence[str], step: float) -> BatchRuns:
     """Simulate a batch of cars on a signal with the reduced engine."""
-    return simulate_many(
+    return simulate_batch(
         [car.poles for car in cars],
         signal,
         dampers=[[damper.law for damper in car.vehicle.composition.dampers] for car in cars],

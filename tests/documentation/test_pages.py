@@ -1,0 +1,141 @@
+"""Every command and example of README.md and docs/ runs, and prints what its page shows."""
+
+from __future__ import annotations
+
+import argparse
+from importlib import import_module
+
+import pytest
+
+import vehicle
+from tests.documentation.pages import BLOCK, ROOT, Site, blocks, pages, prose_commands
+from vehicle.commands import COMMANDS
+from vehicle.drawing.rendering.backend import film_available
+from vehicle.model.parameters.paths import value_of
+
+NEEDS = {
+    "docs/python.md": ("pymoo", "pandas"),
+    "docs/tutorials/study.md": ("pymoo",),
+    "docs/howto/optimise.md": ("pymoo",),
+    "docs/howto/loads.md": ("rainflow",),
+    "docs/howto/shaker.md": ("rainflow", "h5py"),
+}
+"""Extras of the examples of a page."""
+
+FILMS = ("docs/howto/shaker.md", "docs/howto/modes.md")
+"""Pages that render a film."""
+
+NOT_RUN = {
+    "git clone": "needs the network",
+    "pip install": "needs the network; tests/commands/test_wheel.py installs the package",
+    "make shaker": "sets up the environment in which this test runs",
+    "make test": "this test runs in it",
+    "make docs": "test_site.py runs its command",
+}
+"""Beginning of a command of a `sh` block to the reason why no test of this file runs it."""
+
+EXECUTED = [page for page in pages() if blocks(page, "console", "python", "diff")]
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory):
+    return Site(tmp_path_factory.mktemp("pages"))
+
+
+def prepared(page):
+    for name in NEEDS.get(page, ()):
+        pytest.importorskip(name)
+    if page in FILMS and film_available():
+        pytest.skip("no off-screen OpenGL library")
+
+
+@pytest.mark.parametrize("page", EXECUTED)
+def test_a_page_runs_and_prints_what_it_shows(page, site):
+    prepared(page)
+    site.execution(page)
+
+
+def test_python_examples_compute_what_the_page_says(site):
+    prepared("docs/python.md")
+    execution = site.execution("docs/python.md")
+    names = execution.names
+    assert names["ride"].skip >= 2.0 and names["ride"].car.vehicle.driving.speed == pytest.approx(80 / 3.6)
+    comfort = names["table"].column("comfort_overall")
+    again = (
+        names["sedan"]
+        .varied({"front.damper.coulomb_friction": 120})
+        .run(vehicle.Road("B", speed=80, duration=6), engine="reduced")
+    )
+    assert comfort[1] == pytest.approx(again.comfort().overall, rel=1e-3) and comfort[0] != comfort[1]
+    (response,) = names["comparison"].responses
+    assert 0.5 < response.frac < 0.9999
+    path = "bushings.suspension_mount.stiffness.z"
+    assert value_of(names["tuned"].vehicle, path) == names["result"].values[path] == pytest.approx(6.8e5, rel=0.02)
+    assert names["damper"].values["damper.viscous"] == pytest.approx(2000.0, rel=1e-3)
+    assert names["drive"].error < 0.5 and "best comfort" in repr(names["found"])
+    rms = names["run"].weighted_comfort()
+    assert names["seat"].overall == pytest.approx(rms["overall"], rel=1e-9)
+    assert names["seat"].weighted_rms["z"] == pytest.approx(rms["z"], rel=1e-9)
+    for name in ("runs/high/summary.json", "runs/compared/compare.json", "report.html", "runs/drive/drive.csv"):
+        assert (execution.folder / name).is_file()
+
+
+def test_the_tutorial_finds_the_stiffness_of_the_bench(site):
+    names = site.execution("docs/tutorials/own-measurement.md").names
+    assert names["result"].values["bushings.suspension_mount.stiffness.z"] == pytest.approx(5.0e5, rel=0.05)
+
+
+def test_python_examples_show_every_public_function():
+    text = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    functions = [name for name in vehicle.__all__ if name[0].islower()]
+    assert [name for name in functions if f"{name}(" not in text] == []
+
+
+def test_the_readme_is_short_and_its_example_has_eight_lines():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 100 and len(text.split()) <= 700
+    (example,) = blocks("README.md", "python")
+    assert len([line for line in example.splitlines() if line]) <= 8
+
+
+def test_every_command_has_a_page():
+    listed = (ROOT / "docs" / "howto" / "index.md").read_text(encoding="utf-8")
+    for name in COMMANDS:
+        assert f"]({name}.md)" in listed
+        assert any(f"vehicle {name}" in block for block in blocks(f"docs/howto/{name}.md", "console"))
+
+
+@pytest.mark.parametrize("page", pages())
+def test_blocks_are_of_known_languages_and_closed(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    known = {"console", "python", "diff", "toml", "csv", "text", "sh", ""}
+    assert {match[2] for match in BLOCK.finditer(text)} <= known, "write a language of this list behind the fence"
+    assert "```" not in BLOCK.sub("", text)
+    for block in blocks(page, "sh"):
+        for line in block.splitlines():
+            assert line.startswith(tuple(NOT_RUN)), f"{page}: {line!r} runs in no test; make it a console block"
+
+
+def options_of(name):
+    """Names of all options of a command, with those of its subcommands."""
+    found, parsers = set(), [import_module(f"vehicle.commands.{name}").parser()]
+    while parsers:
+        parser = parsers.pop()
+        found |= set(parser._option_string_actions)
+        for action in parser._actions:
+            if isinstance(action, argparse._SubParsersAction):
+                parsers += action.choices.values()
+    return found
+
+
+@pytest.mark.parametrize("page", pages())
+def test_commands_in_prose_have_options_that_exist(page):
+    for words in prose_commands(page):
+        module, *rest = words[2:] if words[:2] == ["python", "-m"] else words
+        name = rest[0] if module == "vehicle" else module.removeprefix("vehicle.")
+        if name not in COMMANDS:
+            known = name.isupper() or name in ("--schema", "--version", "--print-completion")
+            assert known, f"{page}: {' '.join(words)}"
+            continue
+        options = {word.partition("=")[0] for word in words if word.startswith("--")}
+        assert options <= options_of(name), f"{page}: {' '.join(words)}"

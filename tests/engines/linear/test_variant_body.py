@@ -1,0 +1,62 @@
+"""A body of another mass or centre of gravity by the short way, against cars that are built, and closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.engines.linear.test_variant_matrices import require_same
+from vehicle.model.parameters.vehicle import vehicle_of
+from vehicle.runs.car import Car
+
+
+@pytest.fixture(scope="module")
+def sedan():
+    return Car.load("sedan")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        ["body.mass=1300"],
+        ["body.cog=[2.3, 0.05, 0.95]"],
+        ["body.cog.z=1.0", "body.mass=1300", "body.inertia.iyy=2100"],
+    ],
+)
+def test_a_rigid_body_varied_is_the_body_built(sedan, changes):
+    """M, C, K, rows, static loads within 1e-9; no MuJoCo model is made."""
+    require_same(sedan, "sedan", (), changes)
+
+
+def test_the_mass_alone_is_a_file_with_that_tensor(sedan):
+    """Every moment about the CoG of the shipped file times the factor, written into a file by hand."""
+    factor = 1300.0 / 1222.1
+    table = dict(sedan.vehicle.table)
+    moments = {name: factor * value for name, value in table["body"]["inertia"].items()}
+    separate = Car(vehicle_of({**table, "body": {**table["body"], "mass": 1300.0, "inertia": moments}}))
+    varied = sedan.varied(["body.mass=1300"])
+    for expected, mode in zip(separate.modes("sliding"), varied.modes("sliding"), strict=True):
+        assert mode.frequency == pytest.approx(expected.frequency, rel=1e-9)
+    for wheel, load in separate.static.tyre_load.items():
+        assert varied.static.tyre_load[wheel] == pytest.approx(load, rel=1e-12)
+    # More mass on the same springs is slower in heave and pitch, and quieter over a road.
+    slower = [[mode.frequency for mode in car.modes("sliding", highest=2.5)] for car in (sedan, varied)]
+    assert all(new < old for old, new in zip(*slower, strict=True))
+
+
+def test_a_flexible_body_varied_is_the_body_built():
+    """Compare matrices within 1e-9 of their largest entry; frequencies within 1e-7: see
+    `vehicle.engines.linear.body_change`.
+    """
+    car, changes = Car.load("focus"), ["body.mass=829.26"]
+    require_same(car, "focus", (), changes)
+    pairs = zip(car.varied(changes).modes(), Car.load("focus", changes).modes(), strict=True)
+    assert max(abs(mode.frequency / other.frequency - 1.0) for mode, other in pairs) < 1e-7
+    # Its modal coordinates are mass-normalised again.
+    matrices = car.varied(changes).matrices
+    np.testing.assert_allclose(matrices.system.mass[matrices.modal, matrices.modal], np.eye(9), atol=1e-12)
+
+
+def test_another_elastic_body_is_built(car):
+    for changes in (["body.cog.z=1.0"], ["body.inertia.iyy=5300"], ["body.mass=829.26", "body.inertia.izz=4700"]):
+        assert car.varied(changes)._from_terms is None, changes

@@ -1,0 +1,320 @@
+"""Mass, damping and stiffness matrices of the assembled car in its design position, read from its MuJoCo model.
+
+u are the velocity coordinates of MuJoCo as small displacements. K is the derivative of the forces that the time
+simulation applies, so it contains the geometric stiffness of gravity and preloads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.rolling_terms import rolling_terms
+from vehicle.engines.linear.system import LinearSystem
+from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
+from vehicle.engines.simulation.rows import Rows, joint_dampers
+from vehicle.engines.simulation.static_trim import StaticTrim
+from vehicle.names import AXES
+
+Vector = npt.NDArray[np.float64]
+
+DIFFERENCE_STEP = 1e-6
+"""Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LinearSegment:
+    """Linear segment of a law over displacement in which the car is at rest.
+
+    Attributes:
+        name: name of the element.
+        row: displacement of the element over the velocity coordinates; (n,).
+        plate: index of the input under a tyre; -1 for other elements.
+        low, high: ends of the segment, as displacements from the design position [m].
+        stiffness_increase: slope of the steepest segment of the law less the slope of this segment [N/m].
+    """
+
+    name: str
+    row: Vector
+    plate: int
+    low: float
+    high: float
+    stiffness_increase: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class CarMatrices:
+    """Linear car: a system with the plates as inputs and the dampers as sliding pairs, and data of its parts.
+
+    Attributes:
+        system: matrices of `vehicle.engines.linear.system`; C contains the viscous part of the dampers, inputs are the
+            wheels, outputs map u'' to the acceleration channels.
+        dampers: velocity coordinates of the damper joints; (d,).
+        viscous: damping constants of the dampers [N s/m], softest settings of controlled ones; (d,).
+        sensors: rows that map u' to the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
+        segments: linear segments of the laws over displacement: the valid range of the linear car.
+        tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
+        body_rows: rows that map u' to velocity of the centre of gravity and angular velocity of each body;
+            body name to (6, n).
+        body_masses: mass [kg] and inertia tensor [kg m2] of each body, as a (6, 6) matrix.
+        body_centres: centre of gravity of each body in the design position [m]; (3,).
+        tyre_rows: rows that map u to the height of the tyres over their plates; (w, n).
+        one_sided: wheels whose tyres cannot pull.
+        spinning: bodies that rotate with a rolling wheel; their angle is not a state.
+        carried_by: body to which each body is fixed; the body itself if it can move on its parent.
+        slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
+            the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
+        modal: velocity coordinates of the flexible modes.
+    """
+
+    system: LinearSystem
+    dampers: npt.NDArray[np.intp]
+    viscous: Vector
+    sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+    segments: tuple[LinearSegment, ...] = ()
+    one_sided: frozenset[str] = frozenset()
+    tyre_stiffness: Vector
+    tyre_damping: Vector
+    tyre_rows: Vector
+    spinning: frozenset[str] = frozenset()
+    body_rows: dict[str, Vector]
+    body_masses: dict[str, Vector]
+    body_centres: dict[str, Vector]
+    carried_by: dict[str, str]
+    modal: slice
+    slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+
+
+def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = True) -> CarMatrices:
+    """Read the matrices of a trimmed car from its model.
+
+    Args:
+        model: compiled and trimmed car (not yet prepared for stepping).
+        static: preloads of the car.
+        compiled: compile the laws. Compiling takes 15 s without a cache; the Python form takes 0.3 s for one car and
+            differs by round-off, 1e-11.
+
+    Returns:
+        The matrices.
+    """
+    data = mujoco.MjData(model)
+    rows = Rows(model, static.preload)
+    e = rows.layout
+    stiffness = _tangent_stiffness(rows, compiled)
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    jacobian = data.efc_J.reshape(e.row_count, model.nv).copy()
+    dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
+    rows_of_bodies = _body_rows(model, data)
+    laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
+    rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
+    return CarMatrices(
+        system=LinearSystem(
+            coordinates=(),
+            inputs=wheels_of(model),
+            mass=mass,
+            stiffness=stiffness,
+            slide_rows=np.eye(model.nv)[dofs],
+            slide_inputs=np.zeros((len(dofs), len(e.tyres))),
+            constraints=jacobian[e.joints.ravel()],
+            load=np.zeros(model.nv),
+            cyclic=tuple(e.rolling.spins.tolist()),
+            outputs={
+                name: np.concatenate([row, still]) for name, row in _outputs(model, data, e.modes.velocities).items()
+            },
+            **laws.system,
+        ),
+        dampers=dofs,
+        **laws.car,
+        sensors=_sensors(rows, data),
+        one_sided=frozenset(
+            wheel for wheel, tyre in zip(wheels_of(model), e.tyres, strict=True) if tyre in e.bushings.one_sided
+        ),
+        spinning=frozenset(
+            str(model.body(i).name) for i, root in enumerate(model.body_weldid) if int(root) in rolling_bodies
+        ),
+        body_rows=rows_of_bodies,
+        body_masses=_body_masses(model, data),
+        body_centres={name: data.xipos[model.body(name).id].copy() for name in rows_of_bodies},
+        carried_by={
+            str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
+        },
+        modal=e.modes.velocities,
+    )
+
+
+class LawMatrices(NamedTuple):
+    """Fields of `LinearSystem` and of `CarMatrices` that follow from the laws, except the stiffness matrix."""
+
+    system: dict[str, Any]
+    car: dict[str, Any]
+
+
+def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: Vector) -> LawMatrices:
+    """Return the fields of `LinearSystem` and of `CarMatrices` that depend on the parameters of the laws.
+
+    Args:
+        rows: rows of the car at rest.
+        jacobian: Jacobian of the rows; (rows, n).
+        joint_damping: damping inside joints; (n,).
+        preload: static forces of the rows; rolling tyres need their static load for the slope of the road.
+    """
+    e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
+    viscous = e.dampers.laws["viscous_damping"]
+    # In the design position all carriers are parallel to the vehicle frame, so rows are element axes.
+    row_damping = np.zeros(e.row_count)
+    row_damping[bushings.rows] = bushings.damping
+    damping = jacobian.T @ (row_damping[:, None] * jacobian)
+    damping[np.diag_indices(len(damping))] += joint_damping
+    damping[dofs, dofs] += viscous
+    present = bushings.branch_stiffness > 0.0
+    vertical = jacobian[bushings.rows[e.tyres][:, 2]]
+    tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
+    inputs = {f"input_{term}": vertical.T * values for term, values in tyres.items()}
+    branch_rows = jacobian[bushings.rows[present]]
+    rolling = None
+    if len(e.rolling.tyres):
+        rolling = rolling_terms(rows, preload)
+        damping += rolling.damping
+        inputs["input_damping"] = inputs["input_damping"] + rolling.slope
+    return LawMatrices(
+        system={
+            "damping": damping,
+            "branch_rows": branch_rows,
+            **({} if rolling is None else rolling.branches(branch_rows, present)),
+            "branch_inputs": np.zeros((int(np.count_nonzero(present)), len(e.tyres))),
+            "branch_stiffness": bushings.branch_stiffness[present],
+            "branch_time": bushings.branch_time[present],
+            **inputs,
+        },
+        car={
+            "viscous": viscous,
+            "segments": _segments(rows, jacobian),
+            "tyre_rows": vertical,
+            **{f"tyre_{term}": values for term, values in tyres.items()},
+            "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
+        },
+    )
+
+
+def _segments(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
+    """Return the linear segments of the laws over displacement in which the car is at rest."""
+    segments_of_laws, e, tables = [], rows.layout, rows.layout.tables
+    for index, (law_type, element, axis, position) in enumerate(
+        zip(tables.kinds, tables.elements, tables.axes, tables.at, strict=True)
+    ):
+        if law_type == 0:
+            row, name = jacobian[e.bushings.rows[element, axis]], f"{rows.names[element]} along {AXES[axis]}"
+        else:
+            row = jacobian[e.springs.rows[element]] if law_type == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
+            name = ("", "spring", "stop of damper")[law_type] + f" {element + 1}"
+        curve = curve_of(tables, index)
+        # A point on the line through its neighbours is not a breakpoint.
+        corners = curve.knots[np.abs(np.diff(curve.slopes)) > 1e-9 * np.max(curve.slopes)]
+        edges = np.concatenate([[-np.inf], corners, [np.inf]])
+        index_of_segment = int(np.searchsorted(edges[1:-1], position))
+        plate = list(e.tyres).index(element) if law_type == 0 and axis == 2 and element in e.tyres else -1
+        stiffness_increase = float(np.max(curve.slopes) - curve.slope(position))
+        low, high = edges[index_of_segment] - position, edges[index_of_segment + 1] - position
+        segments_of_laws.append(
+            LinearSegment(name=name, row=row, plate=plate, low=low, high=high, stiffness_increase=stiffness_increase)
+        )
+    return tuple(segments_of_laws)
+
+
+def _tangent_stiffness(rows: Rows, compiled: bool) -> Vector:
+    """Return K = -dF/du of all static forces, by central differences."""
+    return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied, compiled=compiled)
+
+
+def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector], *, compiled: bool = True) -> Vector:
+    """Return central differences of a function of the state over the velocity coordinates in the design position.
+
+    Args:
+        rows: rows of the car at rest.
+        read: function of a state with written rows that returns an array (...); only the solution of the step is
+            missing in the state.
+        compiled: see `car_matrices`.
+
+    Returns:
+        Derivatives, (..., n).
+    """
+    model = rows.model
+    data = mujoco.MjData(model)
+    rewrite: Callable[[mujoco.MjModel, mujoco.MjData], None] = rows
+    if compiled:
+        rewrite = compiled_form = compiled_rows(rows)
+        compiled_form.attach(data)
+    start, direction, columns = data.qpos.copy(), np.zeros(model.nv), []
+    for column in range(model.nv):
+        ends = []
+        for sign in (1.0, -1.0):
+            data.qpos[:] = start
+            direction[column] = sign
+            mujoco.mj_integratePos(model, data.qpos, direction, DIFFERENCE_STEP)
+            # Run a step without the solution of the rows, which would double the cost.
+            mujoco.mj_fwdPosition(model, data)
+            mujoco.mj_fwdVelocity(model, data)
+            rewrite(model, data)
+            ends.append(read(data))
+        direction[column] = 0.0
+        columns.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))
+    return np.stack(columns, axis=-1)
+
+
+def _sensors(rows: Rows, data: mujoco.MjData) -> Vector:
+    """Return the rows of the velocities that the sensors of controlled dampers measure."""
+    model, controls = rows.model, rows.layout.controls
+    sensor_rows = np.zeros((2 * len(controls.dampers), model.nv))
+    for row, (site, shape) in enumerate(zip(controls.sites.ravel(), controls.shapes, strict=True)):
+        jacobian = np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, jacobian, None, int(site))
+        jacobian[:, rows.layout.modes.velocities] += shape.reshape(3, -1)
+        damper = rows.layout.dampers.dofs[controls.dampers[row // 2]]
+        sensor_rows[row] = data.xaxis[model.dof_jntid[damper]] @ jacobian
+    return sensor_rows
+
+
+def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[str, Vector]:
+    """Return the rows of all acceleration channels."""
+    outputs = {}
+    for point in places_of(model):
+        jacobian = np.zeros((3, model.nv))
+        mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"place/{point}").id)
+        shape = numeric(model, f"shape/place/{point}")
+        if shape is not None:
+            jacobian[:, modes] = shape.reshape(3, -1)
+        for axis, row in zip(AXES, jacobian, strict=True):
+            outputs[f"{point}_acc_{axis}"] = row
+    return outputs
+
+
+def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
+    velocity_rows = {}
+    for body in range(1, model.nbody):
+        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
+            rows = np.zeros((6, model.nv))
+            mujoco.mj_jacBodyCom(model, data, rows[:3], rows[3:], body)
+            velocity_rows[model.body(body).name] = rows
+    return velocity_rows
+
+
+def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
+    mass_matrices = {}
+    for body in range(1, model.nbody):
+        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
+            matrix = np.zeros((6, 6))
+            matrix[:3, :3] = model.body_mass[body] * np.eye(3)
+            frame = data.ximat[body].reshape(3, 3)
+            matrix[3:, 3:] = frame @ np.diag(model.body_inertia[body]) @ frame.T
+            mass_matrices[model.body(body).name] = matrix
+    return mass_matrices

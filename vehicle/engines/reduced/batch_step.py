@@ -1,0 +1,165 @@
+"""Time step of eight cars at once: their poles, then their damper forces.
+
+A pole is integrated as the difference y from its static value on the plates, xi = y - (b_z/s) z:
+
+    y' = s y + (b_c + b_z/s) z' + e f.
+
+The differences stay small even on hilly roads, so single precision is sufficient. z' is a quadratic over a step, given
+by its ends and its mean. A damper force has the mean f_n over step n. If the damper is stuck in this step and the last,
+the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. In sliding it is constant, except for the
+damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
+are solved by Gauss-Seidel iterations over the dampers, each by its inverse law
+(`vehicle.engines.reduced.batch_tables`).
+
+This module imports numba at the top, so only runs that compile import it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from vehicle.compiler import OPTIONS, numba_module
+from vehicle.engines.reduced.batch_layout import ELEMENT, LANES, TableRows
+from vehicle.engines.reduced.simd_vector import (
+    add_scaled,
+    broadcast,
+    less,
+    load,
+    load_tuple,
+    maximum,
+    minimum,
+    store,
+    weighted_sum,
+)
+from vehicle.model.laws.damper import friction_limit
+
+numba = numba_module()
+
+# Sums in the order of the source: the values of a lane must not depend on the number of poles in other lanes.
+EXACT = OPTIONS | {"fastmath": {"contract"}}
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """Compile a function that is inlined in its callers, without reference counting."""
+    return numba.njit(no_cpython_wrapper=True, forceinline=True, _nrt=False, **EXACT)(function)
+
+
+def compiled_once(function: Callable[..., Any]) -> Any:
+    """Compile a function separately, without inlining: it is called once for many samples."""
+    return numba.njit(no_cpython_wrapper=True, _nrt=False, **EXACT)(function)
+
+
+ITERATIONS = 2
+"""Gauss-Seidel iterations over the dampers; see `batch_factors.LARGEST_COUPLING` for the remaining error."""
+
+
+@inlined
+def solve_batch_dampers(t: Any, r: TableRows, dampers: Any) -> None:
+    """Solve for damper velocities and forces of a step; the work space begins with the velocities without forces."""
+    count = len(dampers)
+    step, old = r.work + count, r.inputs
+    nodes = r.pieces + 1
+    width = 3 * nodes
+    kept = step + count  # forces of the last step
+    work = kept + count  # nodes of each inverse law: velocity without forces, 1/length, force, rise of force
+    for i in range(count):
+        force = load(t, old + i)
+        store(t, kept + i, force)
+        stick = load(t, r.stick + i)
+        diagonal = load(t, r.gain + i * count + i) + stick * load(t, r.ramp + i * count + i)
+        store(t, step + i, diagonal)
+        arriving = load(t, r.work + i) - diagonal * load(t, r.hold + i)
+        limit = load(t, r.limit + i)
+        at, law = work + 4 * nodes * i, r.law + width * i
+        for j in range(nodes):
+            node_force = load(t, law + 3 * j + 1) + load(t, law + 3 * j + 2) * limit
+            store(t, at + 4 * j, load(t, law + 3 * j) + diagonal * node_force)
+            store(t, at + 4 * j + 2, node_force)
+        for j in range(r.pieces):
+            store(t, at + 4 * j + 1, broadcast(ELEMENT(1.0)) / (load(t, at + 4 * j + 4) - load(t, at + 4 * j)))
+            store(t, at + 4 * j + 3, load(t, at + 4 * j + 6) - load(t, at + 4 * j + 2))
+        for j in range(count):
+            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + i * count + j) * load(t, old + j)
+        store(t, r.work + i, arriving)
+    zeros, ones = broadcast(ELEMENT(0.0)), broadcast(ELEMENT(1.0))
+    for iteration in range(ITERATIONS):
+        for i in range(count):
+            arriving = load(t, r.work + i)
+            for j in range(count):
+                if j != i:
+                    row = i * count + j
+                    other = load(t, r.gain + row) + load(t, r.stick + j) * load(t, r.ramp + row)
+                    arriving = arriving + other * load(t, old + j)
+            at, law = work + 4 * nodes * i, r.law + width * i
+            force, hold = load(t, at + 2), load(t, law + 1)
+            for j in range(r.pieces):
+                share = (arriving - load(t, at + 4 * j)) * load(t, at + 4 * j + 1)
+                share = minimum(maximum(share, zeros), ones)
+                force = force + load(t, at + 4 * j + 3) * share
+                hold = hold + (load(t, law + 3 * j + 4) - load(t, law + 3 * j + 1)) * share
+            store(t, r.velocity + i, arriving - load(t, step + i) * force)
+            store(t, old + i, zeros - force - load(t, r.hold + i))
+            if iteration == ITERATIONS - 1:
+                store(t, step + i, hold)
+    for i in range(count):
+        stick = load(t, r.stick + i)
+        store(t, old + count + i, stick * (load(t, old + i) - load(t, kept + i)))
+        store(t, r.hold + i, load(t, step + i))
+        speed = load(t, r.velocity + i)
+        stuck = less(maximum(speed, zeros - speed), load(t, r.full + i))
+        store(t, r.stick + i, stuck * load(t, r.stuck + i))
+        store(t, r.stuck + i, stuck)
+
+
+@inlined
+def advance_batch(
+    t: Any, r: TableRows, x: Any, before: int, at: int, rates: Any, laws: Any, step: int, inputs: Any, dampers: Any
+) -> None:
+    """Advance the poles and damper forces of eight cars by a step.
+
+    Args:
+        t, r, rates, laws, inputs, dampers: see `vehicle.engines.reduced.batch_stepping.step_batch`.
+        x: states of samples; the poles are changed in place.
+        before, at: first rows of the poles at the beginning and at the end of the step.
+        step: index of the step.
+    """
+    count, plates = len(dampers), rates.shape[1] // 2
+    size = len(inputs)
+    pair_rows, real_rows = 2 + 2 * size + 2 * count, 1 + size + count
+    for k in range(plates):
+        store(t, r.inputs + 2 * count + k, broadcast(rates[step, k]))
+        store(t, r.inputs + 2 * count + plates + k, broadcast(rates[step, plates + k]))
+    for i in range(count):
+        arriving = broadcast(ELEMENT(0.0))
+        for k in range(plates):
+            arriving = arriving + load(t, r.slip + i * plates + k) * broadcast(rates[step + 1, k])
+        store(t, r.work + i, arriving)
+        store(t, r.work + count + i, broadcast(ELEMENT(0.0)))
+    u = load_tuple(t, r.inputs, inputs)
+    w, imaginary_sums = load_tuple(t, r.work, dampers), load_tuple(t, r.work + count, dampers)
+    for p in range(r.pairs):
+        row = p * pair_rows
+        a, b, decay, rotation = load(x, before + 2 * p), load(x, before + 2 * p + 1), load(t, row), load(t, row + 1)
+        real = weighted_sum(t, row + 2, u, decay * a - rotation * b)
+        imaginary = weighted_sum(t, row + 2 + size, u, decay * b + rotation * a)
+        store(x, at + 2 * p, real)
+        store(x, at + 2 * p + 1, imaginary)
+        w = add_scaled(t, row + 2 + 2 * size, real, w)
+        imaginary_sums = add_scaled(t, row + 2 + 2 * size + count, imaginary, imaginary_sums)
+    for q in range(r.reals):
+        row, pole_row = r.real + q * real_rows, 2 * r.pairs + q
+        real = weighted_sum(t, row + 1, u, load(t, row) * load(x, before + pole_row))
+        store(x, at + pole_row, real)
+        w = add_scaled(t, row + 1 + size, real, w)
+    for i in range(count):
+        store(t, r.work + i, w[i] + imaginary_sums[i])
+    if laws.shape[0] > 0:
+        for i in range(count):
+            # Extrapolate the velocity to the middle of the step from both ends of the last step.
+            now = load(t, r.velocity + i)
+            store(t, r.limit + i, now + broadcast(ELEMENT(0.5)) * (now - load(t, r.earlier + i)))
+            store(t, r.earlier + i, now)
+            for lane in range(LANES):
+                t[r.limit + i, lane] = friction_limit(laws[i, lane], t[r.limit + i, lane])
+    solve_batch_dampers(t, r, dampers)

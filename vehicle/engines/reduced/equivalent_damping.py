@@ -1,0 +1,80 @@
+"""Statistical linearisation of the dampers: FRFs of the car about the motion of a run.
+
+A damper with the force F(v) is replaced by the viscous damper that minimises the mean square error of the force over
+the record, mean((F - mean F - c v)^2):
+
+    c = mean((F - mean F) v) / mean(v^2).
+
+It dissipates the same energy. A stuck damper is as stiff as the slope of its friction law at rest, and a slipping
+damper as soft as its force over its stroke, so no constant FRF describes both. The poles of the car contain the damping
+constants D already. The remainder acts as forces f = -(c - D) v, so that at each line
+
+    v = (I + T_vf (c - D))^-1 T_vz z,    y = T_yz z - T_yf (c - D) v.
+
+Sources: Caughey, J. Acoust. Soc. Am. 35 (1963) 1706; Roberts and Spanos, Random Vibration and Statistical
+Linearization, 1990, chapter 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.model.laws.damper import damper_law
+from vehicle.model.parameters.force_elements import Damper
+
+Vector = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+
+def equivalent_damping(law: Damper, velocity: Vector, force: Vector) -> float:
+    """Return the equivalent damping constant c of a damper [N s/m]; without motion, the slope of its law at rest.
+
+    Args:
+        law: law of the damper.
+        velocity: damper velocity [m/s], (n,).
+        force: damper force [N], positive against a positive velocity, (n,).
+    """
+    power = float(np.mean(velocity**2))
+    if power == 0.0:
+        return float(damper_law(law).slope(0.0))
+    return float(np.mean((force - force.mean()) * velocity)) / power
+
+
+def linearised_response(
+    model: PoleModel, damping: Vector, channels: Sequence[str], wheels: Sequence[str], frequency: Vector
+) -> Complex:
+    """Return the FRFs of accelerations to plate displacements with viscous dampers.
+
+    Args:
+        model: pole model of the car.
+        damping: damping constant c of each damper [N s/m], (d,).
+        channels: names of k accelerations.
+        wheels: names of the p plates.
+        frequency: lines [Hz], (m,).
+
+    Returns:
+        FRFs [m/s2 per m], (k, p, m).
+    """
+    s = np.asarray(2j * np.pi * np.asarray(frequency), dtype=np.complex128)
+    inputs = [model.matrices.system.inputs.index(wheel) for wheel in wheels]
+    positions = model.outputs(channels).poles
+    excess = (damping - model.matrices.viscous)[:, None]
+    plate, rate, force = model.height[:, inputs], model.velocity[:, inputs], model.force
+    slip = _transfer(model, model.slip, plate, s) + s * _transfer(model, model.slip, rate, s)
+    coupling = np.eye(len(excess)) + np.moveaxis(_transfer(model, model.slip, force * excess.T, s), -1, 0)
+    velocity = np.moveaxis(np.linalg.solve(coupling, np.moveaxis(slip, -1, 0)), 0, -1)
+    direct = _transfer(model, positions, plate, s) + s * _transfer(model, positions, rate, s)
+    by_force: Complex = _transfer(model, positions, force, s)
+    displacement = direct - (by_force[:, :, None] * (excess[:, :, None] * velocity)[None]).sum(axis=1)
+    return np.asarray(s**2 * displacement)
+
+
+def _transfer(model: PoleModel, rows: Complex, residues: Complex, s: Complex) -> Complex:
+    """Return the FRFs of Re(rows xi) to inputs with residues (p, i) on the poles; (outputs, i, m)."""
+    products = rows[:, None, :] * residues.T[None]
+    positive_part = 0.5 * products @ (1.0 / (s - model.poles[:, None]))
+    return np.asarray(positive_part + 0.5 * products.conj() @ (1.0 / (s - model.poles.conj()[:, None])))
