@@ -1,4 +1,4 @@
-"""A local rational model of stretches of spectral lines, fitted to the error of the output.
+"""Local rational model of frequency windows, output-error estimate with one local pole.
 
 Over the lines k + r, |r| <= n, x = r / n, with the inputs U_i,
 
@@ -9,10 +9,11 @@ multiplies by 1 + a x, makes peaks low by 10 % at coherence 0.9). For one pole t
 
     Y = sum_i U_i (c_i0 + c_i1 x + c_i2 / (1 + a x)) + d0 + d1 / (1 + a x) + e:
 
-all but the last terms of each sum are the same for every pole, so they are projected out once for all responses, and a
+only the last term of each sum depends on the pole, so the other terms are projected out once for all responses, and a
 grid of poles costs one matrix product. With the unknowns integrated out under flat priors the probability of a pole is
-RSS^-(N - m), and the estimate is the mean over the poles: where noise hides the pole, a maximum alone would be biased
-and far too sure of itself. Where the pole is sharper than the grid, Gauss-Newton steps refine it, blended in.
+RSS^-(N - m), and the estimate is the mean over the poles: where noise hides the pole, the maximum would be
+biased, with too small an error. If the pole is narrower than a grid cell, Gauss-Newton steps refine it; the refined
+estimate is blended in.
 
 Sources: Pintelon and Schoukens, System Identification, 2nd ed. 2012, sections 7.2 (transient) and 9.11 (output error);
 Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413 (projection); Bretthorst, Bayesian Spectrum Analysis, 1988.
@@ -33,82 +34,83 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SHARPEST = 0.15
-"""Least half of the half-power bandwidth of a pole over n: damping of 0.3 % where n is 2 % of the frequency."""
+"""Minimum half-bandwidth of a pole relative to n: 0.3 % damping if n is 2 % of the frequency."""
 
 LEAST_BANDWIDTH = 0.4
-"""The same in lines, where n is the least: a sharper pole shows in a line or two and cannot be told."""
+"""Minimum half-bandwidth [lines] at the minimum n: a narrower pole affects only two lines and is not identifiable."""
 
 WIDEST = 3.0
-"""Largest half of the half-power bandwidth of a pole over n; above it the rest of the model says the same."""
+"""Maximum half-bandwidth relative to n; the polynomial terms represent wider poles."""
 
-REACH = 1.3
-"""Farthest pole from the centre of the stretch over n."""
+FARTHEST = 1.3
+"""Maximum distance of a pole from the centre of the window relative to n."""
 
 POSITIONS, BANDWIDTHS = 21, 7
-"""Poles of the grid, 0.13 n apart. A finer one, 27 by 9, changes nothing above 0.1 standard errors."""
+"""Number of positions and bandwidths of the pole grid, spacing 0.13 n. A grid of 27 by 9 changes the result by less
+than 0.1 standard errors."""
 
 STEPS = 8
-"""Gauss-Newton steps at most; the grid starts within one cell, so that each step squares the error."""
+"""Maximum Gauss-Newton steps; the start from the grid is within a cell, so that each step squares the error."""
 
 ENOUGH = 0.1
-"""A step of the pole over its standard error, below which it changes nothing that the noise would not."""
+"""Minimum step of the pole over its standard error; smaller steps are below the noise."""
 
 SHARP_SHARE = 0.1
-"""Least share of the likeliest node of the grid at which Gauss-Newton is worth while: below, the posterior spreads over
-some ten nodes, whose sum is good."""
+"""Minimum probability of the best grid node for Gauss-Newton steps; below it, the posterior covers some ten nodes and
+their sum is accurate."""
 
 FITS_IN_CACHE = 128
 """Fits (windows times responses) processed at once: their arrays over the grid, 300 kB each, stay in the cache."""
 
 ROUNDING, TINY, SMALLEST = 1e-13, 1e-300, 1e-2
-"""Keep a pole without a residue, and one farther off than a hundred n, from dividing by zero."""
+"""Lower bounds against division by zero: for a pole without a residue, and for a pole farther away than 100 n."""
 
 EXACT = 1e-13
-"""Least residual power over the power of the response: rounding of the transform."""
+"""Minimum residual power over the power of the response: rounding of the transform."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class StretchFit:
-    """What each of s stretches says about its centre line, for k responses and p inputs."""
+class WindowFit:
+    """Estimates at the centre lines of s windows, for k responses and p inputs."""
 
     response: Complex
-    """H, shape (s, k, p)"""
+    """FRF H, shape (s, k, p)"""
     covariance: Complex
-    """E dH_i conj(dH_j), shape (s, k, p, p)"""
+    """covariance E dH_i conj(dH_j), shape (s, k, p, p)"""
     noise: Real
-    """power of e in a line, shape (s, k)"""
+    """power of the error e per line, shape (s, k)"""
 
 
-def fit_stretches(drives: Complex, answers: Complex, halves: NDArray[np.int_], *, wide: bool) -> StretchFit:
+def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, wide: bool) -> WindowFit:
     """Fit the local rational model to all responses in s frequency windows, vectorised over windows and responses.
 
     Windows are centred in N lines; lines outside a window are zero.
 
     Args:
-        drives: spectra U of the inputs, scaled to unit mean power in each window, shape (s, p, N).
-        answers: spectra Y of the responses, scaled likewise, shape (N, s, k).
+        inputs: spectra U of the inputs, scaled to unit mean power in each window, shape (s, p, N).
+        outputs: spectra Y of the responses, scaled likewise, shape (N, s, k).
         halves: lines n on each side of the centre line of each window, in ascending order, shape (s,).
         wide: True if n is a share of the frequency, False if n is the minimum number of lines.
     """
-    inputs, count, outputs = drives.shape[1], *answers.shape[1:]
-    dof = (2 * halves + 1 - 3 * inputs - 3)[:, None]  # less b, t and a
-    floor = EXACT * _column_power(answers)
-    stretch = _Stretches(drives, halves)
-    known = _adjoint(stretch.basis) @ answers.swapaxes(0, 1)  # (s, 2p + 1, k)
-    rest = answers - (stretch.basis @ known).swapaxes(0, 1)
-    total = _column_power(rest)
-    response = _turned(stretch.weights @ known)
-    covariance = np.empty((count, outputs, inputs, inputs), dtype=np.complex128)
-    noise, share = np.empty((2, count, outputs))
-    best = np.empty((count, outputs), dtype=np.intp)
+    input_count, count, output_count = inputs.shape[1], *outputs.shape[1:]
+    dof = (2 * halves + 1 - 3 * input_count - 3)[:, None]  # less b, t and a
+    floor = EXACT * _column_power(outputs)
+    windows = _Windows(inputs, halves)
+    coefficients = _adjoint(windows.basis) @ outputs.swapaxes(0, 1)  # (s, 2p + 1, k)
+    residual = outputs - (windows.basis @ coefficients).swapaxes(0, 1)
+    total = _column_power(residual)
+    response = _transposed(windows.weights @ coefficients)
+    covariance = np.empty((count, output_count, input_count, input_count), dtype=np.complex128)
+    noise, share = np.empty((2, count, output_count))
+    best = np.empty((count, output_count), dtype=np.intp)
 
     # Every pole of the grid, and none: there x^2 and, for the transient, x take the place of 1 / (1 + a x).
     grid = _pole_grid(wide, int(halves[0]))
-    equations = _normal_equations(grid, stretch, halves)
-    size = max(FITS_IN_CACHE // max(outputs, 1), 1)
+    equations = _normal_equations(grid, windows, halves)
+    size = max(FITS_IN_CACHE // max(output_count, 1), 1)
     for begin in range(0, count, size):
         some = slice(begin, min(begin + size, count))
-        right = _right_sides(grid, stretch, equations.smooth, rest, halves, some)
+        right = _right_sides(grid, windows, equations.smooth, residual, halves, some)
         best[some], share[some], noise[some], mean, covariance[some] = _posterior(
             equations, right, total[some], floor[some], dof[some], some
         )
@@ -119,17 +121,17 @@ def fit_stretches(drives: Complex, answers: Complex, halves: NDArray[np.int_], *
     for begin in range(0, sharp.size, FITS_IN_CACHE):
         chosen = slice(begin, begin + FITS_IN_CACHE)
         at = of[chosen], sharp[chosen]
-        node, own_stretch = best[at] - 1, stretch.of(at[0])
-        refined = _refine(grid.poles[node], rest[:, at[0], at[1]].T, own_stretch, grid.sharpest)
+        node, refined_windows = best[at] - 1, windows.of(at[0])
+        refined = _refine(grid.poles[node], residual[:, at[0], at[1]].T, refined_windows, grid.sharpest)
         power = np.maximum(refined.cost, floor[at]) / dof[at[0], 0]
         cells = np.sqrt(power) * refined.error / np.abs(refined.a) ** 2 / grid.spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
-        whole = (own_stretch.weights @ known[at[0], :, at[1]][:, :, None])[:, :, 0] + refined.part
-        own = (own_stretch.covariance + refined.covariance) * power[:, None, None]
+        whole = (refined_windows.weights @ coefficients[at[0], :, at[1]][:, :, None])[:, :, 0] + refined.part
+        own = (refined_windows.covariance + refined.covariance) * power[:, None, None]
         response[at] += trust[:, None] * (whole - response[at])
         covariance[at] += trust[:, None, None] * (own - covariance[at])
         noise[at] += trust * (power - noise[at])
-    return StretchFit(response=response, covariance=covariance, noise=noise)
+    return WindowFit(response=response, covariance=covariance, noise=noise)
 
 
 def _posterior(
@@ -150,43 +152,45 @@ def _posterior(
         shape (p, s, k); covariance of H, shape (s, k, p, p).
     """
     gain, direct = equations.gain[..., some], equations.direct[..., some]
-    left: Real = np.broadcast_to(total, right[0].shape)
+    residual_power: Real = np.broadcast_to(total, right[0].shape)
     for i, row in enumerate(right):
         for j in range(i):
             row -= equations.lower[i][j][:, some, None] * right[j]
-        left = left - (row.real**2 + row.imag**2) * equations.weights[i][:, some, None]
-    left = np.maximum(left, floor)
-    best = np.argmin(left, axis=0)
-    likely = np.log(left)
-    likely -= likely.min(axis=0)
-    likely *= -dof
-    np.exp(likely, out=likely)
-    share = 1.0 / likely.sum(axis=0)  # of the most probable pole
-    likely *= share
-    left *= likely
-    noise = left.sum(axis=0) / dof
+        residual_power = residual_power - (row.real**2 + row.imag**2) * equations.weights[i][:, some, None]
+    residual_power = np.maximum(residual_power, floor)
+    best = np.argmin(residual_power, axis=0)
+    probability = np.log(residual_power)
+    probability -= probability.min(axis=0)
+    probability *= -dof
+    np.exp(probability, out=probability)
+    share = 1.0 / probability.sum(axis=0)  # of the most probable pole
+    probability *= share
+    residual_power *= probability
+    noise = residual_power.sum(axis=0) / dof
     part = []
     for row_gain in gain:
         values = row_gain[0][:, :, None] * right[0]
         for j in range(1, len(right)):
             values += row_gain[j][:, :, None] * right[j]
         part.append(values)
-    mean = np.array([np.sum(likely * values, axis=0) for values in part])  # (p, s, k)
+    mean = np.array([np.sum(probability * values, axis=0) for values in part])  # (p, s, k)
     for values, middle in zip(part, mean, strict=True):
         values -= middle
     covariance = np.empty((*total.shape, len(part), len(part)), dtype=np.complex128)
     for i, j in np.ndindex(len(part), len(part)):
         own = equations.covariance[some, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
         real = part[i].real * part[j].real + part[i].imag * part[j].imag
-        covariance[..., i, j] = np.einsum("gsk,gs->sk", left, own.real) / dof + np.einsum("gsk,gsk->sk", likely, real)
+        covariance[..., i, j] = np.einsum("gsk,gs->sk", residual_power, own.real) / dof + np.einsum(
+            "gsk,gsk->sk", probability, real
+        )
         if i != j:
             imaginary = part[i].imag * part[j].real - part[i].real * part[j].imag
-            spread = np.einsum("gsk,gs->sk", left, own.imag) / dof
-            covariance[..., i, j] += 1j * (spread + np.einsum("gsk,gsk->sk", likely, imaginary))
+            spread = np.einsum("gsk,gs->sk", residual_power, own.imag) / dof
+            covariance[..., i, j] += 1j * (spread + np.einsum("gsk,gsk->sk", probability, imaginary))
     return best, share, noise, mean, covariance
 
 
-class _Stretches:
+class _Windows:
     """Terms of the model without a pole, and the inputs, for a number of frequency windows.
 
     Attributes:
@@ -199,20 +203,20 @@ class _Stretches:
         size: lines of each window, shape (s,).
     """
 
-    def __init__(self, drives: Complex, halves: NDArray[np.int_]) -> None:
-        inputs, lines = drives.shape[1:]
+    def __init__(self, inputs: Complex, halves: NDArray[np.int_]) -> None:
+        input_count, lines = inputs.shape[1:]
         offset = np.arange(-(lines // 2), lines // 2 + 1) / halves[:, None]
         inside = np.abs(offset) <= 1.0
         self.size = 2 * halves + 1
         self.offset = np.where(inside, offset, 0.0)
         one, x = inside[:, None].astype(np.float64), self.offset[:, None]
-        self.tail = _turned(np.concatenate([drives, one], axis=1))
-        self.basis, triangle = np.linalg.qr(_turned(np.concatenate([drives, drives * x, one], axis=1)))
+        self.tail = _transposed(np.concatenate([inputs, one], axis=1))
+        self.basis, triangle = np.linalg.qr(_transposed(np.concatenate([inputs, inputs * x, one], axis=1)))
         self.inverse = np.linalg.inv(triangle)
-        self.weights = self.inverse[:, :inputs]
+        self.weights = self.inverse[:, :input_count]
         self.covariance = self.weights @ _adjoint(self.weights)
 
-    def of(self, which: NDArray[np.intp]) -> _Stretches:
+    def of(self, which: NDArray[np.intp]) -> _Windows:
         """Return the windows with the given indices, repeated as listed."""
         chosen = copy.copy(self)
         for name in ("tail", "basis", "weights", "covariance", "offset", "size"):
@@ -227,7 +231,7 @@ class _Stretches:
         smooth -= self.basis @ held
         return smooth, _adjoint(smooth) @ smooth, -(self.weights @ held)
 
-    def seen_each(self, shapes: Complex) -> tuple[Complex, Complex]:
+    def gram_each(self, shapes: Complex) -> tuple[Complex, Complex]:
         """Return Gram matrices (s, p + 1, p + 1) and parts in H (s, p, p + 1) of one pole per window.
 
         Args:
@@ -250,16 +254,16 @@ class _NormalEquations(NamedTuple):
     smooth: Complex  # terms of the model without a pole (s, N, p + 1)
 
 
-def _normal_equations(grid: _PoleGrid, stretch: _Stretches, halves: NDArray[np.int_]) -> _NormalEquations:
+def _normal_equations(grid: _PoleGrid, windows: _Windows, halves: NDArray[np.int_]) -> _NormalEquations:
     """Return the normal equations of the terms with a pole, less their projection on the basis.
 
     With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
 
         x s = (1 - s) / a   and   |s|^2 = (a s - a* s*) / (a - a*).
     """
-    size = stretch.tail.shape[2]
+    size = windows.tail.shape[2]
     inputs, a = size - 1, grid.poles[:, None]
-    tail = np.ascontiguousarray(stretch.tail.transpose(1, 0, 2))  # (N, s, p + 1)
+    tail = np.ascontiguousarray(windows.tail.transpose(1, 0, 2))  # (N, s, p + 1)
     upper = [(i, j) for i in range(size) for j in range(i, size)]
     products = np.stack([tail[:, :, i].conj() * tail[:, :, j] for i, j in upper], axis=2)
     first, mirrored = _sums_of_poles(grid, products.view(np.float64), halves)
@@ -272,15 +276,15 @@ def _normal_equations(grid: _PoleGrid, stretch: _Stretches, halves: NDArray[np.i
             np.concatenate([first[0, ..., columns] + 1j * first[1, ..., columns],
                             mirrored[0, ..., columns] - 1j * mirrored[1, ..., columns]]), -1, 0)  # fmt: skip
         sums[i, j], sums[j, i] = real + 1j * imaginary, real - 1j * imaginary
-    smooth, gram_none, direct_none = stretch.without_pole()
+    smooth, gram_none, direct_none = windows.without_pole()
     gram = np.empty((size, size, len(a) + 1, len(halves)), dtype=np.complex128)
     direct = np.empty((inputs, *gram.shape[1:]), dtype=np.complex128)
     gram[:, :, 0], direct[:, :, 0] = gram_none.transpose(1, 2, 0), direct_none.transpose(1, 2, 0)
     gram[:, :, 1:] = (a * sums - (a * sums.swapaxes(0, 1)).conj()) / (a - a.conj())
     direct[:, :, 1:] = np.eye(inputs, size)[:, :, None, None]
-    plain = (_adjoint(stretch.tail) @ stretch.tail).transpose(1, 2, 0)[:, :, None]  # (p + 1, p + 1, 1, s)
+    plain = (_adjoint(windows.tail) @ windows.tail).transpose(1, 2, 0)[:, :, None]  # (p + 1, p + 1, 1, s)
     held = np.concatenate([sums[:-1], (plain[:-1] - sums[:-1]) / a, sums[-1:]])
-    inverse = stretch.inverse.transpose(1, 2, 0)  # (2p + 1, 2p + 1, s)
+    inverse = windows.inverse.transpose(1, 2, 0)  # (2p + 1, 2p + 1, s)
     for column in range(len(held)):
         share = inverse[0, column].conj() * held[0]  # (p + 1, G, s)
         for row in range(1, column + 1):
@@ -303,21 +307,21 @@ def _normal_equations(grid: _PoleGrid, stretch: _Stretches, halves: NDArray[np.i
         lower.append(row_of)
         pivots.append(pivot)
     weights = [np.reciprocal(pivot) for pivot in pivots]
-    return _NormalEquations(lower, weights, direct, direct * np.array(weights), stretch.covariance, smooth)
+    return _NormalEquations(lower, weights, direct, direct * np.array(weights), windows.covariance, smooth)
 
 
 def _right_sides(
-    grid: _PoleGrid, stretch: _Stretches, smooth: Complex, rest: Complex, halves: NDArray[np.int_], some: slice
+    grid: _PoleGrid, windows: _Windows, smooth: Complex, residual: Complex, halves: NDArray[np.int_], some: slice
 ) -> list[Complex]:
     """Return the right-hand sides of the normal equations of some windows: p + 1 arrays of shape (G, s, k)."""
-    none = _adjoint(smooth[some]) @ rest[:, some].swapaxes(0, 1)  # (s, p + 1, k)
-    middle, most = len(rest) // 2, int(halves[some][-1])
+    none = _adjoint(smooth[some]) @ residual[:, some].swapaxes(0, 1)  # (s, p + 1, k)
+    middle, most = len(residual) // 2, int(halves[some][-1])
     lines = slice(middle - most, middle + most + 1)
     right = []
     for i in range(none.shape[1]):
-        columns = rest[lines, some].copy()
+        columns = residual[lines, some].copy()
         if i < none.shape[1] - 1:
-            columns *= stretch.tail[some, lines, i].T.conj()[:, :, None]
+            columns *= windows.tail[some, lines, i].T.conj()[:, :, None]
         first, mirrored = _sums_of_poles(grid, columns.view(np.float64), halves[some])
         first, mirrored = first.view(np.complex128), mirrored.view(np.complex128)
         row = np.empty((len(grid.poles) + 1, *none.shape[::2]), dtype=np.complex128)
@@ -378,7 +382,7 @@ class _PoleGrid(NamedTuple):
 def _pole_grid(wide: bool, half: int) -> _PoleGrid:
     """Return the grid of poles of a window of n lines on each side; that of wide windows does not depend on n."""
     sharpest = max(SHARPEST if wide else 0.0, LEAST_BANDWIDTH / half)
-    real, imaginary = np.linspace(0.0, REACH, POSITIONS // 2 + 1), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
+    real, imaginary = np.linspace(0.0, FARTHEST, POSITIONS // 2 + 1), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
     nodes: Complex = (real[:, None] + 1j * imaginary).ravel().astype(np.complex128)
     mirrored = nodes.size - BANDWIDTHS
     nodes = np.concatenate([nodes, -nodes[BANDWIDTHS:].conj()])
@@ -403,7 +407,7 @@ def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Real, Real]:
 
 
 class _Refined(NamedTuple):
-    """Every response with its own pole."""
+    """Estimates with a separate pole for each response."""
 
     a: Complex
     cost: Real  # residual power (k,)
@@ -413,57 +417,60 @@ class _Refined(NamedTuple):
     covariance: Complex  # of that part per unit of noise power (k, p, p)
 
 
-def _at(a: Complex, rest: Complex, total: Real, stretch: _Stretches) -> _Refined:
-    """Least squares with one pole for each response, and the Gauss-Newton step of the pole."""
-    shapes = 1.0 / (1.0 + a[:, None] * stretch.offset)  # (k, N)
-    gram, direct = stretch.seen_each(shapes)
+def _solved(a: Complex, residual: Complex, total: Real, windows: _Windows) -> _Refined:
+    """Solve the least squares with a given pole for each response, and compute the Gauss-Newton step of the pole."""
+    shapes = 1.0 / (1.0 + a[:, None] * windows.offset)  # (k, N)
+    gram, direct = windows.gram_each(shapes)
     inverse = np.linalg.inv(gram)
-    adjoint = _adjoint(stretch.tail)  # (k, p + 1, N)
-    right = adjoint @ (shapes.conj() * rest)[:, :, None]  # (k, p + 1, 1)
+    adjoint = _adjoint(windows.tail)  # (k, p + 1, N)
+    right = adjoint @ (shapes.conj() * residual)[:, :, None]  # (k, p + 1, 1)
     theta = inverse @ right
-    # d(model) / da = -x s^2 (sum_i c_i2 U_i + d1), less its share in all other terms: those without a pole, then those
-    # with it (Schur complement).
-    slope = -stretch.offset * shapes**2 * (stretch.tail @ theta)[:, :, 0]
-    least = ROUNDING * _power(slope) + TINY
-    held = _adjoint(stretch.basis) @ slope[:, :, None]  # (k, 2p + 1, 1)
-    slope -= (stretch.basis @ held)[:, :, 0]
+    # d(model) / da = -x s^2 (sum_i c_i2 U_i + d1), minus its projection on the terms without a pole, then on the terms
+    # with the pole (Schur complement).
+    slope = -windows.offset * shapes**2 * (windows.tail @ theta)[:, :, 0]
+    floor = ROUNDING * _power(slope) + TINY
+    overlap = _adjoint(windows.basis) @ slope[:, :, None]  # (k, 2p + 1, 1)
+    slope -= (windows.basis @ overlap)[:, :, 0]
     with_pole = adjoint @ (shapes.conj() * slope)[:, :, None]
     coupled = inverse @ with_pole
-    alone = np.maximum(_power(slope) - _inner(with_pole, coupled).real, least)
-    pull = np.sum(slope.conj() * rest, axis=1) - _inner(with_pole, theta)
-    turn = (stretch.weights @ held + direct @ coupled)[:, :, 0]  # dH / da, (k, p)
+    power_of_slope = np.maximum(_power(slope) - _inner(with_pole, coupled).real, floor)
+    gradient = np.sum(slope.conj() * residual, axis=1) - _inner(with_pole, theta)
+    sensitivity = (windows.weights @ overlap + direct @ coupled)[:, :, 0]  # dH / da, (k, p)
     return _Refined(
         a=a,
         cost=total - _inner(right, theta).real,
-        step=pull / alone,
-        error=1.0 / np.sqrt(alone),
+        step=gradient / power_of_slope,
+        error=1.0 / np.sqrt(power_of_slope),
         part=(direct @ theta)[:, :, 0],
-        covariance=direct @ inverse @ _adjoint(direct) + turn[:, :, None] * turn[:, None].conj() / alone[:, None, None],
+        covariance=direct @ inverse @ _adjoint(direct)
+        + sensitivity[:, :, None] * sensitivity[:, None].conj() / power_of_slope[:, None, None],
     )
 
 
-def _refine(start: Complex, rest: Complex, stretch: _Stretches, least: float) -> _Refined:
-    """Output-error Gauss-Newton on the pole of every response; the linear unknowns follow exactly."""
-    total = _power(rest)
-    now, scale = _at(start, rest, total, stretch), np.ones(len(start))
+def _refine(start: Complex, residual: Complex, windows: _Windows, least_imaginary: float) -> _Refined:
+    """Refine the pole of every response by Gauss-Newton on the output error; the linear unknowns are eliminated."""
+    total = _power(residual)
+    current, scale = _solved(start, residual, total, windows), np.ones(len(start))
     for _ in range(STEPS):
-        error = now.error * np.sqrt(np.maximum(now.cost, EXACT * total) / stretch.size)
-        active = np.flatnonzero(scale * np.abs(now.step) > ENOUGH * error)
+        error = current.error * np.sqrt(np.maximum(current.cost, EXACT * total) / windows.size)
+        active = np.flatnonzero(scale * np.abs(current.step) > ENOUGH * error)
         if not active.size:
             break
-        a = now.a[active] + scale[active] * now.step[active]
-        a = np.where(np.abs(a) > SMALLEST, a, now.a[active])
-        trial = _at(a, rest[active], total[active], stretch.of(active))
+        a = current.a[active] + scale[active] * current.step[active]
+        a = np.where(np.abs(a) > SMALLEST, a, current.a[active])
+        trial = _solved(a, residual[active], total[active], windows.of(active))
         pole = -1.0 / a
-        better = (trial.cost < now.cost[active]) & ((pole.imag >= least) | (np.abs(pole.real) > REACH + 0.2))
+        better = (trial.cost < current.cost[active]) & (
+            (pole.imag >= least_imaginary) | (np.abs(pole.real) > FARTHEST + 0.2)
+        )
         scale[active] = np.where(better, 1.0, 0.3 * scale[active])
-        for kept, new in zip(now, trial, strict=True):
-            kept[active[better]] = new[better]
-    return now
+        for stored, new in zip(current, trial, strict=True):
+            stored[active[better]] = new[better]
+    return current
 
 
 def _power(rows: Complex) -> Real:
-    """Sum of |z|^2 over the last axis."""
+    """Return the sum of |z|^2 over the last axis."""
     return np.asarray(np.sum(rows.real**2 + rows.imag**2, axis=-1))
 
 
@@ -472,16 +479,16 @@ def _column_power(columns: Complex) -> Real:
     return np.asarray(np.sum(columns.real**2 + columns.imag**2, axis=0))
 
 
-def _turned(matrices: Complex) -> Complex:
-    """Transposed matrices."""
+def _transposed(matrices: Complex) -> Complex:
+    """Transpose a stack of matrices."""
     return np.swapaxes(matrices, -1, -2)
 
 
 def _adjoint(matrices: Complex) -> Complex:
-    """Transposed and conjugate matrices."""
+    """Return the conjugate transpose of a stack of matrices."""
     return np.swapaxes(matrices.conj(), -1, -2)
 
 
 def _inner(first: Complex, second: Complex) -> Complex:
-    """first' second of columns (k, n, 1), shape (k,)."""
+    """Return the inner products first' second of columns (k, n, 1), shape (k,)."""
     return np.asarray(np.sum(first.conj() * second, axis=(1, 2)))
