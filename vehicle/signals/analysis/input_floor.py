@@ -135,6 +135,13 @@ def _tapered(samples: Real, mean: float, window: Callable[[slice], Real], part: 
     return (samples[part] - mean) * window(part)
 
 
+@lru_cache(maxsize=64)
+def _cubic_basis(half: int) -> Real:
+    """Return an orthonormal basis of the cubic polynomials over 2 n + 1 lines, shape (2 n + 1, 4)."""
+    basis: Real = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
+    return basis
+
+
 def silent_lines(
     inputs: Real,
     spectra: Complex,
@@ -161,7 +168,7 @@ def silent_lines(
         power, floor = tapered_power(samples, step or rounding_step(samples), farthest)
         for selected, lines in windows_of_equal_length(centres, halves):
             half = lines.shape[1] // 2
-            smooth = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
+            smooth = _cubic_basis(half)
             drive, line_power = spectrum[lines], power[centres[selected]]
             energy = np.abs(drive) ** 2
             roughness = np.mean(np.abs(drive - (drive @ smooth) @ smooth.T) ** 2, axis=1)

@@ -54,7 +54,7 @@ BODY_MODES = 5.0
 COARSE_HZ = 0.06
 """Half-power width [Hz] of a lightly damped body mode: 1 % at 3 Hz. A shorter record causes a notice."""
 
-FITS_AT_ONCE = 1600
+WINDOWS_AT_ONCE, FITS_AT_ONCE = 100, 1600
 """Fits (windows times responses) in a batch: their arrays stay in the caches."""
 
 INDEPENDENT = 1e-2
@@ -231,7 +231,7 @@ def _batches(wide: NDArray[np.bool_], outputs: int) -> Iterator[slice]:
         wide: False for the windows with the minimum number of lines, shape (m,).
         outputs: responses fitted in each window; a batch has about `FITS_AT_ONCE` fits.
     """
-    size = max(FITS_AT_ONCE // max(outputs, 1), 1)
+    size = min(max(FITS_AT_ONCE // max(outputs, 1), 1), WINDOWS_AT_ONCE)
     for first, last in itertools.pairwise((0, int(np.count_nonzero(~wide)), wide.size)):
         for begin in range(first, last, size):
             yield slice(begin, min(begin + size, last))

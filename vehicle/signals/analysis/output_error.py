@@ -59,8 +59,11 @@ SHARP_SHARE = 0.1
 """Minimum probability of the best grid node for Gauss-Newton steps; below it, the posterior covers some ten nodes and
 their sum is accurate."""
 
-FITS_IN_CACHE = 128
+FITS_IN_CACHE = 200
 """Fits (windows times responses) processed at once: their arrays over the grid, 300 kB each, stay in the cache."""
+
+REFINED_AT_ONCE = 256
+"""Poles refined at once: the terms of their windows stay in the cache."""
 
 ROUNDING, TINY, SMALLEST = 1e-13, 1e-300, 1e-2
 """Lower bounds against division by zero: for a pole without a residue, and for a pole farther away than 100 n."""
@@ -118,8 +121,8 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
 
     # Where the pole is sharper than a cell of the grid, the best node is refined and takes over.
     of, sharp = np.nonzero((best > 0) & (share > SHARP_SHARE))
-    for begin in range(0, sharp.size, FITS_IN_CACHE):
-        chosen = slice(begin, begin + FITS_IN_CACHE)
+    for begin in range(0, sharp.size, REFINED_AT_ONCE):
+        chosen = slice(begin, begin + REFINED_AT_ONCE)
         at = of[chosen], sharp[chosen]
         node, refined_windows = best[at] - 1, windows.of(at[0])
         refined = _refine(grid.poles[node], residual[:, at[0], at[1]].T, refined_windows, grid.sharpest)
@@ -289,7 +292,8 @@ def _normal_equations(grid: _PoleGrid, windows: _Windows, halves: NDArray[np.int
         share = inverse[0, column].conj() * held[0]  # (p + 1, G, s)
         for row in range(1, column + 1):
             share += inverse[row, column].conj() * held[row]
-        gram[:, :, 1:] -= share.conj()[:, None] * share
+        for i in range(size):
+            gram[i, : i + 1, 1:] -= share[i].conj() * share[: i + 1]
         direct[:, :, 1:] -= inverse[:inputs, column, None, None] * share
     lower: list[list[Complex]] = []
     pivots: list[Real] = []
@@ -390,7 +394,7 @@ def _pole_grid(wide: bool, half: int) -> _PoleGrid:
     return _PoleGrid(-np.reciprocal(nodes), spacing, sharpest, mirrored, wide, half)
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=16)
 def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Real, Real]:
     """Return even and odd parts of 1 / (1 + a x) for x >= 0 and x > 0, real parts above imaginary parts."""
     grid = _pole_grid(wide, half_of_grid)
