@@ -234,14 +234,14 @@ class _Windows:
         smooth -= self.basis @ held
         return smooth, _adjoint(smooth) @ smooth, -(self.weights @ held)
 
-    def gram_each(self, shapes: Complex) -> tuple[Complex, Complex]:
+    def gram_each(self, with_pole: Complex, adjoint: Complex) -> tuple[Complex, Complex]:
         """Return Gram matrices (s, p + 1, p + 1) and parts in H (s, p, p + 1) of one pole per window.
 
         Args:
-            shapes: 1 / (1 + a x), shape (s, N).
+            with_pole: terms with the pole, s `tail`, shape (s, N, p + 1).
+            adjoint: their conjugate transpose.
         """
-        with_pole = shapes[:, :, None] * self.tail
-        power, share = _adjoint(with_pole) @ with_pole, _adjoint(self.basis) @ with_pole
+        power, share = adjoint @ with_pole, _adjoint(adjoint @ self.basis)
         inputs, size = self.weights.shape[1], self.tail.shape[2]
         return power - _adjoint(share) @ share, np.eye(inputs, size) - self.weights @ share
 
@@ -359,7 +359,7 @@ def _sums_of_poles(grid: _PoleGrid, columns: Real, halves: NDArray[np.int_]) -> 
     np.add(after, before, out=even[1:].reshape(middle, count, width))
     nodes = len(grid.poles) - grid.mirrored
     sums, odd_sums = np.empty((2, 2 * nodes, count * width))
-    edges = np.flatnonzero(np.diff(halves, prepend=-1, append=-1))
+    edges = [0, *(np.flatnonzero(halves[1:] != halves[:-1]) + 1), count]
     for begin, end in itertools.pairwise(edges):
         half, some = int(halves[begin]), slice(begin * width, end * width)
         shapes_even, shapes_odd = _shapes_of(grid.wide, grid.half, half)
@@ -424,18 +424,19 @@ class _Refined(NamedTuple):
 def _solved(a: Complex, residual: Complex, total: Real, windows: _Windows) -> _Refined:
     """Solve the least squares with a given pole for each response, and compute the Gauss-Newton step of the pole."""
     shapes = 1.0 / (1.0 + a[:, None] * windows.offset)  # (k, N)
-    gram, direct = windows.gram_each(shapes)
+    terms = shapes[:, :, None] * windows.tail  # (k, N, p + 1)
+    adjoint = _adjoint(terms)
+    gram, direct = windows.gram_each(terms, adjoint)
     inverse = np.linalg.inv(gram)
-    adjoint = _adjoint(windows.tail)  # (k, p + 1, N)
-    right = adjoint @ (shapes.conj() * residual)[:, :, None]  # (k, p + 1, 1)
+    right = adjoint @ residual[:, :, None]  # (k, p + 1, 1)
     theta = inverse @ right
     # d(model) / da = -x s^2 (sum_i c_i2 U_i + d1), minus its projection on the terms without a pole, then on the terms
     # with the pole (Schur complement).
-    slope = -windows.offset * shapes**2 * (windows.tail @ theta)[:, :, 0]
+    slope = -windows.offset * shapes * (terms @ theta)[:, :, 0]
     floor = ROUNDING * _power(slope) + TINY
-    overlap = _adjoint(windows.basis) @ slope[:, :, None]  # (k, 2p + 1, 1)
+    overlap = _adjoint(slope[:, None].conj() @ windows.basis)  # (k, 2p + 1, 1)
     slope -= (windows.basis @ overlap)[:, :, 0]
-    with_pole = adjoint @ (shapes.conj() * slope)[:, :, None]
+    with_pole = adjoint @ slope[:, :, None]
     coupled = inverse @ with_pole
     power_of_slope = np.maximum(_power(slope) - _inner(with_pole, coupled).real, floor)
     gradient = np.sum(slope.conj() * residual, axis=1) - _inner(with_pole, theta)
