@@ -36,7 +36,7 @@ def test_doubling_the_acceleration_doubles_the_comfort_value():
 
 
 def test_comfort_needs_three_axes():
-    with pytest.raises(DataError, match="acceleration: found 2 signals, needed are the three axes x, y, z"):
+    with pytest.raises(DataError, match="acceleration: found 2 signals, must be the three axes x, y, z"):
         comfort_value(STEP, np.ones((2, 1000)))
 
 
@@ -97,5 +97,5 @@ def test_a_sine_is_settled_and_a_growing_one_is_not():
 
 
 def test_settling_needs_two_halves():
-    with pytest.raises(DataError, match="found 3 samples, two halves of at least 2 are needed"):
+    with pytest.raises(DataError, match="found 3 samples, must be at least 4"):
         settling(STEP, [1.0, 2.0, 3.0])

@@ -39,7 +39,7 @@ def test_json_holds_the_measures_of_each_axis(ride, capsys):
         f"notice: {a}: MTVV and crest factor leave out the first"[:50] for a in "xyz"
     ]
     assert said[3:] == [
-        "notice: msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, asks for 240 s: a rough estimate"
+        "notice: msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, requires 240 s: a rough estimate"
     ]
     for axis, name in zip("xyz", ("Wd", "Wd", "Wk"), strict=True):
         assert found[axis]["weighting"] == name
@@ -140,7 +140,7 @@ def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
     assert main(["--input", str(tmp_path / "nix.csv")]) == 2
     assert capsys.readouterr() == ("", f"error: {tmp_path / 'nix.csv'}: no such file; give the path of a CSV file\n")
     assert main(["--input", str(path), "--place", "sofa"]) == 2
-    assert "point of contact: found 'sofa', allowed are seat" in capsys.readouterr().err
+    assert "point of contact: found 'sofa', must be one of seat" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("arguments", [[], ["--input"], ["--input", "a.csv", "--offset", "maybe"], ["--inp", "a.csv"]])
@@ -181,7 +181,7 @@ def test_a_skip_that_is_no_part_of_the_record_is_refused(ride, capsys, skip):
     assert main(["--input", ride(), "--skip", skip]) == 2
     assert capsys.readouterr() == (
         "",
-        f"error: skip: found {skip} s, allowed is 0 s to less than the record, 60 s\n",
+        f"error: skip: found {skip} s, must be at least 0 s and shorter than the record, 60 s\n",
     )
 
 

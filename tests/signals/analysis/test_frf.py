@@ -143,8 +143,8 @@ def test_a_still_excitation_is_refused():
     with pytest.raises(DataError) as refusal:
         frequency_response(STEP, np.full(30_000, 0.1), noise(30_000))
     assert str(refusal.value) == (
-        "excitation: constant at 0.1 over all 30000 samples, so no frequency response to it exists; give the channel "
-        "that moves"
+        "excitation: constant at 0.1 over all 30000 samples, so there is no frequency response to it; use a "
+        "channel that moves"
     )
 
 
@@ -166,7 +166,7 @@ def test_too_few_averages_are_refused_and_one_gives_no_coherence():
     found = frequency_response(STEP, excitation, excitation, minimum_averages=1.0)
     assert found.response[0] == pytest.approx(np.ones(197))
     assert np.isnan(found.coherence).all()
-    assert found.reasons == ("coherence: undefined with 1 averages (a single one gives 1 whatever happens)",)
+    assert found.reasons == ("coherence: undefined with 1 averages (a single average always gives 1)",)
 
 
 def test_records_of_different_length_are_refused():

@@ -88,14 +88,14 @@ def test_where_nothing_is_excited_there_is_no_number():
     silent = (found.frequency > 10.5) & (found.frequency < 19.5)
     assert silent.sum() > 50 and np.isnan(found.response[0, silent]).all()
     assert np.isnan(found.coherence[0, silent]).all() and np.isnan(found.random_error[0, silent]).all()
-    assert any("10.20 to 19.80 Hz: the input lies below the floor" in text for text in found.reasons), found.reasons
+    assert any("10.20 to 19.80 Hz: the input is below the floor" in text for text in found.reasons), found.reasons
 
 
 def test_refusals_and_warnings():
     drive, answer = record(60.0)
     with pytest.raises(DataError, match="is too short for an FRF up to 50 Hz"):
         local_rational_response(1.0 / RATE, drive[:400], answer[:400])
-    with pytest.raises(DataError, match="excitation: is constant, at 0; an FRF needs an input that moves"):
+    with pytest.raises(DataError, match="excitation: is constant, at 0; an FRF needs a moving input"):
         local_rational_response(1.0 / RATE, np.zeros_like(drive), answer)
     short = local_rational_response(1.0 / RATE, drive[:5000], answer[:5000])
     assert short.resolution_hz == pytest.approx(0.4)

@@ -33,7 +33,7 @@ def lines(name, *pairs):
 @pytest.mark.parametrize(("place", "name"), [("seat", "Wk"), ("seat_bs6841", "Wb")])
 def test_two_sines_in_closed_form(place, name):
     """After the filters have settled, SEAT^2 = sum (T_i w_i a_i)^2 / sum (w_i a_i)^2."""
-    found = seat_value(STEP, SEAT, RAIL, place=place, skip=10.0)
+    found = seat_value(STEP, SEAT, RAIL, contact=place, skip=10.0)
     expected = lines(name, (2.0, 4.0), (0.5, 10.0)) / lines(name, (1.0, 4.0), (1.0, 10.0))
     assert found.weighting == name
     validated(
@@ -59,9 +59,9 @@ def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
 
 
 def test_what_is_no_seat_is_refused():
-    with pytest.raises(ConfigurationError, match="found place 'feet', allowed are seat and seat_bs6841"):
-        seat_value(STEP, SEAT, RAIL, place="feet")
-    with pytest.raises(DataError, match="the rail is at rest"):
+    with pytest.raises(ConfigurationError, match="found point of contact 'feet', must be seat or seat_bs6841"):
+        seat_value(STEP, SEAT, RAIL, contact="feet")
+    with pytest.raises(DataError, match="acceleration of the rail is zero"):
         seat_value(STEP, SEAT, 0.0 * RAIL)
 
 

@@ -195,13 +195,13 @@ def test_a_constant_dies_away():
 def test_slow_sampling_is_refused():
     with pytest.raises(DataError) as refusal:
         weighted_record(1 / 20, np.ones(1000), "Wk")
-    assert str(refusal.value) == "sampling rate: found 20 Hz, weighting Wk needs at least 25 Hz; sample faster"
+    assert str(refusal.value) == "sampling rate: found 20 Hz, must be at least 25 Hz for Wk; sample faster"
 
 
 def test_an_unknown_weighting_is_refused_with_those_that_exist():
     with pytest.raises(ConfigurationError) as refusal:
         weighting("Wx")
-    assert str(refusal.value) == "weighting: found 'Wx', allowed are Wk, Wd, Wf, Wc, We, Wj, Wb"
+    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb"
 
 
 def test_a_frequency_that_is_not_finite_is_refused():
