@@ -122,7 +122,7 @@ def _origin(run: FinishedRun) -> str:
 
 
 def time_figure(run: FinishedRun) -> Markup:
-    """Return the plot of the main time histories."""
+    """Return the plot of plate, seat rail and dampers over time, as in time.png."""
     return drawing(lambda path: plot_time(path, run), f"Time histories of {run.name}")
 
 

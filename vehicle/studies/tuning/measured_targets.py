@@ -194,5 +194,5 @@ def _signal(source: Signal | Path | str, car: Car) -> Signal:
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:
-    """Return the notices on a file, each with the file name."""
+    """Return the notices of reading a file and further ones, each with the file name in front."""
     return tuple(f"{file.name}: {text}" for text in (*measured.notices, *more))
