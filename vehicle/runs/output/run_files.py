@@ -11,7 +11,7 @@ import numpy as np
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.errors import DataError, SimulationError
-from vehicle.model.flexbody.loads import body_loads
+from vehicle.model.flexbody.body_loads import body_loads
 from vehicle.model.flexbody.mass_difference import mass_difference
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.parameters.idle import idle_parameters
