@@ -70,7 +70,7 @@ def test_the_backrest_has_its_own_weightings_and_factors():
     assert found["reasons"][-1] == "vector_sum.health_weighted_rms: the standard has no health factors for backrest"
 
 
-def test_every_place_evaluates_and_writes_json():
+def test_every_point_of_contact_evaluates_and_writes_json():
     xyz = np.random.default_rng(0).standard_normal((3, 4000))
     for place in APPLICATIONS:
         found = evaluate(STEP, xyz, contact=place, average="exponential")
@@ -95,7 +95,7 @@ def test_doubling_the_acceleration_doubles_every_value_but_the_ratios():
         assert twice[key] == pytest.approx(once[key], rel=1e-12)
 
 
-def test_bad_records_and_places_are_refused():
+def test_bad_records_and_points_of_contact_are_rejected():
     with pytest.raises(DataError, match="found 2 signals, must be the axes x, y, z"):
         evaluate(STEP, np.ones((2, 100)))
     with pytest.raises(DataError, match="all three axes are zero throughout"):
@@ -106,7 +106,7 @@ def test_bad_records_and_places_are_refused():
         application("sofa")
 
 
-def test_an_offset_shows_as_the_step_it_is():
+def test_an_offset_acts_as_a_step():
     xyz = np.stack([sine(8.0, 0.1), sine(8.0) + 9.81, 0.0 * TIME])
     effect = offset_effect(STEP, xyz)
     assert effect[0] < 1e-5  # the line through a sine of 480 periods rises by 4 mm/s2
@@ -125,7 +125,7 @@ def test_an_offset_shows_as_the_step_it_is():
     assert offset_effect(STEP, without_offset(xyz)) == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
 
 
-def test_a_pure_offset_has_an_infinite_effect_and_nothing_is_left_of_it():
+def test_a_pure_offset_has_an_infinite_effect_and_is_removed_exactly():
     xyz = np.stack([sine(8.0), sine(8.0), np.full(TIME.size, 9.81)])
     assert offset_effect(STEP, xyz)[2] == np.inf
     assert not without_offset(xyz)[2].any()
@@ -142,7 +142,7 @@ def ride(duration, frequency=4.0):
 
 @pytest.mark.parametrize("duration", [60.0, 600.0])
 @pytest.mark.parametrize("bias", [9.81, np.linspace(-1.0, 1.0)], ids=["gravity", "drift"])
-def test_maxima_and_sickness_dose_do_not_see_a_mean_or_a_drift(duration, bias):
+def test_maxima_and_sickness_dose_are_independent_of_mean_and_drift(duration, bias):
     clean = ride(duration, 0.2) + ride(duration)
     bias = np.interp(np.linspace(0, 1, clean.shape[1]), np.linspace(0, 1, np.size(bias)), np.atleast_1d(bias))
     with_bias = evaluate(SLOW_STEP, clean + bias)
@@ -183,7 +183,7 @@ def test_a_record_must_hold_the_lowest_frequency_of_its_weighting(duration, said
     assert evaluate(SLOW_STEP, ride(3.0), from_rest=True)["z"]["weighted_rms"] > 0.0
 
 
-def test_what_is_skipped_does_not_count():
+def test_the_skipped_time_is_not_evaluated():
     xyz = ride(60.0)
     xyz[:, :1000] *= 10.0
     found = evaluate(SLOW_STEP, xyz, skip=10.0)

@@ -81,7 +81,7 @@ def test_fully_correlated_inputs_are_refused_by_name(plates, copy):
     assert "Use the single-input frequency_response with one input" in message
 
 
-def test_an_input_that_follows_from_two_others_is_refused(plates):
+def test_an_input_that_is_the_sum_of_two_others_is_rejected(plates):
     with pytest.raises(DataError, match="one of fr, fl, sum depends linearly on the others"):
         frequency_responses(STEP, [*plates, plates[0] - plates[1]], plates[0], input_names=("fr", "fl", "sum"))
 
@@ -98,7 +98,7 @@ def test_lines_where_the_inputs_coincide_are_nan_with_a_reason(plates):
     assert "the inputs are fully correlated there" in found[0].reasons[0]
 
 
-def test_a_still_input_is_refused_with_the_one_that_moves(plates):
+def test_a_constant_input_is_rejected_and_the_moving_input_is_named(plates):
     with pytest.raises(DataError, match=r"fl: constant at 0 over all 200000 samples, .* response to it; use only fr"):
         frequency_responses(STEP, [plates[0], np.zeros(SAMPLES)], plates[0], input_names=("fr", "fl"))
 

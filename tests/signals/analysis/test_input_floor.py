@@ -42,7 +42,7 @@ def test_a_sine_has_no_frf(signal):
     assert any("fewer than five lines of the input are driven, as by a sine" in text for text in found.reasons)
 
 
-def test_a_bump_at_the_beginning_cannot_be_told_from_the_transient():
+def test_a_bump_at_the_beginning_cannot_be_separated_from_the_transient():
     bump = 0.02 * np.where(TIME < 0.02, 0.5 - 0.5 * np.cos(2.0 * np.pi * TIME / 0.02), 0.0)
     found, told = estimate(bump)
     assert not told.any()

@@ -79,7 +79,7 @@ def test_doubled_input_doubles_nothing_in_the_ratio():
     np.testing.assert_allclose(twice.response, once.response, rtol=1e-9)  # round-off
 
 
-def test_where_nothing_is_excited_there_is_no_number():
+def test_lines_without_excitation_are_undefined():
     drive, answer = record(60.0)
     spectrum = np.fft.rfft(drive)
     frequency = np.fft.rfftfreq(drive.size, 1.0 / RATE)
@@ -106,7 +106,7 @@ def test_refusals_and_warnings():
     assert "roof: constant, so its FRF and its coherence are undefined" in still.reasons
 
 
-def test_random_error_and_averages_are_those_that_repetition_shows():
+def test_random_error_and_averages_equal_the_scatter_of_repetitions():
     # One drive, 200 noises: the scatter of |H| is the stated error, and n = (1 - g) / (2 g e^2) averages by H1 give it.
     drive, answer = record(30.0)
     noise = np.random.default_rng(6).normal(size=(200, answer.size)) * 0.3 * np.std(answer)

@@ -58,14 +58,14 @@ def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
     )  # fmt: skip
 
 
-def test_what_is_no_seat_is_refused():
+def test_a_point_of_contact_other_than_a_seat_is_rejected():
     with pytest.raises(ConfigurationError, match="found point of contact 'feet', must be seat or seat_bs6841"):
         seat_value(STEP, SEAT, RAIL, contact="feet")
     with pytest.raises(DataError, match="acceleration of the rail is zero"):
         seat_value(STEP, SEAT, 0.0 * RAIL)
 
 
-def test_a_run_says_what_its_seat_does(tmp_path, monkeypatch, capsys):
+def test_a_run_reports_its_seat_value(tmp_path, monkeypatch, capsys):
     """The summary, the page and the command on the file agree; a car without a seat has none, and says so."""
     monkeypatch.chdir(tmp_path)
     road = ["--road", "A", "--speed", "60", "--duration", "4", "--engine", "reduced"]

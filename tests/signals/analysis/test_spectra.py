@@ -41,7 +41,7 @@ def test_welch_density_of_a_sine_holds_its_mean_square():
     )  # fmt: skip
 
 
-def test_band_rms_counts_what_lies_in_the_band_and_nothing_else():
+def test_band_rms_includes_only_lines_in_the_band():
     time = np.arange(10_000) * 1e-3
     low, inside, high = (np.sin(2 * np.pi * f * time) for f in (1.0, 10.0, 80.0))
     signal = 7.0 * low + 2.0 * inside + 4.0 * high + 9.81
@@ -100,7 +100,7 @@ def test_a_value_that_is_not_finite_is_located(bad):
 
 
 @pytest.mark.parametrize("step", [0.0, -1e-3, np.nan, np.inf])
-def test_a_time_step_that_is_no_time_step_is_refused(step):
+def test_an_invalid_time_step_is_rejected(step):
     with pytest.raises(ConfigurationError, match="time step: found"):
         periodogram(step, np.ones(10))
 

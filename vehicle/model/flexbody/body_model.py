@@ -70,7 +70,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
 
 
 def _as_in(vehicle: Vehicle, model: Superelement) -> Superelement:
-    """Return a body model with the mass factor, loads and mode changes of the vehicle.
+    """Return a body model with the mass factor, load masses and changed mode parameters of the vehicle.
 
     Without loads, `modes_up_to` applies before the mass is scaled, and the number of modes is independent of the mass.
     With loads, `modes_up_to` applies to the modes with the loads, which are combinations of all modes of the body.

@@ -54,8 +54,8 @@ def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
     def sill(station: Array) -> Array:
         return np.asarray(np.interp(station, station_at(SILL[:, 0]), SILL[:, 1]))
 
-    heights = np.concatenate([sill(front), sill(front_side), fh, sill(middle), rh, sill(rear_side), sill(rear)])
-    return low, heights, top, body.waist(top)
+    low_heights = np.concatenate([sill(front), sill(front_side), fh, sill(middle), rh, sill(rear_side), sill(rear)])
+    return low, low_heights, top, body.waist(top)
 
 
 def arch_edge(body: Outline, axle: int) -> tuple[Array, Array]:

@@ -74,7 +74,7 @@ def shaker_table(points: Points, size: Sizes) -> list[Piece]:
 
 
 def shaker_top(patch: Array) -> float:
-    """Return the height of the upper face of the shaker [m]."""
+    """Return the height z of the upper face of the shaker [m], below a contact patch at (x, y, z) [m]."""
     return float(patch[2]) - TABLE - AIR
 
 

@@ -155,10 +155,10 @@ def tube(
 
     Args:
         path: points of the centre line [m], shape (n, 3), no two in a row equal
-        radius: half height of the section, along the first normal [m]; a number or shape (n,)
+        radius: distance of the corners from the centre line along the first normal [m]; a number or shape (n,)
         sides: corners of the polygon; 4 makes a bar with flat faces
         closed: the path returns to its first point (which is not repeated)
-        width: half width, along the second normal [m]; `radius` by default
+        width: distance of the corners along the second normal [m]; `radius` by default
         up: direction of the first normal, for flat bars; by default without twist
 
     Returns:

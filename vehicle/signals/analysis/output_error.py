@@ -495,5 +495,5 @@ def _adjoint(matrices: Complex) -> Complex:
 
 
 def _inner(first: Complex, second: Complex) -> Complex:
-    """Return the inner products first' second of columns (k, n, 1), shape (k,)."""
+    """Return the inner products, conj(first) times second, of columns (k, n, 1); shape (k,)."""
     return np.asarray(np.sum(first.conj() * second, axis=(1, 2)))
