@@ -165,6 +165,7 @@ def local_rational_responses(
     response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape[1:], np.nan)
     deviation, averages = np.full((2, *shape), np.nan)
     driven_centres, moving_rows = np.flatnonzero(silent == 0), np.flatnonzero(moving)
+    driven_centres = driven_centres[np.argsort(halves[driven_centres], kind="stable")]  # narrower near the Nyquist line
     np.empty(RETAINED, dtype=np.uint8)  # see RETAINED
     group_size = max(OUTPUTS_OF_A_LONG_RECORD if is_long(samples) else len(outputs), 1)
     for begin in range(0, max(moving_rows.size, 1), group_size):

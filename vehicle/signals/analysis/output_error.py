@@ -22,32 +22,16 @@ Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413 (projection); Bretthorst, 
 from __future__ import annotations
 
 import copy
-import itertools
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.signals.analysis.pole_grid import FARTHEST, PoleGrid, pole_grid, right_sides, sums_of_poles
+
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-SHARPEST = 0.15
-"""Minimum half-bandwidth of a pole relative to n: 0.3 % damping if n is 2 % of the frequency."""
-
-LEAST_BANDWIDTH = 0.4
-"""Minimum half-bandwidth [lines] at the minimum n: a narrower pole affects only two lines and is not identifiable."""
-
-WIDEST = 3.0
-"""Maximum half-bandwidth relative to n; the polynomial terms represent wider poles."""
-
-FARTHEST = 1.3
-"""Maximum distance of a pole from the centre of the window relative to n."""
-
-POSITIONS, BANDWIDTHS = 21, 7
-"""Number of positions and bandwidths of the pole grid, spacing 0.13 n. A grid of 27 by 9 changes the result by less
-than 0.1 standard errors."""
 
 STEPS = 8
 """Maximum Gauss-Newton steps; the start from the grid is within a cell, so that each step squares the error."""
@@ -107,19 +91,19 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
     noise, share = np.empty((2, count, output_count))
     best = np.empty((count, output_count), dtype=np.intp)
 
-    # Every pole of the grid, and none: there x^2 and, for the transient, x take the place of 1 / (1 + a x).
-    grid = _pole_grid(wide, int(halves[0]))
+    # All poles of the grid, preceded by a model without pole: x^2 and, for the transient, x replace 1 / (1 + a x).
+    grid = pole_grid(wide, int(halves[0]))
     equations = _normal_equations(grid, windows, halves)
     size = max(FITS_IN_CACHE // max(output_count, 1), 1)
     for begin in range(0, count, size):
         some = slice(begin, min(begin + size, count))
-        right = _right_sides(grid, windows, equations.smooth, residual, halves, some)
+        right = right_sides(grid, windows.tail[some], equations.smooth[some], residual[:, some], halves[some])
         best[some], share[some], noise[some], mean, covariance[some] = _posterior(
             equations, right, total[some], floor[some], dof[some], some
         )
         response[some] += np.moveaxis(mean, 0, -1)
 
-    # Where the pole is sharper than a cell of the grid, the best node is refined and takes over.
+    # Where the pole is narrower than a grid cell, the refined best node replaces the mean over the grid.
     of, sharp = np.nonzero((best > 0) & (share > SHARP_SHARE))
     for begin in range(0, sharp.size, REFINED_AT_ONCE):
         chosen = slice(begin, begin + REFINED_AT_ONCE)
@@ -257,7 +241,7 @@ class _NormalEquations(NamedTuple):
     smooth: Complex  # terms of the model without a pole (s, N, p + 1)
 
 
-def _normal_equations(grid: _PoleGrid, windows: _Windows, halves: NDArray[np.int_]) -> _NormalEquations:
+def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_]) -> _NormalEquations:
     """Return the normal equations of the terms with a pole, less their projection on the basis.
 
     With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
@@ -269,7 +253,7 @@ def _normal_equations(grid: _PoleGrid, windows: _Windows, halves: NDArray[np.int
     tail = np.ascontiguousarray(windows.tail.transpose(1, 0, 2))  # (N, s, p + 1)
     upper = [(i, j) for i in range(size) for j in range(i, size)]
     products = np.stack([tail[:, :, i].conj() * tail[:, :, j] for i, j in upper], axis=2)
-    first, mirrored = _sums_of_poles(grid, products.view(np.float64), halves)
+    first, mirrored = sums_of_poles(grid, products.view(np.float64), halves)
     shape = (size, size, len(a), len(halves))
     sums = np.empty(shape, dtype=np.complex128)  # sum of s conj(t_i) t_j, t = (U, 1)
     for number, (i, j) in enumerate(upper):
@@ -312,102 +296,6 @@ def _normal_equations(grid: _PoleGrid, windows: _Windows, halves: NDArray[np.int
         pivots.append(pivot)
     weights = [np.reciprocal(pivot) for pivot in pivots]
     return _NormalEquations(lower, weights, direct, direct * np.array(weights), windows.covariance, smooth)
-
-
-def _right_sides(
-    grid: _PoleGrid, windows: _Windows, smooth: Complex, residual: Complex, halves: NDArray[np.int_], some: slice
-) -> list[Complex]:
-    """Return the right-hand sides of the normal equations of some windows: p + 1 arrays of shape (G, s, k)."""
-    none = _adjoint(smooth[some]) @ residual[:, some].swapaxes(0, 1)  # (s, p + 1, k)
-    middle, most = len(residual) // 2, int(halves[some][-1])
-    lines = slice(middle - most, middle + most + 1)
-    right = []
-    for i in range(none.shape[1]):
-        columns = residual[lines, some].copy()
-        if i < none.shape[1] - 1:
-            columns *= windows.tail[some, lines, i].T.conj()[:, :, None]
-        first, mirrored = _sums_of_poles(grid, columns.view(np.float64), halves[some])
-        first, mirrored = first.view(np.complex128), mirrored.view(np.complex128)
-        row = np.empty((len(grid.poles) + 1, *none.shape[::2]), dtype=np.complex128)
-        row[0] = none[:, i]
-        own, mirror = row[1 : first.shape[1] + 1], row[first.shape[1] + 1 :]
-        np.add(first[0].real, first[1].imag, out=own.real)
-        np.subtract(first[0].imag, first[1].real, out=own.imag)
-        np.subtract(mirrored[0].real, mirrored[1].imag, out=mirror.real)
-        np.add(mirrored[0].imag, mirrored[1].real, out=mirror.imag)
-        right.append(row)
-    return right
-
-
-def _sums_of_poles(grid: _PoleGrid, columns: Real, halves: NDArray[np.int_]) -> tuple[Real, Real]:
-    """Return the sums of s(x) y and s(-x) y over the lines, s = 1 / (1 + a x), for the poles of Re z >= 0.
-
-    The even and odd parts of y are summed once for both.
-
-    Args:
-        grid: poles; s(-x) is returned for those with Re z > 0 only, s*(-x) is that of the mirrored pole.
-        columns: y, shape (N, s, c).
-        halves: lines n on each side of the centre of each window, in ascending order, shape (s,).
-
-    Returns:
-        Real and imaginary parts, shape (2, poles, s, c), of s(x) and of s(-x).
-    """
-    middle, (count, width) = len(columns) // 2, columns.shape[1:]
-    after, before = columns[middle + 1 :], columns[middle - 1 :: -1]
-    even, odd = np.empty((middle + 1, count * width)), (after - before).reshape(middle, -1)
-    even[0] = columns[middle].ravel()
-    np.add(after, before, out=even[1:].reshape(middle, count, width))
-    nodes = len(grid.poles) - grid.mirrored
-    sums, odd_sums = np.empty((2, 2 * nodes, count * width))
-    edges = [0, *(np.flatnonzero(halves[1:] != halves[:-1]) + 1), count]
-    for begin, end in itertools.pairwise(edges):
-        half, some = int(halves[begin]), slice(begin * width, end * width)
-        shapes_even, shapes_odd = _shapes_of(grid.wide, grid.half, half)
-        np.matmul(shapes_even, even[: half + 1, some], out=sums[:, some])
-        np.matmul(shapes_odd, odd[:half, some], out=odd_sums[:, some])
-    sums, odd_sums = (values.reshape(2, nodes, count, width) for values in (sums, odd_sums))
-    mirrored = sums[:, nodes - grid.mirrored :] - odd_sums[:, nodes - grid.mirrored :]
-    sums += odd_sums
-    return sums, mirrored
-
-
-class _PoleGrid(NamedTuple):
-    """Poles z in units of n lines, a = -1/z: those with Re z >= 0, then the mirrored ones of Re z > 0."""
-
-    poles: Complex  # a (G,)
-    spacing: Real  # distance of neighbours in z (G,)
-    sharpest: float  # least imaginary part of z
-    mirrored: int  # number of mirrored poles
-    wide: bool  # arguments of `_pole_grid`
-    half: int
-
-
-@lru_cache(maxsize=4)
-def _pole_grid(wide: bool, half: int) -> _PoleGrid:
-    """Return the grid of poles of a window of n lines on each side; that of wide windows does not depend on n."""
-    sharpest = max(SHARPEST if wide else 0.0, LEAST_BANDWIDTH / half)
-    real, imaginary = np.linspace(0.0, FARTHEST, POSITIONS // 2 + 1), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
-    nodes: Complex = (real[:, None] + 1j * imaginary).ravel().astype(np.complex128)
-    mirrored = nodes.size - BANDWIDTHS
-    nodes = np.concatenate([nodes, -nodes[BANDWIDTHS:].conj()])
-    spacing = np.minimum(real[1], (imaginary[1] / imaginary[0] - 1.0) * nodes.imag)
-    return _PoleGrid(-np.reciprocal(nodes), spacing, sharpest, mirrored, wide, half)
-
-
-@lru_cache(maxsize=16)
-def _shapes_of(wide: bool, half_of_grid: int, half: int) -> tuple[Real, Real]:
-    """Return even and odd parts of 1 / (1 + a x) for x >= 0 and x > 0, real parts above imaginary parts."""
-    grid = _pole_grid(wide, half_of_grid)
-    a = grid.poles[: len(grid.poles) - grid.mirrored, None]
-    x = np.arange(half + 1) / half
-    # 1 / (1 - (a x)^2) and -a x times it, in real numbers: SIMD
-    real, imaginary = 1.0 - (a * a).real * x**2, (a * a).imag * x**2
-    power = np.reciprocal(real**2 + imaginary**2)
-    real *= power
-    imaginary *= power
-    odd_real = -x * (a.real * real - a.imag * imaginary)
-    odd_imaginary = -x * (a.real * imaginary + a.imag * real)
-    return np.concatenate([real, imaginary]), np.concatenate([odd_real, odd_imaginary])[:, 1:].copy()
 
 
 class _Refined(NamedTuple):
