@@ -96,12 +96,12 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
     equations = _normal_equations(grid, windows, halves)
     size = max(FITS_IN_CACHE // max(output_count, 1), 1)
     for begin in range(0, count, size):
-        some = slice(begin, min(begin + size, count))
-        right = right_sides(grid, windows.tail[some], equations.smooth[some], residual[:, some], halves[some])
-        best[some], share[some], noise[some], mean, covariance[some] = _posterior(
-            equations, right, total[some], floor[some], dof[some], some
+        block = slice(begin, min(begin + size, count))
+        right = right_sides(grid, windows.tail[block], equations.smooth[block], residual[:, block], halves[block])
+        best[block], share[block], noise[block], mean, covariance[block] = _posterior(
+            equations, right, total[block], floor[block], dof[block], block
         )
-        response[some] += np.moveaxis(mean, 0, -1)
+        response[block] += np.moveaxis(mean, 0, -1)
 
     # Where the pole is narrower than a grid cell, the refined best node replaces the mean over the grid.
     of, sharp = np.nonzero((best > 0) & (share > SHARP_SHARE))
@@ -114,36 +114,36 @@ def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, 
         cells = np.sqrt(power) * refined.error / np.abs(refined.a) ** 2 / grid.spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
         whole = (refined_windows.weights @ coefficients[at[0], :, at[1]][:, :, None])[:, :, 0] + refined.part
-        own = (refined_windows.covariance + refined.covariance) * power[:, None, None]
+        node_covariance = (refined_windows.covariance + refined.covariance) * power[:, None, None]
         response[at] += trust[:, None] * (whole - response[at])
-        covariance[at] += trust[:, None, None] * (own - covariance[at])
+        covariance[at] += trust[:, None, None] * (node_covariance - covariance[at])
         noise[at] += trust * (power - noise[at])
     return WindowFit(response=response, covariance=covariance, noise=noise)
 
 
 def _posterior(
-    equations: _NormalEquations, right: list[Complex], total: Real, floor: Real, dof: NDArray[np.int_], some: slice
+    equations: _NormalEquations, right: list[Complex], total: Real, floor: Real, dof: NDArray[np.int_], block: slice
 ) -> tuple[NDArray[np.intp], Real, Real, Complex, Complex]:
     """Average the estimates of all poles of the grid, weighted by their probability.
 
     Args:
-        equations: of all windows.
-        right: right-hand sides of `some` windows, p + 1 arrays of shape (G, s, k); overwritten.
+        equations: normal equations of all windows.
+        right: right-hand sides of the windows of `block`, p + 1 arrays of shape (G, s, k); overwritten.
         total: residual power of the model without x^2 and pole, shape (s, k).
         floor: minimum residual power, shape (s, k).
         dof: degrees of freedom, shape (s, 1).
-        some: windows of this call.
+        block: indices of the windows.
 
     Returns:
         Index of the most probable pole, its probability and the noise power, shape (s, k); mean of the part in H,
         shape (p, s, k); covariance of H, shape (s, k, p, p).
     """
-    gain, direct = equations.gain[..., some], equations.direct[..., some]
+    gain, direct = equations.gain[..., block], equations.direct[..., block]
     residual_power: Real = np.broadcast_to(total, right[0].shape)
     for i, row in enumerate(right):
         for j in range(i):
-            row -= equations.lower[i][j][:, some, None] * right[j]
-        residual_power = residual_power - (row.real**2 + row.imag**2) * equations.weights[i][:, some, None]
+            row -= equations.lower[i][j][:, block, None] * right[j]
+        residual_power = residual_power - (row.real**2 + row.imag**2) * equations.weights[i][:, block, None]
     residual_power = np.maximum(residual_power, floor)
     best = np.argmin(residual_power, axis=0)
     probability = np.log(residual_power)
@@ -165,14 +165,14 @@ def _posterior(
         values -= middle
     covariance = np.empty((*total.shape, len(part), len(part)), dtype=np.complex128)
     for i, j in np.ndindex(len(part), len(part)):
-        own = equations.covariance[some, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
+        node_covariance = equations.covariance[block, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
         real = part[i].real * part[j].real + part[i].imag * part[j].imag
-        covariance[..., i, j] = np.einsum("gsk,gs->sk", residual_power, own.real) / dof + np.einsum(
+        covariance[..., i, j] = np.einsum("gsk,gs->sk", residual_power, node_covariance.real) / dof + np.einsum(
             "gsk,gsk->sk", probability, real
         )
         if i != j:
             imaginary = part[i].imag * part[j].real - part[i].real * part[j].imag
-            spread = np.einsum("gsk,gs->sk", residual_power, own.imag) / dof
+            spread = np.einsum("gsk,gs->sk", residual_power, node_covariance.imag) / dof
             covariance[..., i, j] += 1j * (spread + np.einsum("gsk,gsk->sk", probability, imaginary))
     return best, share, noise, mean, covariance
 
@@ -203,11 +203,11 @@ class _Windows:
         self.weights = self.inverse[:, :input_count]
         self.covariance = self.weights @ _adjoint(self.weights)
 
-    def of(self, which: NDArray[np.intp]) -> _Windows:
+    def of(self, indices: NDArray[np.intp]) -> _Windows:
         """Return the windows with the given indices, repeated as listed."""
         chosen = copy.copy(self)
         for name in ("tail", "basis", "weights", "covariance", "offset", "size"):
-            setattr(chosen, name, getattr(self, name)[which])
+            setattr(chosen, name, getattr(self, name)[indices])
         return chosen
 
     def without_pole(self) -> tuple[Complex, Complex, Complex]:

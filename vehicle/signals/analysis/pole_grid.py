@@ -90,10 +90,10 @@ def sums_of_poles(grid: PoleGrid, columns: Real, halves: NDArray[np.int_]) -> tu
     sums, odd_sums = np.empty((2, 2 * nodes, count * width))
     edges = [0, *(np.flatnonzero(halves[1:] != halves[:-1]) + 1), count]
     for begin, end in itertools.pairwise(edges):
-        half, some = int(halves[begin]), slice(begin * width, end * width)
+        half, span = int(halves[begin]), slice(begin * width, end * width)
         shapes_even, shapes_odd = _shapes_of(grid.wide, grid.half, half)
-        np.matmul(shapes_even, even[: half + 1, some], out=sums[:, some])
-        np.matmul(shapes_odd, odd[:half, some], out=odd_sums[:, some])
+        np.matmul(shapes_even, even[: half + 1, span], out=sums[:, span])
+        np.matmul(shapes_odd, odd[:half, span], out=odd_sums[:, span])
     sums, odd_sums = (values.reshape(2, nodes, count, width) for values in (sums, odd_sums))
     mirrored = sums[:, nodes - grid.mirrored :] - odd_sums[:, nodes - grid.mirrored :]
     sums += odd_sums
@@ -127,9 +127,9 @@ def right_sides(
         first, mirrored = first.view(np.complex128), mirrored.view(np.complex128)
         row = np.empty((len(grid.poles) + 1, *none.shape[::2]), dtype=np.complex128)
         row[0] = none[:, i]
-        own, mirror = row[1 : first.shape[1] + 1], row[first.shape[1] + 1 :]
-        np.add(first[0].real, first[1].imag, out=own.real)
-        np.subtract(first[0].imag, first[1].real, out=own.imag)
+        direct, mirror = row[1 : first.shape[1] + 1], row[first.shape[1] + 1 :]
+        np.add(first[0].real, first[1].imag, out=direct.real)
+        np.subtract(first[0].imag, first[1].real, out=direct.imag)
         np.subtract(mirrored[0].real, mirrored[1].imag, out=mirror.real)
         np.add(mirrored[0].imag, mirrored[1].real, out=mirror.imag)
         right.append(row)
