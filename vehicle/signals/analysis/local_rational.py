@@ -34,6 +34,7 @@ from vehicle.signals.analysis.samples import (
     is_constant,
 )
 from vehicle.signals.analysis.segments import stretches_of_one_length
+from vehicle.threads import one_blas_thread
 
 LEAST_HALF_WIDTH, LINES_OF_AN_INPUT = 8, 5
 """Lines n on each side at least: 17 lines, 6 unknowns; and as many more for every further input."""
@@ -86,6 +87,7 @@ def local_rational_response(
     return found[0]
 
 
+@one_blas_thread()
 def local_rational_responses(
     time_step: float,
     excitations: ArrayLike,
