@@ -53,7 +53,7 @@ def _responses(
         level,
         stuck=level == STUCK,
         choice=measured_choice(options),
-        turned=options.turned,
+        inverted=options.turned,
         fitted=tuple(options.channel)
         or (() if options.mapping else driven_channels(CHANNELS, car.vehicle.shaker_wheel)),
         band=band,
@@ -71,7 +71,7 @@ def _history(options: argparse.Namespace, car: Car, file: Path, name: str) -> Me
         file,
         name,
         choice=measured_choice(options),
-        turned=options.turned,
+        inverted=options.turned,
         fitted=options.channel,
         delay=delay,
         drift=drift,

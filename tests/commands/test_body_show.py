@@ -33,7 +33,7 @@ def test_tables_and_files(car, tmp_path, capsys):
     body = car.trimmed_body
     assert "mass [kg]              813.00     813.00       +0.00" in printed
     assert "   2   25.500   3.00 %  torsion" in printed and "-0.0" not in printed
-    assert "is not one body" not in printed  # the frame has the mass properties of its vehicle
+    assert "two different bodies" not in printed  # the frame has the mass properties of its vehicle
     modes, attachments, residuals = (rows_of(folder / f"{name}.csv") for name in ("modes", "attachments", "residuals"))
     assert [float(row["frequency [Hz]"]) for row in modes] == pytest.approx(body.frequencies.tolist(), rel=1e-8)
     level = np.array([[float(row[f"mode_{n + 1} [-]"]) for n in range(9)] for row in attachments]).reshape(-1, 3, 9)

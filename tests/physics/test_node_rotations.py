@@ -14,8 +14,8 @@ from vehicle.commands import body as body_command
 from vehicle.engines.linear.car_matrices import car_matrices
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.flexbody.beam import frame_stiffness
-from vehicle.model.flexbody.library import BODY_DESIGN
-from vehicle.model.flexbody.modes import condense_rotations
+from vehicle.model.flexbody.body_model import BODY_DESIGN
+from vehicle.model.flexbody.frame_modes import condense_rotations
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.vehicle import load_vehicle

@@ -132,7 +132,7 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
         ([], "set --input FILE, or a road"),
         (["--road"], "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond"),
         (["--road", "C"], "a road needs --speed KM/H"),
-        (["--road", "Z", "--speed", "80"], "road class 'Z': allowed are A, B"),
+        (["--road", "Z", "--speed", "80"], "road class 'Z': must be one of A, B"),
         (["--road", "none.csv", "--speed", "80"], "--road none.csv: no class of ISO 8608 (A to H), and no file"),
         (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C and --input: set only one of them"),
         (

@@ -142,7 +142,7 @@ def _pick(measurement: Measurement, number: int) -> str:
 
 
 def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
-    """Return the command for a road profile over the distance; None for any other file."""
+    """Return the command line that drives over a road profile, and a reason if there is none; None for other files."""
     from vehicle.signals.excitation.measured_road import read_road
 
     profile = measurement.format in ("crg", "erd")

@@ -122,7 +122,7 @@ def _evaluate(options: argparse.Namespace) -> RecordComfort:
         choice=choice,
         rail=rail[0],
         rail_choice=rail[1],
-        place=options.place,
+        contact=options.place,
         offset=options.offset,
         average=options.mtvv,
         skip=options.skip,

@@ -32,7 +32,7 @@ def test_nodes_are_where_the_recorder_measures(car, stage, run, motion, place):
     turn = data.xmat[stage.body("body").id].reshape(3, 3)
     measured = data.site(f"place/{place}").xpos + turn @ shape @ modal
     node = place.replace("suspension_mount", "strut_top")
-    places = Wireframe(car, motion).places(motion.at(run.recording.pose_time[7]), 1.0)
+    places = Wireframe(car, motion).positions(motion.at(run.recording.pose_time[7]), 1.0)
     assert len(motion.modal) == 9
     # Rounding only; the modal part is 1e-4 m here.
     np.testing.assert_allclose(places[car.superelement.node_index(node)], measured, atol=1e-9)
@@ -42,7 +42,7 @@ def test_the_factor_multiplies_the_elastic_part(car, run, motion):
     frame = Wireframe(car, motion)
     state = motion.at(run.recording.pose_time[7])
     elastic = type(state)(translation=0.0 * state.translation, rotation=0.0 * state.rotation, modal=state.modal)
-    one, ten = frame.places(elastic, 1.0) - frame.rest, frame.places(elastic, 10.0) - frame.rest
+    one, ten = frame.positions(elastic, 1.0) - frame.rest, frame.positions(elastic, 10.0) - frame.rest
     assert np.abs(one).max() > 1e-5
     np.testing.assert_allclose(ten, 10.0 * one, atol=1e-12)
 
@@ -50,7 +50,7 @@ def test_the_factor_multiplies_the_elastic_part(car, run, motion):
 def test_displacement_is_true_whatever_the_factor(car, run, motion):
     frame = Wireframe(car, motion)
     state = motion.at(run.recording.pose_time[7])
-    expected = np.linalg.norm(frame.places(state, 1.0) - car.superelement.positions, axis=1)
+    expected = np.linalg.norm(frame.positions(state, 1.0) - car.superelement.positions, axis=1)
     np.testing.assert_allclose(frame.displacement(state), expected, atol=1e-15)
 
 
@@ -77,8 +77,8 @@ def test_the_coil_follows_both_seats(car, stage, run, motion):
     coil = coil_of(car, motion, "fr")
     state = motion.at(run.recording.pose_time[7])
     still = type(state)(translation=0.0 * state.translation, rotation=0.0 * state.rotation, modal=0.0 * state.modal)
-    np.testing.assert_allclose(coil.places(still, 500.0), coil.rest, atol=1e-12)
-    places = coil.places(state, 500.0)
+    np.testing.assert_allclose(coil.positions(still, 500.0), coil.rest, atol=1e-12)
+    places = coil.positions(state, 500.0)
     bottom, top = coil.share[:, 0] == 0.0, coil.share[:, 0] == 1.0
     assert bottom.any() and top.any()
     lower = motion.moved(state, 500.0, stage.body("damper_bottom_fr").id, coil.rest)

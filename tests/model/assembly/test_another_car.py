@@ -68,11 +68,11 @@ def test_item_27_hardpoints_that_the_body_does_not_have_are_refused(other):
         assemble(vehicle, published)
     message = str(caught.value)
     assert "no node at strut_top_fr [0.889, 0.578" in message and "'strut_top_fr'" in message
-    assert "Move the hardpoint or use a body model measured at it, or one that is computed from the" in message
+    assert "Move the hardpoint, use a body model with a node there, or compute the body from the" in message
 
 
 def test_item_27_a_missing_interface_node_is_refused(other):
     vehicle, body = other
     places = vehicle.composition.attachments() | {"brace": (0.8, 0.44, 1.4)}
-    with pytest.raises(DataError, match=r"no node at brace \[0\.8, 0\.44, 1\.4\] m, where the car is fixed to it"):
+    with pytest.raises(DataError, match=r"no node at brace \[0\.8, 0\.44, 1\.4\] m, an attachment of the car"):
         attached_nodes(body, places)

@@ -12,7 +12,7 @@ import pytest
 
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import carried_by, with_carried_nodes
-from vehicle.model.flexbody.modes import rigid_shapes
+from vehicle.model.flexbody.frame_modes import rigid_shapes
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.template import SHIPPED

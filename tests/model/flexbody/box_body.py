@@ -1,4 +1,4 @@
-"""A small body for tests: a box of steel tubes with unequal corner masses."""
+"""Small body for tests: a box of steel tubes with unequal corner masses."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import scipy
 
 from vehicle.model.flexbody.beam import BeamSection, frame_stiffness
-from vehicle.model.flexbody.modes import condense_rotations, free_free_modes
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
+from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 
 SECTION = BeamSection(axial=2.0e7, torsion=2.0e4, bending_y=2.5e4, bending_z=2.5e4)
 POSITIONS = np.array(list(itertools.product([0.0, 2.0], [-0.5, 0.5], [0.4, 1.3])))
@@ -18,12 +18,12 @@ PAIRS = [(a, b) for a, b in itertools.combinations(range(8), 2) if np.sum(POSITI
 
 
 def box_stiffness():
-    """Translational stiffness [N/m], shape (24, 24)."""
+    """Return the translational stiffness of the box [N/m], shape (24, 24)."""
     return condense_rotations(frame_stiffness(POSITIONS, [(a, b, SECTION) for a, b in PAIRS]))[0]
 
 
 def box_fields(modes=4):
-    """Keyword arguments of a valid Superelement, fresh arrays at every call."""
+    """Return keyword arguments of a valid `Superelement`, with new arrays at every call."""
     frequencies, shapes = free_free_modes(box_stiffness(), MASSES, POSITIONS, modes)
     return {
         "name": "box",
@@ -41,7 +41,7 @@ def box_fields(modes=4):
 
 
 def matrices(positions, pairs, section, masses):
-    """K and M of a frame of beams with point masses, six degrees of freedom a node."""
+    """Return K and M of a frame of beams with point masses, six degrees of freedom per node."""
     count = len(positions)
     mass = np.zeros((count, 6))
     mass[:, :3] = masses[:, None]
@@ -58,5 +58,5 @@ def matrices(positions, pairs, section, masses):
 
 
 def box_matrices():
-    """K and M of the box with all six degrees of freedom of its corners."""
+    """Return K and M of the box with all six degrees of freedom of its corners."""
     return matrices(POSITIONS, PAIRS, SECTION, MASSES)

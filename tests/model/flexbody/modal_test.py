@@ -1,4 +1,4 @@
-"""A modal test of the shipped body at twenty points: its true modes as a universal file holds them, with errors."""
+"""Simulated modal test of the shipped body at twenty points: a universal file with its true modes and random errors."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from vehicle.model.flexbody.library import body_model
+from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.records.geometry import Geometry, ModeShape
 from vehicle.signals.records.uff_writer import write
 
 POINTS = tuple(load_vehicle(None).composition.attachments())
-"""All points of the car on the body."""
+"""Names of all points of the car on the body."""
 
 
 @lru_cache(maxsize=1)
@@ -20,27 +20,27 @@ def true_body():
     return body_model(load_vehicle(None))
 
 
-def write_modes(path, *, points=POINTS, places=True, modal_mass=2.5, count=9, speed=1.0, noise=0.0, scale=0.0):
-    """Datasets 15 and 55 of the body.
+def write_modes(path, *, points=POINTS, with_positions=True, modal_mass=2.5, count=9, speed=1.0, noise=0.0, scale=0.0):
+    """Write datasets 15 and 55 of the body.
 
     Args:
-        path: the file.
+        path: universal file.
         points: names of nodes of the body.
-        places: with their places.
-        modal_mass: of the modes [kg]; shapes grow with its root, but where it is below 1e-3, as if it were told wrong.
-        count: how many modes.
-        speed: factor of the frequencies.
+        with_positions: include node positions.
+        modal_mass: modal mass [kg]; scales the shapes, unless below 1e-3 (a wrong modal mass in the file).
+        count: number of modes.
+        speed: factor of the frequencies [1].
         noise: standard deviation of a component over the RMS of its shape [1].
-        scale: standard deviation of the scale of a mode [1], as a driving point measures it.
+        scale: standard deviation of the scale of a mode [1], an error of the driving-point measurement.
     """
     body, random = true_body(), np.random.default_rng(15)
     at = [body.node_index(name) for name in points]
     shapes = []
     for i in range(count):
-        own = body.shapes[i, at] * np.sqrt(modal_mass if modal_mass > 1e-3 else 1.0)
-        own = own + noise * np.sqrt(np.mean(own**2)) * random.standard_normal(own.shape)
+        shape = body.shapes[i, at] * np.sqrt(modal_mass if modal_mass > 1e-3 else 1.0)
+        shape = shape + noise * np.sqrt(np.mean(shape**2)) * random.standard_normal(shape.shape)
         values = np.zeros((len(points), 6), dtype=complex)
-        values[:, :3] = own * (1.0 + scale * random.standard_normal())
+        values[:, :3] = shape * (1.0 + scale * random.standard_normal())
         shapes.append(
             ModeShape(
                 number=i + 1,
@@ -53,4 +53,4 @@ def write_modes(path, *, points=POINTS, places=True, modal_mass=2.5, count=9, sp
             )
         )
     geometry = Geometry(points={name: body.positions[body.node_index(name)].tolist() for name in points})
-    write(path, [], "modal test", geometry if places else None, shapes)
+    write(path, [], "modal test", geometry if with_positions else None, shapes)

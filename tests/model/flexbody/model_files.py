@@ -1,4 +1,4 @@
-"""Files of body models, one of every kind, and what breaks them."""
+"""Valid files of body models in every format, and changes that make them invalid."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FRD = """    1C
 
 
 def box(**changes):
-    """A body with mass properties instead of masses of its nodes."""
+    """Return a body with mass properties instead of node masses."""
     fields = box_fields()
     rigid = Superelement(**fields).rigid
     turns = {"corner_1": np.full((4, 3), 0.01)}
@@ -40,7 +40,7 @@ def box(**changes):
 
 
 def write_all(folder):
-    """One good file of every kind."""
+    """Write a valid file in every format."""
     for suffix in ("toml", "npz"):
         write_superelement(folder / f"box.{suffix}", box())
     write_superelement(folder / "masses.toml", Superelement(**box_fields()))
@@ -49,10 +49,10 @@ def write_all(folder):
     body = box_matrices()
     identity = [int(body.nodes[i]) for i in body.node]
     pairs = list(zip(identity, (body.direction + 1).tolist(), strict=True))
-    places = [f"{name},{','.join(map(str, at))}" for name, at in zip(body.nodes, POSITIONS.tolist(), strict=True)]
-    (folder / "job.inp").write_text("\n".join(["*NODE", *places, "*STEP"]) + "\n")
+    nodes = [f"{name},{','.join(map(str, at))}" for name, at in zip(body.nodes, POSITIONS.tolist(), strict=True)]
+    (folder / "job.inp").write_text("\n".join(["*NODE", *nodes, "*STEP"]) + "\n")
     (folder / "job.dof").write_text("".join(f"{node}.{direction}\n" for node, direction in pairs))
-    (folder / "nodes.csv").write_text("\n".join(["node,x,y,z", *places]) + "\n")
+    (folder / "nodes.csv").write_text("\n".join(["node,x,y,z", *nodes]) + "\n")
     (folder / "dofs.csv").write_text("".join(f"{node},{direction}\n" for node, direction in pairs))
     (folder / "map.csv").write_text("point,node\nstrut_top_fr,1\n")
     both = {"K": body.stiffness, "M": body.mass}
@@ -68,7 +68,7 @@ def write_all(folder):
 
 @dataclass
 class Case:
-    """A file of the good folder, what is done to it, the command, what it must say."""
+    """Invalid model: file of the folder, change of the file, command, expected message and exit code."""
 
     file: str
     change: object
@@ -103,28 +103,28 @@ def nothing(path):
 
 
 def line(start, new):
-    """The first line that begins so, replaced."""
+    """Replace the first line with a given beginning; None deletes the line."""
 
     def change(path):
         lines = path.read_text().splitlines()
-        at = next(i for i, one in enumerate(lines) if one.startswith(start))
+        at = next(i for i, content in enumerate(lines) if content.startswith(start))
         path.write_text("\n".join([*lines[:at], *([] if new is None else [new]), *lines[at + 1 :]]) + "\n")
 
     return change
 
 
 def scalar(key):
-    """The first list of lines under a key, replaced by a number."""
+    """Replace the first multi-line list of a key by a number."""
 
     def change(path):
-        before, _, rest = path.read_text().partition(f"{key} = [\n")
-        path.write_text(f"{before}{key} = 5\n{rest.partition(chr(10) + ']' + chr(10))[2]}")
+        before, _, after = path.read_text().partition(f"{key} = [\n")
+        path.write_text(f"{before}{key} = 5\n{after.partition(chr(10) + ']' + chr(10))[2]}")
 
     return change
 
 
 def array(**changes):
-    """Arrays of an npz file changed; None leaves one out."""
+    """Replace arrays of an npz file; None deletes an array."""
 
     def change(path):
         with np.load(path) as file:
@@ -142,10 +142,10 @@ def shapes(change):
         change(table)
         lines, rows = path.read_text().splitlines(), iter(table.reshape(-1, 3).tolist())
         inside = False
-        for i, one in enumerate(lines):
-            if inside and one != "]":
+        for i, content in enumerate(lines):
+            if inside and content != "]":
                 lines[i] = f"  {next(rows)},"
-            inside = one == "shape_per_sqrt_kg = [" or (inside and one != "]")
+            inside = content == "shape_per_sqrt_kg = [" or (inside and content != "]")
         path.write_text("\n".join(lines))
 
     return changed

@@ -1,4 +1,4 @@
-"""A beam that ANSYS computed: its matrices in the formats that ANSYS writes give the frequencies of its own result."""
+"""Beam computed with ANSYS: matrices in the formats of ANSYS give the frequencies in its result file."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import scipy
 
 from tests.validation import validated
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.free_body_modes import free_modes
 from vehicle.model.flexbody.sources.matrix_files import read_matrices
-from vehicle.model.flexbody.sources.reduction import free_modes
 
 DATA = Path(__file__).parents[2] / "data" / "ansys" / "beam.npz"
 INCH, SLINCH = 0.0254, 175.126835
@@ -19,7 +19,7 @@ LABELS = ("UX", "UY", "UZ")
 
 
 def harwell_boeing(path, matrix):
-    """As HBMAT writes: Fortran formats, D exponents, column by column."""
+    """Write a matrix like HBMAT: Fortran formats, D exponents, column by column."""
     lower = matrix.tocsc()
     lower.sort_indices()
     blocks = []
@@ -28,8 +28,8 @@ def harwell_boeing(path, matrix):
         (lower.indices + 1, "{:10d}", 8),
         (lower.data, "{:26.16E}", 3),
     ):
-        words = [form.format(value) for value in values.tolist()]
-        blocks.append(["".join(words[i : i + each]) for i in range(0, len(words), each)])
+        fields = [form.format(value) for value in values.tolist()]
+        blocks.append(["".join(fields[i : i + each]) for i in range(0, len(fields), each)])
     counts = [len(block) for block in blocks]
     size = matrix.shape[0]
     head = [f"{'Matrix as written by HBMAT':<72}{'KEY':<8}"]
@@ -41,21 +41,21 @@ def harwell_boeing(path, matrix):
 
 @pytest.fixture(scope="module")
 def export(tmp_path_factory):
-    """Matrix Market, Harwell-Boeing, mapping and nodes of the beam; the frequencies of ANSYS [Hz]."""
+    """Write Matrix Market, Harwell-Boeing, mapping and nodes of the beam; return the frequencies of ANSYS [Hz]."""
     folder = tmp_path_factory.mktemp("ansys")
     held = np.load(DATA)
     size = 3 * len(held["node"])
-    # A solver orders equations as it likes; here backwards.
+    # The order of the equations is arbitrary; here reversed.
     equations = [(int(node), label) for node in held["node"] for label in LABELS][::-1]
     for name in ("stiffness", "mass"):
-        row, column = (size - 1 - held[f"{name}_{kind}"].astype(int) for kind in ("row", "column"))
+        row, column = (size - 1 - held[f"{name}_{axis}"].astype(int) for axis in ("row", "column"))
         matrix = scipy.sparse.coo_matrix((held[name], (row, column)), shape=(size, size))
         harwell_boeing(folder / f"{name}.matrix", matrix)
         scipy.io.mmwrite(folder / f"{name}.mtx", matrix, symmetry="symmetric", precision=17)
     lines = [f"{i:10d}{node:10d}   {label}" for i, (node, label) in enumerate(equations, 1)]
     (folder / "beam.mapping").write_text("\n".join(["Matrix Eqn      Node  DOF", *lines]) + "\n")
-    places = zip(held["node"], held["position"].astype(float).tolist(), strict=True)
-    (folder / "nodes.csv").write_text("\n".join(f"{node},{x},{y},{z}" for node, (x, y, z) in places) + "\n")
+    nodes = zip(held["node"], held["position"].astype(float).tolist(), strict=True)
+    (folder / "nodes.csv").write_text("\n".join(f"{node},{x},{y},{z}" for node, (x, y, z) in nodes) + "\n")
     return folder, held["frequency"]
 
 
@@ -65,16 +65,16 @@ def test_the_six_modes_of_ansys_to_its_digits(export, suffix):
     body = read_matrices(
         folder / f"stiffness.{suffix}", folder / f"mass.{suffix}", folder / "beam.mapping", folder / "nodes.csv"
     ).scaled(INCH, SLINCH)
-    found = free_modes(body, 21000.0)
+    modes = free_modes(body, 21000.0)
     assert want[0] == pytest.approx(7366.495, abs=5e-4)
     # Sixteen digits in the result file; the entries of K were kept to 1e-14 of the largest, which is worth 2e-11.
     validated(
-        "Body models", f"six frequencies of a beam, matrices of ANSYS as .{suffix}", found.frequencies, want, rel=1e-10,
+        "Body models", f"six frequencies of a beam, matrices of ANSYS as .{suffix}", modes.frequencies, want, rel=1e-10,
         unit="Hz", source="foreign code: ANSYS, frequencies of its result file",
     )  # fmt: skip
     volume, density = 5.0 * INCH**3, 4.1408e-4 * SLINCH / INCH**3  # titanium
     validated(
-        "File readers", f"mass of a beam, matrices of ANSYS as .{suffix}", found.rigid.mass, volume * density, rel=1e-9,
+        "File readers", f"mass of a beam, matrices of ANSYS as .{suffix}", modes.rigid.mass, volume * density, rel=1e-9,
         unit="kg", source="closed form: volume times density",
     )  # fmt: skip
 
@@ -82,10 +82,10 @@ def test_the_six_modes_of_ansys_to_its_digits(export, suffix):
 @pytest.mark.parametrize(
     ("file", "old", "new", "said"),
     [
-        ("stiffness.matrix", "RSA", "RZA", "of type RZA; needed is RSA or RUA"),
-        ("stiffness.matrix", "(8I10)", "(what)", "is none of Fortran's for numbers"),
-        ("stiffness.matrix", "(3D26.16)", "(3D25.16)", "no Harwell-Boeing file"),
-        ("beam.mapping", "UX\n", "TEMP\n", "found 'TEMP'; rows are equation"),
+        ("stiffness.matrix", "RSA", "RZA", "type RZA, must be RSA or RUA"),
+        ("stiffness.matrix", "(8I10)", "(what)", "is not a Fortran format of numbers"),
+        ("stiffness.matrix", "(3D26.16)", "(3D25.16)", "not a Harwell-Boeing file"),
+        ("beam.mapping", "UX\n", "TEMP\n", "found 'TEMP'; a row must be equation"),
         ("beam.mapping", "        10", "        11", "equations are not 1 to 963"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Masses fixed to a flexible body: the assembly of modes against the same problem solved another way."""
+"""Masses attached to a flexible body: component-mode assembly against second derivations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.model.flexbody.box_body import MASSES, POSITIONS, box_fields, box_sti
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.attached_mass import with_attached_masses
-from vehicle.model.flexbody.modes import free_free_modes
+from vehicle.model.flexbody.frame_modes import free_free_modes
 from vehicle.model.flexbody.superelement import Superelement
 
 ADDED = {"corner_5": 1.2, "corner_7": 20.0}
@@ -36,10 +36,10 @@ def test_frequencies_are_those_of_the_constrained_two_body_problem():
         joints[3 * i : 3 * i + 3, 6 + count + 3 * i : 9 + count + 3 * i] = -np.eye(3)
     free = scipy.linalg.null_space(joints)
     values = scipy.linalg.eigh(free.T @ stiffness @ free, free.T @ mass @ free, eigvals_only=True)
-    found = with_attached_masses(body, ADDED)
+    loaded = with_attached_masses(body, ADDED)
     # round-off
     validated(
-        "Body models", "frequencies of a body with attached masses", found.frequencies,
+        "Body models", "frequencies of a body with attached masses", loaded.frequencies,
         np.sqrt(values[6:]) / (2.0 * np.pi), rel=1e-8, unit="Hz",
         source="second derivation: masses joined by constraints, null space",
     )  # fmt: skip
@@ -50,13 +50,13 @@ def test_with_all_modes_it_is_the_frame_solved_again():
     heavier = MASSES.copy()
     heavier[[5, 7]] += list(ADDED.values())
     frequencies, shapes = free_free_modes(box_stiffness(), heavier, POSITIONS, 18)
-    found = with_attached_masses(body, ADDED)
+    loaded = with_attached_masses(body, ADDED)
     # round-off of modes a decade apart
     validated(
-        "Body models", "frequencies of a body of all modes with attached masses", found.frequencies, frequencies,
+        "Body models", "frequencies of a body of all modes with attached masses", loaded.frequencies, frequencies,
         rel=1e-7, unit="Hz", source="second derivation: heavier frame solved again",
     )  # fmt: skip
-    np.testing.assert_allclose(found.shapes[:3], shapes[:3], atol=1e-7 * np.abs(shapes).max())
+    np.testing.assert_allclose(loaded.shapes[:3], shapes[:3], atol=1e-7 * np.abs(shapes).max())
 
 
 def test_result_has_the_mass_and_nothing_changes_without_any():
@@ -71,7 +71,7 @@ def test_result_has_the_mass_and_nothing_changes_without_any():
 
 def test_wrong_masses_and_nodes_are_refused():
     body = Superelement(**box_fields())
-    with pytest.raises(ConfigurationError, match=r"mass attached to body node 'corner_1': -1.0 kg"):
+    with pytest.raises(ConfigurationError, match=r"mass attached to body node 'corner_1': found -1.0 kg"):
         with_attached_masses(body, {"corner_1": -1.0})
     with pytest.raises(DataError, match="has no node 'nose'"):
         with_attached_masses(body, {"nose": 1.0})

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import BeamSection, beam_stiffness, frame_stiffness, local_axes
-from vehicle.model.flexbody.modes import condense_rotations, free_free_modes, rigid_shapes
+from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes, rigid_shapes
 
 SECTION = BeamSection(axial=3.0e7, torsion=4.0e4, bending_y=5.0e4, bending_z=9.0e4)
 LENGTH = 1.7
@@ -18,7 +18,7 @@ TURNS = [Rotation.identity(), Rotation.from_rotvec([0.4, -1.1, 0.7]), Rotation.f
 
 
 def cantilever_tip(direction, load, elements=3):
-    """Tip displacement and rotation of a cantilever along `direction` under a tip load (6,), by the frame code."""
+    """Compute tip displacement and rotation of a cantilever along `direction` under a tip load, shape (6,)."""
     points = np.outer(np.linspace(0.0, LENGTH, elements + 1), direction)
     k = frame_stiffness(points, [(i, i + 1, SECTION) for i in range(elements)])
     force = np.zeros(len(k) - 6)
@@ -85,7 +85,7 @@ def test_a_turned_frame_has_the_turned_stiffness_eigenvalues():
 
 
 def free_beam_frequencies(elements, count):
-    """Bending frequencies of a free beam in its softer plane, mass lumped at the nodes."""
+    """Compute the bending frequencies of a free beam in its softer plane, with mass lumped at the nodes."""
     points = np.outer(np.linspace(0.0, LENGTH, elements + 1), [1.0, 0.0, 0.0])
     mass_per_length = 4.0
     masses = np.full(elements + 1, mass_per_length * LENGTH / elements)
@@ -103,9 +103,9 @@ def test_free_beam_with_lumped_masses_converges_to_euler_bernoulli_at_second_ord
     roots = np.array([brentq(lambda b: np.cos(b) * np.cosh(b) - 1.0, low, low + 1.0) for low in (4.2, 7.4)])
     errors = []
     for elements in (16, 32, 64):
-        found, density = free_beam_frequencies(elements, 2)
+        frequencies, density = free_beam_frequencies(elements, 2)
         exact = roots**2 / LENGTH**2 * np.sqrt(SECTION.bending_y / density) / (2.0 * np.pi)
-        errors.append(np.abs(found / exact - 1.0))
+        errors.append(np.abs(frequencies / exact - 1.0))
     order = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
     # higher terms still matter at 16 elements
     validated(
@@ -146,7 +146,7 @@ def test_beam_of_no_length_and_loose_node_are_refused():
     with pytest.raises(ConfigurationError, match="its ends must differ"):
         beam_stiffness([1.0, 0.0, 0.0], [1.0, 0.0, 0.0], SECTION)
     strut = BeamSection(axial=1.0e6, torsion=0.0, bending_y=0.0, bending_z=0.0)
-    with pytest.raises(ConfigurationError, match="a node can turn freely"):
+    with pytest.raises(ConfigurationError, match="a node can rotate freely"):
         condense_rotations(frame_stiffness(np.eye(3)[:2], [(0, 1, strut)]))
     with pytest.raises(ConfigurationError, match=r"torsion is -1.0"):
         BeamSection(axial=1.0, torsion=-1.0, bending_y=1.0, bending_z=1.0)

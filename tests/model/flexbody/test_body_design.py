@@ -1,4 +1,4 @@
-"""The body design: no geometry of the vehicle in it, a source behind every number, bad ones refused by name."""
+"""Body design: no geometry of the vehicle in the file, a source for every value, errors that name the entry."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vehicle.commands.body import main
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.superelement_file import read_superelement
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -39,12 +39,12 @@ def test_every_number_has_a_unit_and_a_source():
 def test_interface_and_output_points_are_those_of_the_vehicle_alone():
     design, points = read_design(BODY_DESIGN), load_vehicle().points
     placed = design.placed(points)
-    nodes = {node: place for made in placed.values() for node, place in made.items()}
+    nodes = {node: position for pair in placed.values() for node, position in pair.items()}
     attached = load_vehicle().composition.attachments()
     assert len(attached) == 20 and attached == {name: nodes[name] for name in attached}
     typed = {tuple(abs(x) for x in node.place) for node in design.nodes.values() if node.place is not None}
     assert len(typed) == 11
-    assert not typed & {tuple(abs(x) for x in place) for place in points.values()}
+    assert not typed & {tuple(abs(x) for x in position) for position in points.values()}
 
 
 BAD = {
@@ -57,11 +57,11 @@ BAD = {
     "negative mass": ("mass = 4.0", "mass = -4.0", "nodes.arm_front.mass: found -4.0 kg, must be greater than 0.0"),
     "text for a number": ("mass = 4.0", 'mass = "four"', "nodes.arm_front.mass: found 'four', must be a number"),
     "two coordinates": ("[0.15, 0.52, 0.82]", "[0.15, 0.52]", "nodes.rail_front.place: found (0.15, 0.52), must be"),
-    "left side": ("[0.15, 0.52, 0.82]", "[0.15, -0.52, 0.82]", "nodes.rail_front.place: found y = -0.52 m, allowed"),
+    "left side": ("[0.15, 0.52, 0.82]", "[0.15, -0.52, 0.82]", "nodes.rail_front.place: found y = -0.52 m, must be"),
     "place and mirror": (
         'mirror = "seat_rail"',
         'place = [2.0, 0.3, 0.7]\nmirror = "seat_rail"',
-        "nodes.seat_rail_right.mirror: found beside place",
+        "nodes.seat_rail_right.mirror: found together with place",
     ),
     "no such hardpoint": (
         "[nodes.strut_top]",
@@ -77,26 +77,26 @@ BAD = {
     "node made twice": (
         "[nodes.sill_rear]",
         "[nodes.cowl_right]\nplace = [1.0, 0.0, 1.0]\nmass = 1.0\nfreedom = 1.0\n[nodes.sill_rear]",
-        "nodes: cowl_right made by two entries; rename one of them",
+        "nodes: cowl_right defined by two entries; rename one entry",
     ),
     "member to nowhere": (
         '"rail_front-arm_front"',
         '"rail_front-arm_font"',
-        "members.front_rails.between: 'rail_front-arm_font' ends at no node 'arm_font'; the nearest is arm_front",
+        "members.front_rails.between: 'rail_front-arm_font' has no node 'arm_font'; the nearest is arm_front",
     ),
     "member to itself": (
         '"rail_front-arm_front"',
         '"seat-seat"',
-        "members.front_rails.between: 'seat-seat' is no member; allowed are 'a-b', 'a=b' crossed and 'a' across the",
+        "members.front_rails.between: found 'seat-seat', must be 'a-b', 'a=b' crosswise, or 'a' across the",
     ),
-    "chain of three": ('"rail_front-arm_front"', '"cowl-seat-arm_rear"', "'cowl-seat-arm_rear' is no member"),
+    "chain of three": ('"rail_front-arm_front"', '"cowl-seat-arm_rear"', "found 'cowl-seat-arm_rear', must be"),
     "no members": ('between = ["rail_front"]', "between = []", "members.rail_bumper.between: found an empty list"),
     "half a section": (
         "wall = 0.0018  # [m] assumed: nominal section\n",
         "",
-        "members.front_rails.between: a section of width; needed are width and wall of a tube, or the area of a strut",
+        "members.front_rails.between: found a section with width; set width and wall of a tube, or the area of a",
     ),
-    "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "a section of width, wall, area; needed are"),
+    "tube and strut": ("width = 0.055", "area = 1e-5\nwidth = 0.055", "a section with width, wall, area; set"),
     "factor of zero": ("factor = 1.0962", "factor = 0.0", "members.front_rails.factor: found 0.0 -, must be greater"),
     "a node without a tube": (
         '"seat-seat_rail"',
@@ -106,9 +106,9 @@ BAD = {
     "nodes in one place": (
         "[0.15, 0.52, 0.82]",
         "[0.877, 0.548, 1.23]",
-        "members.front_rails: rail_front_right at [0.877, 0.548, 1.23] m and strut_top_fr are 0 m apart; a member",
+        "members.front_rails: rail_front_right at [0.877, 0.548, 1.23] m and strut_top_fr are 0 m apart, must be",
     ),
-    "half a mode": ("mode_count = 9 ", "mode_count = 8.5 ", "mode_count: found 8.5, needed is a whole number"),
+    "half a mode": ("mode_count = 9 ", "mode_count = 8.5 ", "mode_count: found 8.5, must be a whole number"),
     "damping in percent": (
         "damping_ratio = 0.03",
         "damping_ratio = 3.0",
@@ -141,19 +141,21 @@ def test_more_modes_than_a_frame_has_are_refused(tmp_path):
     file = tmp_path / "small.toml"
     file.write_text(head.replace("mode_count = 9", "mode_count = 13") + body + members + "width = 0.05\nwall = 0.001\n")
     vehicle = load_vehicle()
-    with pytest.raises(ConfigurationError, match="mode_count: found 13, but 6 nodes have 12 elastic modes"):
+    with pytest.raises(
+        ConfigurationError, match="mode_count: found 13, must be at most 12, the elastic modes of 6 nodes"
+    ):
         body_frame(read_design(file), vehicle.points, NodeProperties.of_body(vehicle.body, 0.0))
 
 
 def test_a_fit_prints_its_factors_and_builds_with_them(monkeypatch, capsys, tmp_path):
-    """The fit itself takes minutes and has its own tests; here another one takes its place."""
+    """The fit takes minutes and is tested elsewhere; here a stub replaces it."""
     design = read_design(BODY_DESIGN)
-    told = {group: 1.1 * factor for group, factor in design.factors.items()}
-    monkeypatch.setattr("vehicle.model.flexbody.fit.fit_factors", lambda frame, start, weights: told)
+    fitted = {group: 1.1 * factor for group, factor in design.factors.items()}
+    monkeypatch.setattr("vehicle.model.flexbody.section_fit.fit_factors", lambda frame, start, weights: fitted)
     assert main(["build", "--fit", "--output", str(tmp_path / "fitted.toml")]) == 0
     printed = capsys.readouterr().out
     group = design.fitted_groups[0]
-    assert f"members.{group}.factor = {told[group]:.5g}\n" in printed
+    assert f"members.{group}.factor = {fitted[group]:.5g}\n" in printed
     built, shipped = read_superelement(tmp_path / "fitted.toml"), read_superelement(TRIMMED_BODY)
     assert np.all(built.frequencies > shipped.frequencies)  # every fitted member is a tenth stiffer
     assert np.all(built.frequencies < np.sqrt(1.1) * shipped.frequencies * 1.001)

@@ -1,4 +1,4 @@
-"""What was fitted on the complete car with stuck dampers: engine modes, wheel mode near 28 Hz, peak of the knuckle."""
+"""Properties fitted on the complete car with stuck dampers: engine modes, wheel mode near 28 Hz, knuckle peak."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ def car():
 
 
 def leaders(modes, group):
-    """Modes in which a group of parts has the largest share of the kinetic energy."""
+    """Select the modes in which a group of parts has the largest share of the kinetic energy."""
     return [mode for mode in modes if max(mode.energy, key=mode.energy.get) == group]
 
 
 def test_engine_modes_are_between_9_and_20_hz(car):
-    found = [mode.frequency for mode in leaders(car.modes("stuck"), "engine")]
-    assert len(found) == 6  # a rigid engine
-    assert min(found) > 9.0  # published 10 to 20 Hz; the lowest is a pitch of 9.6 Hz that the body shares
-    assert max(found) < 19.7
+    frequencies = [mode.frequency for mode in leaders(car.modes("stuck"), "engine")]
+    assert len(frequencies) == 6  # a rigid engine
+    assert min(frequencies) > 9.0  # published 10 to 20 Hz; the lowest is a pitch of 9.6 Hz that the body shares
+    assert max(frequencies) < 19.7
 
 
 def test_wheel_mode_near_28_hz_couples_with_the_body_and_is_the_peak_of_the_knuckle(car):

@@ -1,4 +1,4 @@
-"""Body models with one fault each: refused by name, in one sentence, with the exit code of its kind."""
+"""Body models with a single fault each: rejected with a one-line message and the exit code of the fault."""
 
 from __future__ import annotations
 
@@ -47,30 +47,30 @@ def npz(change, says):
     return Case("box.npz", change, SHOW, says)
 
 
-def option(*words, says, code=2):
-    return Case("modes.uff", nothing, (*UFF, *words), says, code)
+def option(*arguments, says, code=2):
+    return Case("modes.uff", nothing, (*UFF, *arguments), says, code)
 
 
 CASES = {
-    "no CoG": toml(line("cog_m", None), "key 'cog_m' is missing; mass_kg, cog_m, inertia_kg_m2 belong together"),
+    "no CoG": toml(line("cog_m", None), "key 'cog_m' is missing; set all of mass_kg, cog_m, inertia_kg_m2"),
     "no inertia": toml(line("inertia_kg_m2", None), "key 'inertia_kg_m2' is missing"),
-    "no mass": toml(line("mass_kg", None), "key 'mass_kg' is missing; mass_kg, cog_m"),
-    "inertia of three": toml(line("inertia", "inertia_kg_m2 = [1.0, 2.0, 3.0]"), "shape (3,), needed is (3, 3)"),
-    "mass not finite": toml(line("mass_kg", "mass_kg = nan"), "needed are a positive mass"),
-    "mass negative": toml(line("mass_kg", "mass_kg = -275.0"), "needed are a positive mass"),
+    "no mass": toml(line("mass_kg", None), "key 'mass_kg' is missing; set all of mass_kg, cog_m"),
+    "inertia of three": toml(line("inertia", "inertia_kg_m2 = [1.0, 2.0, 3.0]"), "shape (3,), must be (3, 3)"),
+    "mass not finite": toml(line("mass_kg", "mass_kg = nan"), "must be a positive mass"),
+    "mass negative": toml(line("mass_kg", "mass_kg = -275.0"), "must be a positive mass"),
     "CoG in mm": toml(line("cog_m", "cog_m = [980.0, 0.0, 600.0]"), "lies far outside the nodes"),
     "inertia of a needle": toml(
         line("inertia", "inertia_kg_m2 = [[1.0, 0.0, 0.0], [0.0, 5.0, 0.0], [0.0, 0.0, 900.0]]"),
-        "add up to the largest at least",
+        "the sum of the two smaller must be at least the largest",
     ),
     "residual one-sided": toml(text(RESIDUAL + ", 0.0", RESIDUAL + ", 1e-08"), "is not symmetric"),
     "residual negative": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[-1e-07"), "must not be negative"),
-    "residual in mm": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[1e-03"), "looks like mm/N"),
-    "residual of words": toml(text(RESIDUAL, 'residual_flexibility_m_per_n = [["a"'), "is not made of numbers"),
+    "residual in mm": toml(text(RESIDUAL, "residual_flexibility_m_per_n = [[1e-03"), "probably mm/N"),
+    "residual of words": toml(text(RESIDUAL, 'residual_flexibility_m_per_n = [["a"'), "must be numbers"),
     "rotation rows": toml(line("rotation", "rotation_per_m_sqrt_kg = [[0.0, 0.0, 0.0]]"), "4 rows of three finite"),
     "rotation NaN": toml(text("[[0.01, 0.01", "[[nan, 0.01"), "4 rows of three finite"),
     "mass of one node": toml(
-        text("position_m", "mass_kg = 30.0\nposition_m"), "node 2: key 'mass_kg' is missing; give it for each node"
+        text("position_m", "mass_kg = 30.0\nposition_m"), "node 2: key 'mass_kg' is missing; set it for every node"
     ),
     "masses twice": Case(
         "masses.toml",
@@ -79,20 +79,23 @@ CASES = {
             "mass_kg = 275.0\ncog_m = [1.0, 0.0, 0.8]\ninertia_kg_m2 = [[90, 0, 0], [0, 300, 0], [0, 0, 300]]\nedges",
         ),
         SHOW,
-        "found both; give mass, CoG and inertia, or the mass of every node",
+        "found both; specify mass, CoG and inertia, or the mass of every node",
     ),
-    "rigid mode": toml(shapes(heave), "mode 1 (8.50209 Hz) is a rigid motion (100.0000%)"),
-    "twin modes": toml(shapes(twin), "are the same shape (MAC 1.0000)"),
+    "rigid mode": toml(shapes(heave), "mode 1 (8.50209 Hz) is a rigid motion (share 100.0000%"),
+    "twin modes": toml(shapes(twin), "have the same shape (MAC 1.0000)"),
     "still mode": toml(shapes(still), "mode 3 is zero at all nodes"),
-    "shapes of mm and tonnes": toml(shapes(larger), "of millimetres and tonnes: divide by sqrt(1000)"),
+    "shapes of mm and tonnes": toml(shapes(larger), "from mm and tonnes: divide by sqrt(1000)"),
     "shape a number": toml(scalar("shape_per_sqrt_kg"), "mode 1, shape_per_sqrt_kg: 0 rows"),
-    "edges a number": toml(scalar("edges"), "edges: 5 is no pair of node names"),
-    "edge of lists": toml(text('["corner_0", "corner_1"]', '["corner_0", ["corner_1"]]'), "is no pair of node names"),
+    "edges a number": toml(scalar("edges"), "edges: 5 is not a pair of node names"),
+    "edge of lists": toml(
+        text('["corner_0", "corner_1"]', '["corner_0", ["corner_1"]]'), "is not a pair of node names"
+    ),
     "TOML cut off": toml(cut(0.6), "no valid TOML, perhaps cut off"),
     "TOML of format 7": toml(text("superelement 2", "superelement 7"), "format is 'modal superelement 7'"),
-    "npz cut off": npz(cut(0.7), "no valid npz, perhaps cut off"),
+    "npz cut off": npz(cut(0.7), "not a valid npz, perhaps truncated"),
     "npz damaged": npz(
-        lambda path: path.write_bytes(path.read_bytes()[:900] + b"\x07" * 40 + path.read_bytes()[940:]), "no valid npz"
+        lambda path: path.write_bytes(path.read_bytes()[:900] + b"\x07" * 40 + path.read_bytes()[940:]),
+        "not a valid npz",
     ),
     "npz renamed array": npz(array(frequency_hz=None), "'frequency_hz' is mi"),
     "npz unknown array": npz(array(shape=np.zeros(3)), "unknown array 'shape'; the nearest valid one is"),
@@ -102,69 +105,71 @@ CASES = {
     ),
     "npz edges": npz(array(edges=np.arange(3)), "array 'edges': shape (3,)"),
     "npz names": npz(array(nodes=lambda names: names.reshape(2, 4)), "array 'nodes': shape (2, 4)"),
-    "npz words": npz(array(frequency_hz=np.array(["a"] * 4)), "array 'frequency_hz': of type <U1, needed are numbers"),
+    "npz words": npz(array(frequency_hz=np.array(["a"] * 4)), "array 'frequency_hz': found type <U1, must be numbers"),
     "npz residuals": npz(array(residual_nodes=np.array(["corner_1", "corner_2"])), "1 arrays for 2 nodes"),
     "npz of format 7": npz(array(head=lambda head: str(head).replace("ment 2", "ment 7")), "'modal superelement 7'"),
-    "npz without head": npz(array(head="nothing"), "no valid npz"),
+    "npz without head": npz(array(head="nothing"), "not a valid npz"),
     "npz of text": npz(holds(b"node,x,y,z\n1,2,3\n"), "no valid TOML"),
     "npz of a picture": npz(holds(b"\x89PNG\r\n\x1a\n"), "cannot be read as UTF-8 text"),
     "no model": npz(gone, "no such file"),
-    "frd cut off": Case("modes.frd", cut(0.9), ("import", "FILE"), "is no line of a result file"),
-    "frd without its end": Case("modes.frd", text(" 9999\n", ""), ("import", "FILE"), "cut off; the job did not end"),
+    "frd cut off": Case("modes.frd", cut(0.9), ("import", "FILE"), "is not a line of a result file"),
+    "frd without its end": Case("modes.frd", text(" 9999\n", ""), ("import", "FILE"), "truncated; the job did not end"),
     "frd without modes": Case("modes.frd", cut(0.45), ("import", "FILE"), "no modes; write *NODE FILE with U"),
     "frd binary": Case("modes.frd", holds(b"    1C\n\xff\x80\x00"), ("import", "FILE"), "cannot be read as text"),
     "frd broken line": Case(
-        "modes.frd", text("-1.00000E-02 0.0", "-1.0000*E-02 0.0"), ("import", "FILE"), "is no line of a"
+        "modes.frd", text("-1.00000E-02 0.0", "-1.0000*E-02 0.0"), ("import", "FILE"), "is not a line of a"
     ),
     "frd node nowhere": Case(
-        "modes.frd", line(" -1         9-1", None), ("import", "FILE"), "node 9 of the modes has no place"
+        "modes.frd", line(" -1         9-1", None), ("import", "FILE"), "node 9 of the modes has no position"
     ),
     "frd of a static step": Case("modes.frd", text("MODAL", "STATI"), ("import", "FILE"), "no modes; write *NODE FILE"),
     "no .mas": Case("job.mas", gone, JOB, "(mas is missing)"),
     "no .dof": Case("job.dof", gone, JOB, "(dof is missing)"),
     ".sti empty": Case("job.sti", holds(b""), JOB, "0 rows"),
-    ".sti NaN": Case("job.sti", line("1 1 ", "1 1 nan"), JOB, "row 1 holds a number not finite"),
-    ".sti cut off": Case("job.sti", cut(0.501), JOB, "job.sti: stiffness: degree of freedom 1 of node 51 has none"),
-    ".mas one number": Case("job.mas", holds(b"1\n2\n"), JOB, "2 rows of 1 numbers; needed are 3"),
-    ".sti half rows": Case("job.sti", line("1 1 ", "1.5 1 3.0"), JOB, "1.5 is no whole number"),
-    ".dof direction 7": Case("job.dof", line("1.6", "1.7"), JOB, "directions 1 to 7; allowed are 1 to 6"),
-    ".dof of another job": Case("job.dof", holds(b"1.1\n1.2\n1.3\n"), JOB, "The files do not belong together"),
-    ".dof twice": Case("job.dof", line("1.6", "1.5"), JOB, "degree of freedom 5 of node 1 is given twice"),
+    ".sti NaN": Case("job.sti", line("1 1 ", "1 1 nan"), JOB, "row 1 contains a number that is not finite"),
+    ".sti cut off": Case(
+        "job.sti", cut(0.501), JOB, "job.sti: stiffness: degree of freedom 1 of node 51 has no stiffness"
+    ),
+    ".mas one number": Case("job.mas", holds(b"1\n2\n"), JOB, "2 rows of 1 numbers, must be 3"),
+    ".sti half rows": Case("job.sti", line("1 1 ", "1.5 1 3.0"), JOB, "found 1.5, must be a whole number"),
+    ".dof direction 7": Case("job.dof", line("1.6", "1.7"), JOB, "directions 1 to 7, must be 1 to 6"),
+    ".dof of another job": Case("job.dof", holds(b"1.1\n1.2\n1.3\n"), JOB, "The files are inconsistent"),
+    ".dof twice": Case("job.dof", line("1.6", "1.5"), JOB, "degree of freedom 5 of node 1 occurs twice"),
     ".dof of words": Case("job.dof", line("1.1", "one.x"), JOB, "not rows of numbers"),
-    ".inp without nodes": Case("job.inp", holds(b"*HEADING\n"), JOB, "no nodes found"),
-    ".inp broken": Case("job.inp", line("1,0.0", "1,0.0,west,0.4"), JOB, "is no line of *node"),
-    "market cut off": Case("K.mtx", cut(0.5), MARKET, "no matrix that can be read"),
-    "market head": Case("K.mtx", text("coordinate", "spiral"), MARKET, "no matrix that can be read"),
+    ".inp without nodes": Case("job.inp", holds(b"*HEADING\n"), JOB, "job.inp: no nodes"),
+    ".inp broken": Case("job.inp", line("1,0.0", "1,0.0,west,0.4"), JOB, "is not a line of *node"),
+    "market cut off": Case("K.mtx", cut(0.5), MARKET, "the matrix cannot be read"),
+    "market head": Case("K.mtx", text("coordinate", "spiral"), MARKET, "the matrix cannot be read"),
     "market complex": Case(
         "M.mtx",
         holds(b"%%MatrixMarket matrix coordinate complex symmetric\n48 48 1\n1 1 1 2\n"),
         MARKET,
-        "no matrix of real",
+        "must be a matrix of real",
     ),
     "market wrong size": Case(
         "M.mtx", lambda p: scipy.io.mmwrite(p, scipy.sparse.eye(7)), MARKET, "7 rows and 7 columns"
     ),
-    "abaqus cut off": Case("K.txt", cut(0.502), ABAQUS, "not rows of numbers, or cut off"),
+    "abaqus cut off": Case("K.txt", cut(0.502), ABAQUS, "not rows of numbers, or truncated"),
     "abaqus direction": Case("K.txt", line("1,1,1,1", "1,0,1,1,5.0"), ABAQUS, "K.txt: directions 0 to 6"),
     "mat truncated": Case("both.mat", cut(0.4), ("import", "both.mat:K", *MATLAB), "both.mat: "),
-    "mat of text": Case("both.mat", nothing, ("import", "both.mat:text", *MATLAB), "no matrix of real numbers"),
-    "mat complex": Case("both.mat", nothing, ("import", "both.mat:complex", *MATLAB), "no matrix of real numbers"),
-    "mat unknown": Case("both.mat", nothing, ("import", "both.mat:KK", *MATLAB), "no variable 'KK'; it has"),
-    "mat no choice": Case("both.mat", nothing, ("import", "both.mat", *MATLAB), "choose one as both.mat:NAME"),
-    "nodes of two numbers": Case("nodes.csv", line("1,", "1,0.0,0.4"), MARKET, "is no line of *node"),
-    "nodes NaN": Case("nodes.csv", line("1,", "1,nan,0.0,0.4"), MARKET, "a coordinate is not finite"),
-    "node at two places": Case(
-        "nodes.csv", line("1,", "11,9.0,0.0,0.4"), MARKET, "node 11 was at [9.0, 0.0, 0.4] before"
+    "mat of text": Case("both.mat", nothing, ("import", "both.mat:text", *MATLAB), "must be a matrix of real numbers"),
+    "mat complex": Case(
+        "both.mat", nothing, ("import", "both.mat:complex", *MATLAB), "must be a matrix of real numbers"
     ),
-    "node missing": Case("nodes.csv", line("1,", None), MARKET, "node 1 of the matrices has no place"),
+    "mat unknown": Case("both.mat", nothing, ("import", "both.mat:KK", *MATLAB), "no variable 'KK'; the file has"),
+    "mat no choice": Case("both.mat", nothing, ("import", "both.mat", *MATLAB), "choose one as both.mat:NAME"),
+    "nodes of two numbers": Case("nodes.csv", line("1,", "1,0.0,0.4"), MARKET, "is not a line of *node"),
+    "nodes NaN": Case("nodes.csv", line("1,", "1,nan,0.0,0.4"), MARKET, "a coordinate is not finite"),
+    "node at two places": Case("nodes.csv", line("1,", "11,9.0,0.0,0.4"), MARKET, "node 11 is also at [9.0, 0.0, 0.4]"),
+    "node missing": Case("nodes.csv", line("1,", None), MARKET, "node 1 of the matrices has no position"),
     "no nodes given": Case("K.mtx", nothing, MARKET[:4], "set --nodes too", 2),
     "no dofs given": Case("K.mtx", nothing, (*MARKET[:4], *MARKET[6:]), "needs --dofs", 2),
     "no mass given": Case("K.mtx", nothing, ("import", "K.mtx"), "needs --mass, --nodes and --dofs", 2),
     "map of three": Case(
-        "map.csv", text("fr,1", "fr,1,2"), (*UFF, "--point-nodes", "map.csv"), "is no line point,node"
+        "map.csv", text("fr,1", "fr,1,2"), (*UFF, "--point-nodes", "map.csv"), "is not a line point,node"
     ),
     "map of an unknown point": Case(
-        "map.csv", text("strut", "nose"), (*UFF, "--point-nodes", "map.csv"), "no point 'nose_top_fr'"
+        "map.csv", text("strut", "nose"), (*UFF, "--point-nodes", "map.csv"), "the car has no point 'nose_top_fr'"
     ),
     "map to no node": Case(
         "map.csv", text("fr,1", "fr,999"), (*UFF, "--point-nodes", "map.csv"), "no node '999' for strut_top_fr"
@@ -173,14 +178,14 @@ CASES = {
         "map.csv",
         text("strut_top_fr,1", "seat,1\nseat,2"),
         (*UFF, "--point-nodes", "map.csv"),
-        "point 'seat' is given twice",
+        "point 'seat' occurs twice",
     ),
     "no map": Case("map.csv", gone, (*UFF, "--point-nodes", "map.csv"), "map.csv: cannot be read"),
-    "uff without nodes": Case("modes.uff", modes(places=False), UFF, "20 of them without a place"),
-    "uff without modal mass": Case("modes.uff", modes(modal_mass=0.0), UFF, "no modal mass, and so no scale"),
+    "uff without nodes": Case("modes.uff", modes(with_positions=False), UFF, "20 of them without a position"),
+    "uff without modal mass": Case("modes.uff", modes(modal_mass=0.0), UFF, "no modal mass, so the shape has no scale"),
     "uff without modes": Case("modes.uff", modes(count=0), UFF, "modes.uff"),
-    "uff in radians": Case("modes.uff", modes(speed=2.0 * np.pi), (*UFF, "--up-to", "300"), "looks like rad/s"),
-    "uff in millimetres": Case("modes.uff", modes(modal_mass=1e-6), UFF, "give shapes with modal masses of 1 kg"),
+    "uff in radians": Case("modes.uff", modes(speed=2.0 * np.pi), (*UFF, "--up-to", "300"), "probably rad/s"),
+    "uff in millimetres": Case("modes.uff", modes(modal_mass=1e-6), UFF, "Use shapes with modal masses of 1 kg"),
     "uff cut off": Case("modes.uff", cut(0.7), UFF, "modes.uff"),
     "uff without points": Case(
         "modes.uff", modes(points=POINTS[5:]), UFF, "points of the car have no node within 1 mm"
@@ -194,8 +199,8 @@ CASES = {
     "tolerance wide": option("--point-distance", "80", says="--point-distance 80"),
     "spread": option("--spread", "-1", says="--spread -1: must be 0 mm or a radius"),
     "modal mass": option("--modal-mass", "0", says="--modal-mass 0: must be a mass above 0 kg"),
-    "axes mirrored": option("--axes", "x,y,-z", says="three different axes that are not mirrored"),
-    "axes of words": option("--axes", "forward", says="three different axes that are not mirrored"),
+    "axes mirrored": option("--axes", "x,y,-z", says="three different, right-handed source axes"),
+    "axes of words": option("--axes", "forward", says="three different, right-handed source axes"),
     "origin of two": option("--origin", "1,2", says="must be three numbers in metres"),
     "origin nan": option("--origin", "1,nan,0", says="must be three numbers in metres"),
     "unit": option("--length-unit", "furlong", says="invalid choice: 'furlong'"),
@@ -223,7 +228,7 @@ CASES |= {name: Case("modes.uff", nothing, ("import", name), says) for name, say
 
 @pytest.fixture(scope="module")
 def good(tmp_path_factory):
-    """A folder with one good file of every kind."""
+    """Return a folder with a valid file in every format."""
     folder = tmp_path_factory.mktemp("good")
     write_all(folder)
     return folder
@@ -236,21 +241,21 @@ def test_a_broken_model_is_refused_in_one_sentence(good, tmp_path, monkeypatch, 
         shutil.copy(file, tmp_path)
     monkeypatch.chdir(tmp_path)
     case.change(tmp_path / case.file)
-    words = [case.file if word == "FILE" else word for word in case.arguments]
-    if words[0] == "import" and "--output" not in words:
-        words += ["--output", "made.toml"]
+    arguments = [case.file if argument == "FILE" else argument for argument in case.arguments]
+    if arguments[0] == "import" and "--output" not in arguments:
+        arguments += ["--output", "made.toml"]
     before = {file.name for file in tmp_path.iterdir()}
-    assert command.main(words) == case.code
-    said = capsys.readouterr()
-    assert case.says in said.err and FAULT not in said.err, said.err
-    assert said.err.strip().count("\n") == 0 and not said.out
-    assert {file.name for file in tmp_path.iterdir()} == before  # nothing half-written
+    assert command.main(arguments) == case.code
+    printed = capsys.readouterr()
+    assert case.says in printed.err and FAULT not in printed.err, printed.err
+    assert printed.err.strip().count("\n") == 0 and not printed.out
+    assert {file.name for file in tmp_path.iterdir()} == before  # no incomplete file
 
 
-@pytest.mark.parametrize("words", [SHOW, UFF])
-def test_the_files_are_good_before(good, tmp_path, monkeypatch, capsys, words):
+@pytest.mark.parametrize("arguments", [SHOW, UFF])
+def test_the_files_are_good_before(good, tmp_path, monkeypatch, capsys, arguments):
     monkeypatch.chdir(good)
-    if words is SHOW:
+    if arguments is SHOW:
         for file in ("box.toml", "box.npz", "masses.toml"):
             assert command.main(["show", file]) == 0
     else:
@@ -258,9 +263,9 @@ def test_the_files_are_good_before(good, tmp_path, monkeypatch, capsys, words):
     assert not capsys.readouterr().err
 
 
-@pytest.mark.parametrize("words", [JOB, MARKET, ABAQUS, ("import", "both.mat:K", *MATLAB), ("import", "modes.frd")])
-def test_good_matrices_get_as_far_as_the_points_of_the_car(good, tmp_path, monkeypatch, capsys, words):
-    """The box has nodes of its own, and so no more is asked of it."""
+@pytest.mark.parametrize("arguments", [JOB, MARKET, ABAQUS, ("import", "both.mat:K", *MATLAB), ("import", "modes.frd")])
+def test_good_matrices_get_as_far_as_the_points_of_the_car(good, tmp_path, monkeypatch, capsys, arguments):
+    """The nodes of the box do not match the points of the car, so the import ends there."""
     monkeypatch.chdir(good)
-    assert command.main([*words, "--output", str(tmp_path / "made.toml")]) == 3
+    assert command.main([*arguments, "--output", str(tmp_path / "made.toml")]) == 3
     assert "points of the car have no node within 1 mm" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Frequency and damping of single body modes: what a vehicle file changes, in both engines, found again by a fit."""
+"""Frequency and damping of single body modes: changed by a vehicle file, in both engines, identified by a fit."""
 
 from __future__ import annotations
 
@@ -101,5 +101,5 @@ def test_frequency_and_damping_of_a_mode_are_found_again_in_an_frf(car, changed)
     assert result.converged and not result.unidentified
     for path, value in CHANGED.items():
         assert abs(result.deviation(path, value)) < 3.0, path
-    assert result.standard_errors[FACTOR] < 0.005 * 1.12  # else three of them would say nothing
+    assert result.standard_errors[FACTOR] < 0.005 * 1.12  # otherwise three of the values would test nothing
     assert result.standard_errors[RATIO] < 0.1 * 0.06

@@ -1,4 +1,4 @@
-"""One geometry: a moved hardpoint moves the node of the body, computed again; a rigid body needs no file."""
+"""Common geometry: a moved hardpoint moves the node of the recomputed body; a rigid body needs no file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.symmetry import parity
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -26,7 +26,7 @@ def rms(car, engine, channel="seat_rail_acc_z"):
 
 
 def squared(changes):
-    """Squared frequencies of the free body [Hz2]: the eigenvalues, which are smooth where two modes come near."""
+    """Return squared frequencies of the free body [Hz2], the eigenvalues, which stay smooth when two modes approach."""
     return Car.load(None, changes).trimmed_body.frequencies ** 2
 
 
@@ -51,7 +51,7 @@ def test_modes_change_smoothly(point):
     """Central differences of the eigenvalues with 1 and 2 mm differ by a third derivative, O(h^2) of each other."""
     name, axis = point.split(".")
     points = load_vehicle().points
-    label = next(one for one in (f"{name}_fr", f"{name}_right", name) if one in points)
+    label = next(key for key in (f"{name}_fr", f"{name}_right", name) if key in points)
     value = points[label]["xyz".index(axis)]
 
     def slope(step):
@@ -65,7 +65,7 @@ def test_modes_change_smoothly(point):
 
 
 def test_a_symmetric_move_leaves_the_body_symmetric():
-    """Hardpoints move on both sides, so modes stay symmetric or antisymmetric as they were."""
+    """Hardpoints moved on both sides leave modes symmetric or antisymmetric."""
     body, still = Car.load(None, ["hardpoints.strut_top=[0.9, 0.56, 1.25]"]).trimmed_body, Car.load().trimmed_body
     likeness, before = (parity(b.shapes, b.positions, np.asarray(b.node_mass)) for b in (body, still))
     assert np.abs(likeness).min() > 0.95
@@ -76,7 +76,7 @@ def test_a_symmetric_move_leaves_the_body_symmetric():
 
 
 def test_a_body_moved_as_a_whole_has_the_same_modes(tmp_path):
-    """All nodes, centre of gravity and the point of the inertia moved by one vector: nothing else may change."""
+    """A common translation of nodes, centre of gravity and reference point of the inertia does not change the modes."""
     by, vehicle, design = np.array([0.3, 0.0, -0.1]), load_vehicle(), read_design(BODY_DESIGN)
 
     def shifted(point):
@@ -88,13 +88,13 @@ def test_a_body_moved_as_a_whole_has_the_same_modes(tmp_path):
     def moved(i, j):  # parallel axes, term by term: integrals of x_i x_j about the origin
         return body.mass * (new[i] * new[j] - old[i] * old[j])
 
-    own = body.inertia
+    inertia = body.inertia
     inertia = dataclasses.replace(
-        own,
-        ixx=own.ixx + moved(1, 1) + moved(2, 2),
-        iyy=own.iyy + moved(0, 0) + moved(2, 2),
-        izz=own.izz + moved(0, 0) + moved(1, 1),
-        izx=own.izx + moved(0, 2),
+        inertia,
+        ixx=inertia.ixx + moved(1, 1) + moved(2, 2),
+        iyy=inertia.iyy + moved(0, 0) + moved(2, 2),
+        izz=inertia.izz + moved(0, 0) + moved(1, 1),
+        izx=inertia.izx + moved(0, 2),
     )
     changed = dataclasses.replace(body, cog=tuple(new), inertia=inertia)
     points = {name: shifted(point) for name, point in vehicle.points.items()}
@@ -102,21 +102,23 @@ def test_a_body_moved_as_a_whole_has_the_same_modes(tmp_path):
         name: node if node.place is None else dataclasses.replace(node, place=shifted(node.place))
         for name, node in design.nodes.items()
     }
-    here, there = (NodeProperties.of_body(each, design.least_ixx) for each in (body, changed))
-    one = body_frame(design, vehicle.points, here).superelement()
-    other = body_frame(dataclasses.replace(design, nodes=nodes), points, there).superelement()
-    np.testing.assert_allclose(other.frequencies, one.frequencies, rtol=1e-7)  # round-off, as of another library
-    np.testing.assert_allclose(np.asarray(other.node_mass), np.asarray(one.node_mass), rtol=1e-8)
-    np.testing.assert_allclose(other.shapes, one.shapes, atol=1e-6)
+    original_properties, moved_properties = (NodeProperties.of_body(each, design.least_ixx) for each in (body, changed))
+    original = body_frame(design, vehicle.points, original_properties).superelement()
+    moved_body = body_frame(dataclasses.replace(design, nodes=nodes), points, moved_properties).superelement()
+    np.testing.assert_allclose(
+        moved_body.frequencies, original.frequencies, rtol=1e-7
+    )  # round-off, as of another library
+    np.testing.assert_allclose(np.asarray(moved_body.node_mass), np.asarray(original.node_mass), rtol=1e-8)
+    np.testing.assert_allclose(moved_body.shapes, original.shapes, atol=1e-6)
 
 
 def test_both_engines_run_a_moved_hardpoint_and_agree():
     car, still = Car.load(None, ["hardpoints.strut_top.z=1.24"]), Car.load()
-    here = car.model.model.site("bushing/suspension_mount_fl/carrier").pos + car.model.model.body("body").pos
-    np.testing.assert_allclose(here, [0.877, -0.548, 1.24], atol=1e-12)
-    found = {engine: rms(car, engine) for engine in ("mujoco", "reduced")}
-    assert found["reduced"] == pytest.approx(found["mujoco"], rel=5e-3)  # the geometry that the matrices leave out
-    for engine, value in found.items():
+    mount_position = car.model.model.site("bushing/suspension_mount_fl/carrier").pos + car.model.model.body("body").pos
+    np.testing.assert_allclose(mount_position, [0.877, -0.548, 1.24], atol=1e-12)
+    levels = {engine: rms(car, engine) for engine in ("mujoco", "reduced")}
+    assert levels["reduced"] == pytest.approx(levels["mujoco"], rel=5e-3)  # the geometry that the matrices leave out
+    for engine, value in levels.items():
         before = rms(still, engine)
         assert value != before and value == pytest.approx(before, rel=0.02)  # one centimetre
 
@@ -124,18 +126,18 @@ def test_both_engines_run_a_moved_hardpoint_and_agree():
 def test_the_same_points_and_masses_give_the_same_bytes_and_one_body():
     design, vehicle = read_design(BODY_DESIGN), load_vehicle()
     properties = NodeProperties.of_body(vehicle.body, design.least_ixx)
-    one, two = (body_frame(design, vehicle.points, properties).superelement() for _ in range(2))
+    first, second = (body_frame(design, vehicle.points, properties).superelement() for _ in range(2))
     for name in ("positions", "node_mass", "frequencies", "shapes"):
-        assert getattr(one, name).tobytes() == getattr(two, name).tobytes()
-    here = Car.load().trimmed_body
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
+    loaded = Car.load().trimmed_body
     blind = ["damper.coulomb_friction=60", "body.inertia.ixy=80", "body.frequency_scale=1.1", "body.inertia.ixx=1200"]
-    assert Car.load(None, blind).trimmed_body is here
+    assert Car.load(None, blind).trimmed_body is loaded
     for seen in ("body.mass=812", "body.inertia.ixx=1201", "hardpoints.seat.z=0.86"):
-        assert Car.load(None, [seen]).trimmed_body is not here
+        assert Car.load(None, [seen]).trimmed_body is not loaded
 
 
 def rigid_file(folder):
-    """The car of Bommer 2006 without its body file."""
+    """Write the car of Bommer 2006 without its body file."""
     text = FOCUS_FILE.read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("superelement =")]
     (folder / "car.toml").write_text("\n".join(lines), encoding="utf-8")
@@ -162,7 +164,7 @@ def test_a_rigid_body_takes_its_attachments_from_either_file():
     for engine in ("mujoco", "reduced"):
         assert rms(built, engine) == rms(imported, engine)
         assert rms(built, engine) != rms(Car.load(None, [*RIGID, "body.attachment_flexibility=false"]), engine)
-    with pytest.raises(ConfigurationError, match=r"no file 'nothing\.toml' .*; a rigid body \(body\.flexible = "):
+    with pytest.raises(ConfigurationError, match=r"no file 'nothing\.toml' .*, or set body\.flexible = false and "):
         _ = Car.load(None, [*RIGID, "body.superelement=nothing.toml"]).model
 
 
@@ -172,7 +174,9 @@ FILES = ("body_design.toml", "trimmed_body.toml")
 
 def test_an_imported_body_says_how_far_its_nodes_may_be(tmp_path):
     strict = ["body.superelement=trimmed_body.toml", "hardpoints.strut_top.z=1.234"]
-    with pytest.raises(DataError, match=r"node 'strut_top_fr' at \[0.877, 0.548, 1.23\] m is 4 mm away; 1 mm is all"):
+    with pytest.raises(
+        DataError, match=r"is 'strut_top_fr' at \[0.877, 0.548, 1.23\] m, 4 mm away, must be at most 1 mm"
+    ):
         _ = Car.load(None, strict).model
     assert Car.load(None, [*strict, "body.flexible=false"]).model.model.nv > 0  # what is rigid reaches everywhere
     (tmp_path / "car.toml").write_text(FOCUS_FILE.read_text(encoding="utf-8"), encoding="utf-8")
@@ -182,7 +186,7 @@ def test_an_imported_body_says_how_far_its_nodes_may_be(tmp_path):
     changes = ["body.superelement=mine.toml", "hardpoints.strut_top.z=1.234"]
     car = Car.load(tmp_path / "car.toml", changes)
     assert rms(car, "mujoco") == pytest.approx(rms(Car.load(None, changes[1:]), "mujoco"), rel=1e-3)
-    for bad, message in (("0.0", "hardpoint_tolerance: 0 m; allowed is above 0, up to 0.05 m"), ("[1]", "one number")):
+    for bad, message in (("0.0", "hardpoint_tolerance: found 0 m, must be above 0"), ("[1]", "one number")):
         (tmp_path / "mine.toml").write_text(text.replace("tolerance_m = 0.001", f"tolerance_m = {bad}"))
         with pytest.raises(DataError, match=message):
             _ = Car.load(tmp_path / "car.toml", changes).trimmed_body

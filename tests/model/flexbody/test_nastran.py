@@ -1,7 +1,8 @@
-"""Matrices that Nastran punches: DMIG in its three formats, nodes as GRID, and what is refused."""
+"""Matrices punched by Nastran: DMIG in three formats, nodes as GRID, and rejected files."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -20,14 +21,14 @@ HEAD["large"] = HEAD["small"]  # as a punch file has it
 
 
 def body():
-    """The box, whose rotations have inertia here: matrices without a row that is zero."""
+    """Return the box with rotational inertia, so that the matrices have no zero row."""
     box = box_matrices()
     inertia = scipy.sparse.diags(np.where(box.direction < 3, 0.0, 0.01))
     return replace(box, mass=(box.mass + inertia).tocsc())
 
 
 def dmig(name, box, matrix, form):
-    """One triangle of a matrix, column by column."""
+    """Format a triangle of a matrix as DMIG, column by column."""
     lines = [HEAD[form].format(name)]
     lower = scipy.sparse.tril(matrix).tocsc()
     at = [(int(box.nodes[node]), int(axis) + 1) for node, axis in zip(box.node, box.direction, strict=True)]
@@ -40,29 +41,29 @@ def dmig(name, box, matrix, form):
         if form == "large":
             lines.append(f"{'DMIG*':<8}{name:<16}{node:16d}{axis:16d}")
             lines += [f"{'*':<8}{n:16d}{a:16d}{value:16.9E}".replace("E", "D") for n, a, value in rows]
-            lines[-1] = f"{lines[-1]:<72}      17"  # columns behind the 72nd are a number of the line
+            lines[-1] = f"{lines[-1]:<72}      17"  # columns after the 72nd are a line number
         elif form == "free":
-            words = [f"{n},{a},{value!r}," for n, a, value in rows]
-            lines.append(f"DMIG,{name},{node},{axis},,{words[0]}")
-            lines += ["," + ",".join(words[i : i + 2]) for i in range(1, len(words), 2)]
+            fields = [f"{n},{a},{value!r}," for n, a, value in rows]
+            lines.append(f"DMIG,{name},{node},{axis},,{fields[0]}")
+            lines += ["," + ",".join(fields[i : i + 2]) for i in range(1, len(fields), 2)]
         else:
-            words = [f"{n:8d}{a:8d}{small(value)}{'':8}" for n, a, value in rows]
-            lines.append(f"DMIG    {name:<8}{node:8d}{axis:8d}{'':8}{words[0]}")
-            lines += [f"{'':8}{''.join(words[i : i + 2])}" for i in range(1, len(words), 2)]
+            fields = [f"{n:8d}{a:8d}{small(value)}{'':8}" for n, a, value in rows]
+            lines.append(f"DMIG    {name:<8}{node:8d}{axis:8d}{'':8}{fields[0]}")
+            lines += [f"{'':8}{''.join(fields[i : i + 2])}" for i in range(1, len(fields), 2)]
     return lines
 
 
 def small(value):
-    """A real number in 8 columns, the E of its exponent left out: -1.234+5."""
+    """Format a real number in 8 columns without the E of its exponent: -1.234+5."""
     mantissa, exponent = f"{value:.3E}".split("E")
     return f"{mantissa}{int(exponent):+d}".rjust(8)
 
 
 def grids(box, form="free"):
-    places = zip(box.nodes, box.positions.tolist(), strict=True)
+    nodes = zip(box.nodes, box.positions.tolist(), strict=True)
     if form == "large":
-        return [line for n, (x, y, z) in places for line in (f"GRID   *{n:>16}{0:16d}{x:16}{y:16}", f"{'*':<8}{z:16}")]
-    return [f"GRID,{node},,{x!r},{y!r},{z!r}" for node, (x, y, z) in places]
+        return [line for n, (x, y, z) in nodes for line in (f"GRID   *{n:>16}{0:16d}{x:16}{y:16}", f"{'*':<8}{z:16}")]
+    return [f"GRID,{node},,{x!r},{y!r},{z!r}" for node, (x, y, z) in nodes]
 
 
 def punch(path, form):
@@ -75,19 +76,19 @@ def punch(path, form):
 @pytest.mark.parametrize(("form", "digits"), [("free", 1e-15), ("large", 1e-9), ("small", 1e-3)])
 def test_both_matrices_come_from_one_file(tmp_path, form, digits):
     box = body()
-    found = read_matrices(punch(tmp_path / "job.pch", form), None, None, None)
+    matrices = read_matrices(punch(tmp_path / "job.pch", form), None, None, None)
     order = [
-        int(np.flatnonzero((box.node == box.nodes.index(found.nodes[n])) & (box.direction == axis))[0])
-        for n, axis in zip(found.node, found.direction, strict=True)
+        int(np.flatnonzero((box.node == box.nodes.index(matrices.nodes[n])) & (box.direction == axis))[0])
+        for n, axis in zip(matrices.node, matrices.direction, strict=True)
     ]
     for name in ("stiffness", "mass"):
-        mine, theirs = getattr(found, name), getattr(box, name)[order][:, order]
+        mine, theirs = getattr(matrices, name), getattr(box, name)[order][:, order]
         validated(
             "File readers", f"{name} matrix of a Nastran punch file, {form} fields", mine.toarray(), theirs.toarray(),
             peak=digits, source="second derivation: the matrix that was written, by the digits of the format",
         )  # fmt: skip
-    np.testing.assert_array_equal(found.positions, box.positions)
-    assert "Nastran, K and M of job.pch" in found.source
+    np.testing.assert_array_equal(matrices.positions, box.positions)
+    assert "Nastran, K and M of job.pch" in matrices.source
 
 
 def test_nodes_and_names_may_be_given(tmp_path):
@@ -95,38 +96,38 @@ def test_nodes_and_names_may_be_given(tmp_path):
     (tmp_path / "job.bdf").write_text("\n".join(["BEGIN BULK", *grids(body()), "ENDDATA"]) + "\n")
     text = path.read_text().replace("DMIG,KAAX", "DMIG,KGG")
     path.write_text("\n".join(line for line in text.splitlines() if not line.startswith("GRID")) + "\n")
-    found = read_matrices(tmp_path / "job.pch:KGG", tmp_path / "job.pch:MAAX", None, tmp_path / "job.bdf")
-    assert len(found.node) == 48
-    with pytest.raises(DataError, match="DMIG matrices KGG, MAAX; needed are one"):
+    matrices = read_matrices(tmp_path / "job.pch:KGG", tmp_path / "job.pch:MAAX", None, tmp_path / "job.bdf")
+    assert len(matrices.node) == 48
+    with pytest.raises(DataError, match="DMIG matrices KGG, MAAX, must be one"):
         read_matrices(tmp_path / "job.pch:KAAX", None, None, tmp_path / "job.bdf")
-    with pytest.raises(DataError, match=r"node 1 of the matrices has no place in the list of nodes"):
+    with pytest.raises(DataError, match=r"node 1 of the matrices has no position in the list of nodes"):
         read_matrices(path, None, None, None)
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
-        ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,9,2", "form 9; needed is 6, symmetric, or 1, square"),
-        ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "type 4; needed is 1 or 2, real"),
-        ("DMIG,KAAX,0,6,2,0\n", "", "a column before the head of the matrix"),
-        ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,0,", "component 0 of 1; allowed are 1 to 6. Scalar points"),
+        ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,9,2", "form 9, must be 6 (symmetric) or 1 (square)"),
+        ("DMIG,KAAX,0,6,2", "DMIG,KAAX,0,6,4", "type 4, must be 1 or 2 (real)"),
+        ("DMIG,KAAX,0,6,2,0\n", "", "a column before the header of the matrix"),
+        ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,0,", "component 0 of 1, must be 1 to 6. Scalar points"),
         ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,x", "could not convert string to float"),
         ("DMIG,KAAX,1,1,,1,1,", "DMIG,KAAX,1,1,,1,1,inf,,1,2,", "inf is not finite"),
-        ("DMIG,KAAX,1,2,", "DMIG,KAAX,1,1,", "is given twice"),
-        ("GRID,1,,", "GRID,1,7,", "its place is in coordinate system 7"),
+        ("DMIG,KAAX,1,2,", "DMIG,KAAX,1,1,", "occurs twice"),
+        ("GRID,1,,", "GRID,1,7,", "position in coordinate system 7"),
     ],
 )
-def test_broken_punch_files_are_refused(tmp_path, old, new, said):
+def test_broken_punch_files_are_refused(tmp_path, old, new, message):
     path = punch(tmp_path / "job.pch", "free")
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-    with pytest.raises(DataError, match=said):
+    with pytest.raises(DataError, match=re.escape(message)):
         read_matrices(path, None, None, None)
 
 
 def test_the_command_reads_a_punch_file(tmp_path, capsys):
     path = punch(tmp_path / "job.pch", "large")
-    words = ["import", str(path), "--up-to", "60", "--output", str(tmp_path / "body.toml")]
-    assert command.main(words) == 3
+    arguments = ["import", str(path), "--up-to", "60", "--output", str(tmp_path / "body.toml")]
+    assert command.main(arguments) == 3
     assert "points of the car have no node within 1 mm" in capsys.readouterr().err

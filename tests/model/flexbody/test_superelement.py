@@ -1,4 +1,4 @@
-"""A modal superelement checks itself: every kind of bad data is refused with a message that says how to mend it."""
+"""Checks of a modal superelement: all invalid data are rejected with a message that contains the remedy."""
 
 from __future__ import annotations
 
@@ -88,29 +88,32 @@ BAD = {
     "one name too many": (put("mode_names", lambda n: (*n, "x")), "mode_names: 5 names for 4 frequencies"),
     "ragged positions": (put("positions", [[0.0, 1.0], [1.0]]), "positions: not a regular array of numbers"),
     "node twice": (put("nodes", lambda n: (n[1], *n[1:])), "nodes: 'corner_1' given more than once"),
-    "edge to nowhere": (at("edges", (0, 0), 8), "edges: index 0 to 8; allowed are 0 to 7"),
+    "edge to nowhere": (at("edges", (0, 0), 8), "edges: found index 0 to 8, must be 0 to 7"),
     "flexibility at no node": (put("residual", {"nose": np.eye(3)}), "residual: no node 'nose'"),
-    "flexibility of three numbers": (put("residual", {"corner_1": np.ones(3)}), "of 'corner_1': shape (3,); three"),
+    "flexibility of three numbers": (
+        put("residual", {"corner_1": np.ones(3)}),
+        "of 'corner_1': shape (3,), must be three",
+    ),
     "flexibility one-sided": (put("residual", {"corner_1": np.eye(3, k=1) * 1e-7}), "m/N is not symmetric"),
     "flexibility negative": (put("residual", {"corner_1": -1e-7 * np.eye(3)}), "value is -1e-07 m/N, must not be"),
-    "flexibility in mm/N": (put("residual", {"corner_1": 1e-3 * np.eye(3)}), "looks like mm/N"),
+    "flexibility in mm/N": (put("residual", {"corner_1": 1e-3 * np.eye(3)}), "probably mm/N"),
     "flexibility NaN": (put("residual", {"corner_1": np.full((3, 3), np.nan)}), "every number must be finite"),
     "NaN in a shape": (at("shapes", (1, 2, 0), np.nan), "shapes[1, 2, 0]: nan; every number must be finite"),
     "infinite mass": (at("node_mass", 3, np.inf), "node_mass[3]: inf"),
     "negative mass": (at("node_mass", 3, -1.0), "node_mass of 'corner_3': -1 kg; masses must not be negative"),
     "negative frequency": (at("frequencies", 0, -19.0), "frequencies[0]: -19 Hz; elastic modes have positive"),
     "unsorted": (swap_modes, "Sort the modes by frequency"),
-    "damping in percent": (at("damping_ratio", 2, 2.0), "damping_ratio[2]: 2; allowed is 0 to 0.3"),
-    "positions in mm": (scaled("positions", 1e3), "the body is 2000 m long, at most 30 m; looks like mm"),
+    "damping in percent": (at("damping_ratio", 2, 2.0), "damping_ratio[2]: found 2, must be 0 to 0.3"),
+    "positions in mm": (scaled("positions", 1e3), "the body is 2000 m long, must be at most 30 m; probably mm"),
     "positions in km": (scaled("positions", 1e-3), "the body is 0.002 m long"),
-    "shapes in mm": (scaled("shapes", 1e3), "modal masses are 1e+06 instead of 1; looks like mm"),
-    "shapes 1000 too small": (scaled("shapes", 1e-3), "modal masses are 1e-06 instead of 1; looks like km"),
-    "masses in tonnes": (scaled("node_mass", 1e-3), "modal masses are 0.001 instead of 1; looks like tonne"),
-    "radians": (scaled("frequencies", 2.0 * np.pi), "looks like rad/s"),
-    "not normalised": (at("shapes", (0, 0, 0), 0.5), "not mass-normalised with the node masses given"),
+    "shapes in mm": (scaled("shapes", 1e3), "modal masses are 1e+06 instead of 1; probably mm"),
+    "shapes 1000 too small": (scaled("shapes", 1e-3), "modal masses are 1e-06 instead of 1; probably km"),
+    "masses in tonnes": (scaled("node_mass", 1e-3), "modal masses are 0.001 instead of 1; probably tonnes"),
+    "radians": (scaled("frequencies", 2.0 * np.pi), "probably rad/s"),
+    "not normalised": (at("shapes", (0, 0, 0), 0.5), "not mass-normalised with these node masses"),
     "a little off": (scaled("shapes", 1.0 + 1e-6), "instead of 1 (within 1e-06): not mass-normalised"),
-    "rigid heave in it": (rigid_part, "of the rigid translation along z (at most 1e-06)"),
-    "rigid yaw in it": (rigid_turn, "of the rigid rotation about z (at most 1e-06)"),
+    "rigid heave in it": (rigid_part, "of the rigid translation along z, must be at most 1e-06"),
+    "rigid yaw in it": (rigid_turn, "of the rigid rotation about z, must be at most 1e-06"),
 }
 
 
@@ -118,7 +121,9 @@ BAD = {
 def test_bad_data_is_refused(case):
     change, message = BAD[case]
     fields = box_fields()
-    if case == "radians":  # the box is softer than a car: lift it into the range of one, where rad/s stand out
+    if (
+        case == "radians"
+    ):  # the box is softer than a car: scale its frequencies to those of a car, for which rad/s are detected
         fields["frequencies"] = fields["frequencies"] * (19.0 / fields["frequencies"][0])
     change(fields)
     with pytest.raises(DataError, match="superelement 'box', .*" + re.escape(message)):
@@ -139,9 +144,7 @@ def test_nodes_are_found_by_place_and_never_by_name():
     body = Superelement(**box_fields())
     near, far = (tuple(POSITIONS[0] + [0.0, 0.0, up]) for up in (9e-4, 1.1e-3))
     assert attached_nodes(body, {"strut_top_fr": near}) == {near: "corner_0"}
-    with pytest.raises(
-        DataError, match=r"no node at strut_top_fr .* node 'corner_0' at \[0.0, -0.5, 0.4\] m is 1.1 mm a"
-    ):
+    with pytest.raises(DataError, match=r"no node at strut_top_fr .* is 'corner_0' at \[0.0, -0.5, 0.4\] m, 1.1 mm a"):
         attached_nodes(body, {"strut_top_fr": far})
-    # Of a rigid body a node is asked for its local stiffness alone.
+    # A rigid body uses only the local stiffness of a node.
     assert attached_nodes(body.without_modes(), {"a": far, "b": (9.0, 0.0, 0.0)}) == {far: "corner_0"}

@@ -1,4 +1,4 @@
-"""The data file: round trip to the last digit, and nothing damaged, incomplete or misspelt is read."""
+"""Data file: round trip to the last digit; damaged, incomplete or misspelt files are rejected."""
 
 from __future__ import annotations
 
@@ -44,18 +44,18 @@ BAD = {
     "key missing": ("damping_ratio = 0.02\n", "", "mode 1: key 'damping_ratio' is missing"),
     "mode count": ("mode_count = 4", "mode_count = 9", "4 [[mode]] tables, but mode_count = 9"),
     "node count": ("node_count = 8", "node_count = 43", "8 [[node]] tables, but node_count = 43"),
-    "not a number": ("mass_kg = 30.0", 'mass_kg = "heavy"', "node 1, mass_kg: 'heavy' is not made of numbers"),
-    "true is no number": ("mass_kg = 30.0", "mass_kg = true", "node 1, mass_kg: 'True' is not made of numbers"),
+    "not a number": ("mass_kg = 30.0", 'mass_kg = "heavy"', "node 1, mass_kg: found 'heavy', must be numbers"),
+    "true is no number": ("mass_kg = 30.0", "mass_kg = true", "node 1, mass_kg: found 'True', must be numbers"),
     "NaN": ("mass_kg = 30.0", "mass_kg = nan", "node_mass[0]: nan; every number must be finite"),
     "two numbers": (
         "position_m = [0.0, -0.5, 0.4]",
         "position_m = [0.0, -0.5]",
-        "node 2, position_m: shape (3,), the first",
+        "node 2, position_m: shape (3,), must be (2,)",
     ),
     "edge": (
         '["corner_0", "corner_1"]',
         '["corner_0", "nose"]',
-        "edges: ['corner_0', 'nose'] is no pair of node names",
+        "edges: ['corner_0', 'nose'] is not a pair of node names",
     ),
     "format": ("modal superelement 2", "modal superelement 7", "format is 'modal superelement 7'"),
     "node renamed, edges not": ('"corner_7"\n', '"corner_6"\n', "edges: "),
@@ -76,7 +76,7 @@ def test_shape_row_missing_is_refused(path):
     lines = path.read_text().splitlines()
     first = lines.index("shape_per_sqrt_kg = [")
     path.write_text("\n".join(lines[: first + 1] + lines[first + 2 :]))
-    with pytest.raises(DataError, match="mode 1, shape_per_sqrt_kg: 7 rows; 8 nodes need 8 rows of three numbers"):
+    with pytest.raises(DataError, match="mode 1, shape_per_sqrt_kg: 7 rows, must be 8 rows of three numbers"):
         read_superelement(path)
 
 

@@ -1,4 +1,4 @@
-"""Mirror images: which node faces which, and the parity of shapes made for the purpose."""
+"""Mirror symmetry: opposite nodes, and the parity of synthetic shapes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The shipped trimmed body: what is published of it, what was wished for, and how the file came about."""
+"""Shipped body: published properties, assumed properties, and reproduction of its file."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
-from vehicle.model.flexbody.fit import TORSION_HZ, fit_factors, residuals
-from vehicle.model.flexbody.inertia import about_cog, inertia_tensor, second_moments
-from vehicle.model.flexbody.library import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.body_model import BODY_DESIGN, TRIMMED_BODY
+from vehicle.model.flexbody.frame_modes import rigid_shapes
+from vehicle.model.flexbody.inertia_tensor import about_cog, inertia_tensor, second_moments
 from vehicle.model.flexbody.mode_names import global_patterns, modal_assurance
-from vehicle.model.flexbody.modes import rigid_shapes
 from vehicle.model.flexbody.node_masses import NodeProperties, matched_masses
+from vehicle.model.flexbody.section_fit import TORSION_HZ, fit_factors, residuals
 from vehicle.model.flexbody.superelement_file import read_superelement
 from vehicle.model.flexbody.symmetry import mirror_nodes, parity
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -70,7 +70,7 @@ def test_published_counts_frequencies_and_mass_properties(body):
 
 
 def test_modes_are_orthogonal_to_rigid_motion_with_their_own_masses(body):
-    rigid = rigid_shapes(body.positions, np.zeros(3))  # any centre will do
+    rigid = rigid_shapes(body.positions, np.zeros(3))  # the choice of the centre has no effect
     content = np.einsum("ank,bnk,n->ab", rigid, body.shapes, body.node_mass)
     np.testing.assert_allclose(content, 0.0, atol=1e-9)  # round-off of sums of 129 terms of up to 10 kg^1/2 m
 
@@ -101,10 +101,10 @@ def test_the_body_is_nearly_the_same_on_both_sides(body):
             assert body.node_mass[i] == pytest.approx(body.node_mass[j], rel=0.03), name
         if name not in body.residual:
             continue
-        for mode, (one, other) in enumerate(np.linalg.norm(body.shapes[:, [i, j]], axis=2)):
-            if max(one, other) > 0.018:  # where it moves: half of the mean motion 813^-1/2
+        for mode, (motion, mirrored) in enumerate(np.linalg.norm(body.shapes[:, [i, j]], axis=2)):
+            if max(motion, mirrored) > 0.018:  # where it moves: half of the mean motion 813^-1/2
                 allowed = 0.25 if "mount" in name else 0.15  # the engine mounts are 82 mm from mirrored
-                assert one == pytest.approx(other, rel=allowed), f"{name}, mode {mode + 1}"
+                assert motion == pytest.approx(mirrored, rel=allowed), f"{name}, mode {mode + 1}"
     right, left = (np.abs(body.shape_at(f"strut_top_{wheel}")[2]) for wheel in ("fr", "fl"))
     # These couple with the wheels; 3e-4 is a hundredth of the mean motion 813^-1/2 and couples with nothing.
     np.testing.assert_allclose(right, left, rtol=0.05, atol=3e-4)
@@ -135,9 +135,11 @@ def test_the_seat_rail_is_near_node_lines_and_the_masses_are_a_cars(body, design
 
 
 def test_nodes_are_symmetric_where_the_car_is_and_masses_positive(body):
-    places = {tuple(np.round(p, 9)) for p in body.positions}
+    positions = {tuple(np.round(p, 9)) for p in body.positions}
     lone = [
-        n for n, p in zip(body.nodes, body.positions, strict=True) if tuple(np.round(p * [1, -1, 1], 9)) not in places
+        n
+        for n, p in zip(body.nodes, body.positions, strict=True)
+        if tuple(np.round(p * [1, -1, 1], 9)) not in positions
     ]
     assert sorted(lone) == ["hydromount", "linear_mount", "seat"]
     assert body.node_mass.min() > 0.1
@@ -147,11 +149,11 @@ def test_nodes_are_symmetric_where_the_car_is_and_masses_positive(body):
 def test_the_stored_factors_are_the_minimum_of_the_fit(frame):
     stored = frame.design.factors
     start = {group: factor * (1.1 if group in frame.design.fitted_groups else 1.0) for group, factor in stored.items()}
-    found = fit_factors(frame, start, weights=(30.0,))
-    best = np.sum(residuals(frame, found, 30.0) ** 2)
-    # the objective has kinks, so a new search may end a little beside the stored one, but not clearly lower
+    fitted = fit_factors(frame, start, weights=(30.0,))
+    best = np.sum(residuals(frame, fitted, 30.0) ** 2)
+    # the objective has kinks, so a new search may end slightly off the stored factors, but not clearly lower
     assert np.sum(residuals(frame, stored, 30.0) ** 2) < best + 1.0
-    np.testing.assert_allclose(frame.modes(found, 9)[0], frame.modes(stored, 9)[0], atol=0.3)
+    np.testing.assert_allclose(frame.modes(fitted, 9)[0], frame.modes(stored, 9)[0], atol=0.3)
 
 
 def test_a_fit_that_misses_says_so(frame):
@@ -172,9 +174,9 @@ def test_masses_near_the_guess_or_a_refusal(frame):
     cog = guess @ points / guess.sum()
     arm = points - cog
     moments = (arm.T * guess) @ arm
-    own = np.trace(moments) * np.eye(3) - moments
-    same = matched_masses(guess, freedom, points, mass=guess.sum(), cog=cog, inertia_about_cog=own)
-    np.testing.assert_allclose(same, guess, rtol=1e-9)  # what fits already is not changed, but for round-off
+    inertia = np.trace(moments) * np.eye(3) - moments
+    same = matched_masses(guess, freedom, points, mass=guess.sum(), cog=cog, inertia_about_cog=inertia)
+    np.testing.assert_allclose(same, guess, rtol=1e-9)  # an estimate that already fits changes by round-off only
     published = inertia_tensor(ixx=1000.0, iyy=5268.0, izz=4600.0, ixy=82.03, izx=1800.0, iyz=-50.04)
     cog = np.array([2.157, 0.0, 1.011])
     with pytest.raises(ConfigurationError, match="no positive masses at the 43 nodes have mass 813 kg"):
@@ -188,11 +190,11 @@ def test_masses_near_the_guess_or_a_refusal(frame):
     + [({"cog": (2.157, 0.01, 1.011)}, True)],
 )
 def test_masses_are_found_where_a_linear_program_finds_any(frame, change, possible):
-    """The program knows neither guess nor Newton's method: any m >= 0 with A m = b."""
+    """Second derivation by a linear program, without estimate and Newton's method: any m >= 0 with A m = b."""
     mass, cog, points = change.get("mass", 813.0), change.get("cog", (2.157, 0.0, 1.011)), frame.skeleton.positions
-    own = {"ixx": change.get("ixx", 1200.0), "iyy": 5268.0, "izz": 4600.0, "izx": 1800.0}
+    inertia = {"ixx": change.get("ixx", 1200.0), "iyy": 5268.0, "izz": 4600.0, "izx": 1800.0}
     arm = points - cog
-    tensor = about_cog(inertia_tensor(**own, ixy=0.0, iyz=0.0), mass, cog)
+    tensor = about_cog(inertia_tensor(**inertia, ixy=0.0, iyz=0.0), mass, cog)
     tensor[1, [0, 2]] = tensor[[0, 2], 1] = 0.0
     body = NodeProperties(mass, cog, tensor[0, 0], tensor[1, 1], tensor[2, 2], -tensor[2, 0])
     moments = second_moments(tensor)

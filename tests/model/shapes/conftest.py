@@ -1,4 +1,4 @@
-"""Hardpoints for the shapes' tests: a front end like the shipped car's, typed here because the room reads no files."""
+"""Hardpoints for the tests of the shapes: a front end similar to the shipped car, without reading its file."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ CENTRE = {
 
 @pytest.fixture
 def points() -> dict[str, np.ndarray]:
-    """Hardpoints [m] of both sides."""
+    """Return the hardpoints of both sides [m], by name."""
     result = {name: np.array(value) for name, value in CENTRE.items()}
     for name, value in SIDE.items():
         result[f"{name}_fr"] = np.array(value)

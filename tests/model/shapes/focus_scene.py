@@ -1,4 +1,4 @@
-"""The scene of a MacPherson car on plates and blocks from its points alone, as the composed car hands it over."""
+"""Scene of a MacPherson car on plates and blocks, built from its points like that of a composed car."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ CORNER = {
 
 
 def car_shapes(points: Mapping[str, np.ndarray]) -> dict[str, Shape]:
-    """Every visible shape; points of a corner end in its wheel."""
+    """Return all visible shapes; the names of corner points end with the wheel name."""
     corners = {w: {n[:-3]: points[n] for n in points if n.endswith(f"_{w}")} for w in ("fr", "fl")}
     parts = [Part(name=name, role=name, points=points) for name in ("engine", "torque_arm")]
     parts += [

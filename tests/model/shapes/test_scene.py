@@ -1,4 +1,4 @@
-"""The complete scene: closed, finite, mirrored, and on its hardpoints."""
+"""Complete scene: closed, finite, mirrored, and at its hardpoints."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def shapes(points: dict[str, np.ndarray]) -> dict[str, Shape]:
 
 
 def volumes(mesh: trimesh.Trimesh) -> np.ndarray:
-    """Volume of each connected piece."""
+    """Return the volume of each connected component [m3]."""
     faces, triangles = np.asarray(mesh.faces), np.asarray(mesh.triangles)
     edges = np.vstack([faces[:, :2], faces[:, 1:]])
     graph = coo_matrix((np.ones(len(edges)), edges.T), shape=(len(mesh.vertices),) * 2)
@@ -48,7 +48,7 @@ def volumes(mesh: trimesh.Trimesh) -> np.ndarray:
 
 
 def gap(mesh: trimesh.Trimesh, point: np.ndarray) -> float:
-    """Smallest distance of a point from the corners and middles of the triangles [m]."""
+    """Return the minimum distance of a point from corners and centres of the triangles [m]."""
     spots = np.vstack([mesh.vertices, mesh.triangles_center])
     return float(np.linalg.norm(spots - point, axis=1).min())
 
@@ -108,7 +108,7 @@ def test_the_left_side_mirrors_the_right(shapes: dict[str, Shape]) -> None:
 @pytest.mark.parametrize(
     ("shape", "point", "tolerance"),
     [
-        # a joint drawn as a ball, an eye or a socket: its surface lies this far round the hardpoint at most
+        # maximum distance of the surface of a ball, eye or socket joint from its hardpoint
         ("a_arm", "lower_ball", 0.027),
         ("a_arm", "arm_front", 0.028),
         ("a_arm", "arm_rear", 0.037),
@@ -191,10 +191,10 @@ def test_the_body_follows_wheels_roof_and_rear_axle(points: dict[str, np.ndarray
 
 def test_wheels_do_not_touch_the_arches(shapes: dict[str, Shape], points: dict[str, np.ndarray]) -> None:
     centre, tyre = points["wheel_center_fr"], shapes["tyre_fr"].mesh
-    reach = np.hypot(*(tyre.vertices - centre)[:, [0, 2]].T).max()
+    tyre_radius = np.hypot(*(tyre.vertices - centre)[:, [0, 2]].T).max()
     shell = shapes["body_shell"].mesh
     near = shell.vertices[(shell.vertices[:, 1] > 0.6) & (np.abs(shell.vertices[:, 0] - centre[0]) < 0.5)]
-    clearance = np.hypot(*(near - centre)[:, [0, 2]].T).min() - reach
+    clearance = np.hypot(*(near - centre)[:, [0, 2]].T).min() - tyre_radius
     # 36 mm in the drawing; facets of the free tyre and of the arch take their share
     assert 0.030 < clearance < 0.040
 
@@ -224,8 +224,8 @@ def test_the_same_points_give_the_same_bytes(points: dict[str, np.ndarray]) -> N
 @pytest.mark.parametrize(("role", "count"), [("anti_roll_link", 1), ("anti_roll_link", 2), ("lower_arm", 4)])
 def test_a_part_without_a_role_or_a_point_of_it_is_rods_between_its_points(role: str, count: int) -> None:
     generator = np.random.default_rng(count)
-    places = {f"point_{number}": generator.uniform(0.3, 1.0, 3) for number in range(count)}
-    part = Part(name="link", role=role, points=places, suffix="_rl", carrier="rear_subframe", left=True)
+    points = {f"point_{number}": generator.uniform(0.3, 1.0, 3) for number in range(count)}
+    part = Part(name="link", role=role, points=points, suffix="_rl", carrier="rear_subframe", left=True)
     shapes = part_shapes([part])
     assert list(shapes) == ["link_rl"]
     assert shapes["link_rl"].part == "link_rl"
@@ -233,14 +233,14 @@ def test_a_part_without_a_role_or_a_point_of_it_is_rods_between_its_points(role:
     assert mesh.is_watertight
     assert (volumes(mesh) > 0).all()
     assert len(volumes(mesh)) == {1: 1, 2: 3, 4: 8}[count]  # a ball at each point, and the rods
-    assert all(gap(mesh, place) < 0.016 for place in places.values())
+    assert all(gap(mesh, point) < 0.016 for point in points.values())
 
 
 def test_parts_of_one_role_on_one_corner_keep_apart_and_their_bolts_go_with_the_carrier(
     points: dict[str, np.ndarray],
 ) -> None:
     arm = {name: points[f"{name}_fr"] for name in ("lower_ball", "arm_front", "arm_rear")}
-    above = {name: place + np.array([0, 0, 0.3]) for name, place in arm.items()}
+    above = {name: position + np.array([0, 0, 0.3]) for name, position in arm.items()}
     parts = [
         Part(name=name, role="lower_arm", points=where, suffix="_rr", carrier="rear_subframe")
         for name, where in (("lower_wishbone", arm), ("upper_wishbone", above))
@@ -256,9 +256,11 @@ def test_parts_of_one_role_on_one_corner_keep_apart_and_their_bolts_go_with_the_
 
 def test_a_role_finds_its_points_around_the_part(points: dict[str, np.ndarray]) -> None:
     corner = {name.removesuffix("_fl"): points[name] for name in points if name.endswith("_fl")}
-    own = {name: corner[name] for name in ("lower_ball", "damper_bottom", "wheel_center")}
+    knuckle_points = {name: corner[name] for name in ("lower_ball", "damper_bottom", "wheel_center")}
     drawn, rods = (
-        part_shapes([Part(name="knuckle", role="knuckle", points=own, around=around, suffix="_fl", left=True)])
+        part_shapes(
+            [Part(name="knuckle", role="knuckle", points=knuckle_points, around=around, suffix="_fl", left=True)]
+        )
         for around in (corner, {})
     )
     whole = car_shapes(points)["knuckle_fl"].mesh

@@ -10,7 +10,7 @@ from vehicle.model.shapes.surface import helix
 
 
 def polygon_share(sections: int) -> float:
-    """Area of a regular polygon over that of its circle: a turned body loses exactly this much volume."""
+    """Return the area of a regular polygon over that of its circle, the volume ratio of a body of revolution."""
     angle = 2 * np.pi / sections
     return float(np.sin(angle) / angle)
 
@@ -65,8 +65,8 @@ def test_a_bevel_takes_the_volume_of_two_turned_triangles() -> None:
 def test_a_slab_has_area_times_thickness_whatever_its_edges_direction() -> None:
     a = np.column_stack([np.linspace(0, 2, 5), np.zeros(5), np.zeros(5)])
     b, half = a + np.array([0, 0.5, 0]), np.array([0, 0, 0.05])
-    for one, two in ((a, b), (b, a)):
-        slab = swept(np.stack([one + half, two + half, two - half, one - half], axis=1))
+    for first, second in ((a, b), (b, a)):
+        slab = swept(np.stack([first + half, second + half, second - half, first - half], axis=1))
         assert slab.is_watertight
         assert slab.volume == pytest.approx(2 * 0.5 * 0.1, rel=1e-12)
 
@@ -87,12 +87,12 @@ def test_a_bevelled_box_loses_its_edges_and_corners() -> None:
 
 
 def length(points: np.ndarray) -> float:
-    """Length of a polyline [m]."""
+    """Return the length of a polyline [m]."""
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
 def polygon_area(radius: float, sides: int) -> float:
-    """Area of a regular polygon [m2]."""
+    """Return the area of a regular polygon [m2]."""
     return float(sides / 2 * np.sin(2 * np.pi / sides) * radius**2)
 
 
@@ -126,7 +126,7 @@ def test_normals_of_a_bent_tube_point_away_from_its_path() -> None:
     assert mesh.volume > 0
     nearest = path[np.argmin(np.linalg.norm(mesh.triangles_center[:, None] - path[None], axis=2), axis=1)]
     away = np.einsum("ij,ij->i", mesh.face_normals, mesh.triangles_center - nearest)
-    assert (away > -1e-12).all()  # the flat ends contain their point of the path: zero but for rounding
+    assert (away > -1e-12).all()  # the flat ends contain their point of the path: zero except for round-off
     assert (away > 0.04).sum() == 2 * 10 * 29
 
 

@@ -36,7 +36,7 @@ def test_doubling_the_acceleration_doubles_the_comfort_value():
 
 
 def test_comfort_needs_three_axes():
-    with pytest.raises(DataError, match="acceleration: found 2 signals, needed are the three axes x, y, z"):
+    with pytest.raises(DataError, match="acceleration: found 2 signals, must be the three axes x, y, z"):
         comfort_value(STEP, np.ones((2, 1000)))
 
 
@@ -50,7 +50,7 @@ def test_standard_error_of_white_noise_is_the_bandwidth_time_formula():
     )  # fmt: skip
 
 
-def test_standard_error_of_coloured_noise_is_the_scatter_seen():
+def test_standard_error_of_coloured_noise_equals_the_observed_scatter():
     # second derivation: Monte Carlo, 400 records; the standard deviation of 400 values is known within 3.5 %
     records = coloured(np.random.default_rng(3), 400, 4000)
     rms = np.array([comfort_value(STEP, np.tile(record, (3, 1))).x for record in records])
@@ -83,7 +83,7 @@ def test_a_stationary_record_is_settled_although_its_halves_differ():
     assert np.mean([one.settled for one in found]) > 0.95
 
 
-def test_a_sine_is_settled_and_a_growing_one_is_not():
+def test_a_sine_is_settled_and_a_growing_sine_is_not():
     sine = np.sin(2 * np.pi * 10 * TIME)
     steady, silent = settling(STEP, [sine, 0 * sine])
     assert abs(steady.drift) < 1e-9
@@ -97,5 +97,5 @@ def test_a_sine_is_settled_and_a_growing_one_is_not():
 
 
 def test_settling_needs_two_halves():
-    with pytest.raises(DataError, match="found 3 samples, two halves of at least 2 are needed"):
+    with pytest.raises(DataError, match="found 3 samples, must be at least 4"):
         settling(STEP, [1.0, 2.0, 3.0])

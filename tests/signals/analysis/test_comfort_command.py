@@ -39,7 +39,7 @@ def test_json_holds_the_measures_of_each_axis(ride, capsys):
         f"notice: {a}: MTVV and crest factor leave out the first"[:50] for a in "xyz"
     ]
     assert said[3:] == [
-        "notice: msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, asks for 240 s: a rough estimate"
+        "notice: msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, requires 240 s: a rough estimate"
     ]
     for axis, name in zip("xyz", ("Wd", "Wd", "Wk"), strict=True):
         assert found[axis]["weighting"] == name
@@ -68,7 +68,7 @@ def test_channels_that_were_copied_and_a_clipped_sensor_are_named(ride, tmp_path
     assert found["crest_factor"] == pytest.approx(peak / found["weighted_rms"], rel=1e-6)
 
 
-def test_the_table_shows_the_same(ride, capsys):
+def test_the_table_shows_the_values_of_json(ride, capsys):
     assert main(["--input", ride(), "--mtvv", "exponential"]) == 0
     out, _ = capsys.readouterr()
     assert "weighting                 Wd          Wd          Wk" in out
@@ -79,7 +79,7 @@ def test_the_table_shows_the_same(ride, capsys):
     assert [float(x), float(y)] == pytest.approx([0.1 * dose, 0.2 * dose], rel=3e-3)
 
 
-def test_the_running_average_is_the_one_asked_for(ride, capsys):
+def test_the_running_average_follows_its_option(ride, capsys):
     path = ride()
     found = {}
     for average in ("linear", "exponential"):
@@ -92,7 +92,7 @@ def test_the_running_average_is_the_one_asked_for(ride, capsys):
     assert found["exponential"]["z"]["mtvv"] != found["linear"]["z"]["mtvv"]
 
 
-def test_gravity_is_refused_until_its_treatment_is_said(ride, capsys):
+def test_gravity_is_rejected_without_the_offset_option(ride, capsys):
     path = ride(offset=9.81)
     assert main(["--input", path, "--json"]) == 3
     out, err = capsys.readouterr()
@@ -113,7 +113,7 @@ def test_gravity_is_refused_until_its_treatment_is_said(ride, capsys):
     assert json.loads(capsys.readouterr().out)["z"]["vdv"] > 3.0
 
 
-def test_another_place_is_evaluated_by_its_rules(ride, capsys):
+def test_another_point_of_contact_has_its_weightings(ride, capsys):
     assert main(["--input", ride(), "--json", "--place", "seat_bs6841"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert (found["z"]["weighting"], found["standard"]) == ("Wb", "BS 6841:1987")
@@ -140,7 +140,7 @@ def test_bad_data_exits_3_and_a_bad_path_2(tmp_path, capsys):
     assert main(["--input", str(tmp_path / "nix.csv")]) == 2
     assert capsys.readouterr() == ("", f"error: {tmp_path / 'nix.csv'}: no such file; give the path of a CSV file\n")
     assert main(["--input", str(path), "--place", "sofa"]) == 2
-    assert "point of contact: found 'sofa', allowed are seat" in capsys.readouterr().err
+    assert "point of contact: found 'sofa', must be one of seat" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("arguments", [[], ["--input"], ["--input", "a.csv", "--offset", "maybe"], ["--inp", "a.csv"]])
@@ -177,11 +177,11 @@ def test_the_module_runs_as_a_command_and_a_closed_pipe_is_quiet(ride):
 
 
 @pytest.mark.parametrize("skip", ["-5", "nan", "60"])
-def test_a_skip_that_is_no_part_of_the_record_is_refused(ride, capsys, skip):
+def test_a_skip_outside_the_record_is_rejected(ride, capsys, skip):
     assert main(["--input", ride(), "--skip", skip]) == 2
     assert capsys.readouterr() == (
         "",
-        f"error: skip: found {skip} s, allowed is 0 s to less than the record, 60 s\n",
+        f"error: skip: found {skip} s, must be at least 0 s and shorter than the record, 60 s\n",
     )
 
 

@@ -33,7 +33,7 @@ def test_a_scaled_curve_loses_magnitude_and_slope():
 
 
 @pytest.mark.parametrize("late", [13, -13, 0])
-def test_a_shifted_curve_loses_phase_alone(late):
+def test_a_shifted_curve_loses_only_phase(late):
     long = np.sin(2.0 * np.pi * 8.0 * np.arange(-60, 460) * 1e-3) * np.exp(-((np.arange(-60, 460) - 200.0) ** 2) / 8e3)
     truth, curve = long[60:460], long[60 - late : 460 - late]
     found = rate_curve(truth, curve)
@@ -42,7 +42,7 @@ def test_a_shifted_curve_loses_phase_alone(late):
     assert found.magnitude == pytest.approx(1.0) and found.slope == pytest.approx(1.0)
 
 
-def test_of_equal_shifts_the_smallest_is_taken():
+def test_among_equal_shifts_the_smallest_is_used():
     wave = np.sin(2.0 * np.pi * np.arange(400) / 40.0)
     assert best_shift(wave, wave) == 0 and best_shift(wave, np.roll(wave, 10)) == 10
 
@@ -74,7 +74,7 @@ def slow_magnitude(curve, truth):
     return max(0.0, 1.0 - away / size / 0.5)
 
 
-def test_the_warping_is_that_of_the_double_loop():
+def test_warping_equals_a_double_loop():
     noise = np.random.default_rng(5).standard_normal((2, 90))
     truth = np.sin(np.arange(90) / 5.0) + 0.1 * noise[0]
     curve = 1.1 * np.sin(np.arange(90) / 4.8) + 0.1 * noise[1]
@@ -85,7 +85,7 @@ def test_the_warping_is_that_of_the_double_loop():
     assert found.magnitude == pytest.approx(slow_magnitude(second, first), rel=1e-12)
 
 
-def test_numbers_of_a_public_implementation():
+def test_ratings_equal_a_public_implementation():
     """objective-rating-metrics 1.3 (PyPI) on this pair, six digits."""
     truth = np.sin(2.0 * np.pi * 7.0 * TIME) * np.exp(-4.0 * TIME)
     curve = 0.9 * np.sin(2.0 * np.pi * 7.4 * TIME + 0.3) * np.exp(-4.5 * TIME) + 0.02

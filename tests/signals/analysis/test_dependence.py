@@ -42,7 +42,7 @@ def test_delayed_copies_are_refused_with_delay_and_factor(delay, factor):
         common_motions(1.0 / RATE, inputs, NAMES, BAND)
 
 
-def test_copies_without_delay_have_a_common_motions():
+def test_copies_without_delay_have_a_common_motion():
     one = displacement(1)
     for other, words in ((one, "alike"), (-one + 0.3, "together, one -1 times the other")):
         assert [motion_words(group) for group in common_motions(1.0 / RATE, np.array([one, other]), NAMES, BAND)] == [
@@ -50,7 +50,7 @@ def test_copies_without_delay_have_a_common_motions():
         ]
 
 
-def test_four_plates_fall_into_their_groups():
+def test_four_plates_are_grouped_by_motion():
     """Front plates in roll, the rear ones of their own: three inputs; all four in pitch: one."""
     one, other, third = (displacement(seed) for seed in (1, 2, 3))
     names = ("fr", "fl", "rr", "rl")
@@ -70,7 +70,7 @@ def test_a_filtered_copy_is_refused_without_a_factor():
 
 
 @pytest.mark.parametrize("related", [0.0, 0.7, 0.9])
-def test_related_inputs_are_no_copies(related):
+def test_correlated_inputs_are_not_copies(related):
     one, other = displacement(1), displacement(2)
     inputs = np.array([one, np.sqrt(related) * one + np.sqrt(1.0 - related) * other])
     assert len(common_motions(1.0 / RATE, inputs, NAMES, BAND)) == 2

@@ -43,7 +43,7 @@ def test_the_seat_is_weighted_wd_wd_wk():
     assert found["reasons"][2].startswith(
         "z: MTVV and crest factor leave out the first 3.5 s, in which Wk settles; with"
     )
-    assert found["reasons"][3].startswith("msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, asks for 240 s")
+    assert found["reasons"][3].startswith("msdv: 60 s hold 6.0 periods of 0.1 Hz; ISO 2631-1, D.1, requires 240 s")
     assert len(found["reasons"]) == 4
     # of a record that starts at rest the switching-on is real: 1.5 instead of 1.414
     rest = evaluate(STEP, [sine(1.0, 0.5), sine(4.0, 0.7), sine(8.0)], from_rest=True)
@@ -61,19 +61,19 @@ def test_motion_sickness_uses_wf():
 
 
 def test_the_backrest_has_its_own_weightings_and_factors():
-    found = evaluate(STEP, [sine(8.0), sine(2.0), sine(2.0)], place="backrest")
+    found = evaluate(STEP, [sine(8.0), sine(2.0), sine(2.0)], contact="backrest")
     assert [found[axis]["weighting"] for axis in "xyz"] == ["Wc", "Wd", "Wd"]
     rms = [found[axis]["weighted_rms"] for axis in "xyz"]
     assert rms[0] == pytest.approx(weighting("Wc").spectrum_factor(8.0) / np.sqrt(2), rel=5e-3)
     assert found["vector_sum"]["weighted_rms"] == pytest.approx(np.linalg.norm(np.multiply(rms, [0.8, 0.5, 0.4])))
     assert found["vector_sum"]["health_weighted_rms"] is None
-    assert found["reasons"][-1] == "vector_sum.health_weighted_rms: the standard gives no health factors for backrest"
+    assert found["reasons"][-1] == "vector_sum.health_weighted_rms: the standard has no health factors for backrest"
 
 
-def test_every_place_evaluates_and_writes_json():
+def test_every_point_of_contact_evaluates_and_writes_json():
     xyz = np.random.default_rng(0).standard_normal((3, 4000))
     for place in APPLICATIONS:
-        found = evaluate(STEP, xyz, place=place, average="exponential")
+        found = evaluate(STEP, xyz, contact=place, average="exponential")
         assert json.loads(json.dumps(found, allow_nan=False)) == found
         assert [found[axis]["weighting"] for axis in "xyz"] == list(APPLICATIONS[place].weightings)
 
@@ -95,18 +95,18 @@ def test_doubling_the_acceleration_doubles_every_value_but_the_ratios():
         assert twice[key] == pytest.approx(once[key], rel=1e-12)
 
 
-def test_bad_records_and_places_are_refused():
-    with pytest.raises(DataError, match="found 2 signals, needed are the axes x, y, z"):
+def test_bad_records_and_points_of_contact_are_rejected():
+    with pytest.raises(DataError, match="found 2 signals, must be the axes x, y, z"):
         evaluate(STEP, np.ones((2, 100)))
     with pytest.raises(DataError, match="all three axes are zero throughout"):
         evaluate(STEP, np.zeros((3, 100)))
-    with pytest.raises(DataError, match="sampling rate: found 20 Hz, weighting Wd needs at least 25 Hz"):
+    with pytest.raises(DataError, match="sampling rate: found 20 Hz, must be at least 25 Hz for Wd"):
         evaluate(0.05, np.ones((3, 100)))
-    with pytest.raises(ConfigurationError, match="point of contact: found 'sofa', allowed are seat, backrest"):
+    with pytest.raises(ConfigurationError, match="point of contact: found 'sofa', must be one of seat, backrest"):
         application("sofa")
 
 
-def test_an_offset_shows_as_the_step_it_is():
+def test_an_offset_acts_as_a_step():
     xyz = np.stack([sine(8.0, 0.1), sine(8.0) + 9.81, 0.0 * TIME])
     effect = offset_effect(STEP, xyz)
     assert effect[0] < 1e-5  # the line through a sine of 480 periods rises by 4 mm/s2
@@ -125,7 +125,7 @@ def test_an_offset_shows_as_the_step_it_is():
     assert offset_effect(STEP, without_offset(xyz)) == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
 
 
-def test_a_pure_offset_has_an_infinite_effect_and_nothing_is_left_of_it():
+def test_a_pure_offset_has_an_infinite_effect_and_is_removed_exactly():
     xyz = np.stack([sine(8.0), sine(8.0), np.full(TIME.size, 9.81)])
     assert offset_effect(STEP, xyz)[2] == np.inf
     assert not without_offset(xyz)[2].any()
@@ -142,7 +142,7 @@ def ride(duration, frequency=4.0):
 
 @pytest.mark.parametrize("duration", [60.0, 600.0])
 @pytest.mark.parametrize("bias", [9.81, np.linspace(-1.0, 1.0)], ids=["gravity", "drift"])
-def test_maxima_and_sickness_dose_do_not_see_a_mean_or_a_drift(duration, bias):
+def test_maxima_and_sickness_dose_are_independent_of_mean_and_drift(duration, bias):
     clean = ride(duration, 0.2) + ride(duration)
     bias = np.interp(np.linspace(0, 1, clean.shape[1]), np.linspace(0, 1, np.size(bias)), np.atleast_1d(bias))
     with_bias = evaluate(SLOW_STEP, clean + bias)
@@ -169,7 +169,7 @@ def test_the_offset_of_a_long_record_shows_in_its_dose():
     assert offset_line(without_offset(xyz)) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize(("duration", "said"), [(20.0, "at least 43.2 s are needed"), (50.0, "D.1, asks for 240 s")])
+@pytest.mark.parametrize(("duration", "said"), [(20.0, "at least 43.2 s are needed"), (50.0, "D.1, requires 240 s")])
 def test_a_record_must_hold_the_lowest_frequency_of_its_weighting(duration, said):
     found = evaluate(SLOW_STEP, ride(duration))
     assert (found["z"]["msdv"] is None) == (duration == 20.0)
@@ -178,12 +178,12 @@ def test_a_record_must_hold_the_lowest_frequency_of_its_weighting(duration, said
     short = evaluate(SLOW_STEP, ride(5.0))["reasons"]
     assert any(r.startswith("z: 5 s hold 2.5 periods of 0.5 Hz, where Wk begins; 8.64 s are needed") for r in short)
     assert not any("msdv" in reason for reason in evaluate(SLOW_STEP, ride(240.0))["reasons"])
-    with pytest.raises(DataError, match=r"found 3 s, but weighting Wd settles in 3\.5 s; give a longer record"):
+    with pytest.raises(DataError, match=r"found 3 s, but weighting Wd settles in 3\.5 s; use a longer record"):
         evaluate(SLOW_STEP, ride(3.0))
     assert evaluate(SLOW_STEP, ride(3.0), from_rest=True)["z"]["weighted_rms"] > 0.0
 
 
-def test_what_is_skipped_does_not_count():
+def test_the_skipped_time_is_not_evaluated():
     xyz = ride(60.0)
     xyz[:, :1000] *= 10.0
     found = evaluate(SLOW_STEP, xyz, skip=10.0)
@@ -192,6 +192,6 @@ def test_what_is_skipped_does_not_count():
     assert found["z"]["weighted_rms"] == pytest.approx(weighting("Wk").spectrum_factor(4.0) / np.sqrt(2), rel=1e-3)
     for skip in (-5.0, np.nan, np.inf, 60.0):
         with pytest.raises(
-            ConfigurationError, match=r"^skip: found .* s, allowed is 0 s to less than the record, 60 s$"
+            ConfigurationError, match=r"^skip: found .* s, must be at least 0 s and shorter than the record, 60 s$"
         ):
             evaluate(SLOW_STEP, xyz, skip=skip)

@@ -143,9 +143,9 @@ def test_vector_sums():
 def test_bad_arguments_are_refused():
     with pytest.raises(DataError, match="found nan at sample 0"):
         weighted_rms([np.nan, 1.0])
-    with pytest.raises(DataError, match=r"needed is one axis, shape \(n,\)"):
+    with pytest.raises(DataError, match=r"must be one axis, shape \(n,\)"):
         weighted_rms(np.ones((2, 10)))
-    with pytest.raises(ConfigurationError, match="running average: found 'fast', allowed are 'linear' and"):
+    with pytest.raises(ConfigurationError, match="running average: found 'fast', must be 'linear' or"):
         mtvv(STEP, SINE, average="fast")  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match="integration_s: found 0 s"):
         mtvv(STEP, SINE, integration_s=0.0)

@@ -52,7 +52,7 @@ def test_an_oscillator_shows_its_analytic_response():
     assert found.coherence.min() > 0.99
 
 
-def test_an_oscillator_integrated_in_time_shows_the_same():
+def test_an_oscillator_integrated_in_time_has_the_analytic_frf():
     # second derivation: not from the transfer function but from the equation of motion, exact between samples
     excitation = stationary_response(noise(200_000, 5), STEP, lambda f: 1.0 / (1.0 + (f / 60.0) ** 8))
     time = np.arange(excitation.size) * STEP
@@ -76,7 +76,7 @@ def leaking_transmissibility(window_s, natural, damping):
     return np.exp(-2j * np.pi * natural * np.arange(length) * STEP) @ (impulse[:length] * correlation)
 
 
-def test_leakage_lowers_a_sharp_peak_as_predicted_and_a_longer_window_mends_it():
+def test_leakage_lowers_a_narrow_peak_as_predicted_and_a_longer_window_corrects_it():
     excitation = noise(400_000, 1)
     response = stationary_response(excitation, STEP, lambda f: transmissibility(f, 20.0, 0.01))
     gammas = []
@@ -143,8 +143,8 @@ def test_a_still_excitation_is_refused():
     with pytest.raises(DataError) as refusal:
         frequency_response(STEP, np.full(30_000, 0.1), noise(30_000))
     assert str(refusal.value) == (
-        "excitation: constant at 0.1 over all 30000 samples, so no frequency response to it exists; give the channel "
-        "that moves"
+        "excitation: constant at 0.1 over all 30000 samples, so there is no frequency response to it; use a "
+        "channel that moves"
     )
 
 
@@ -159,14 +159,14 @@ def test_lines_without_excitation_are_nan_with_a_reason():
     assert found.reasons == ("194 lines between 1 and 50 Hz: not excited, so the FRF is undefined",)
 
 
-def test_too_few_averages_are_refused_and_one_gives_no_coherence():
+def test_too_few_averages_are_rejected_and_a_single_average_has_no_coherence():
     excitation = noise(4000)
     with pytest.raises(DataError, match=r"record too short: 4 s hold 1 effective averages .* at least 20 s"):
         frequency_response(STEP, excitation, excitation)
     found = frequency_response(STEP, excitation, excitation, minimum_averages=1.0)
     assert found.response[0] == pytest.approx(np.ones(197))
     assert np.isnan(found.coherence).all()
-    assert found.reasons == ("coherence: undefined with 1 averages (a single one gives 1 whatever happens)",)
+    assert found.reasons == ("coherence: undefined with 1 averages (a single average always gives 1)",)
 
 
 def test_records_of_different_length_are_refused():

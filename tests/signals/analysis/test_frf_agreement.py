@@ -47,7 +47,7 @@ def test_a_moved_resonance_is_found_by_its_factor(factor):
     assert best >= frac(measured, simulated) and (factor == 1.0 or frac(measured, simulated) < 0.9)
 
 
-def test_errors_of_bands_are_those_that_were_put_in():
+def test_band_errors_equal_the_imposed_errors():
     truth = resonance(10.0)
     other = truth * np.where(LINES < 10.0, 1.1 * np.exp(0.2j), 0.9)
     low, high = band_errors(LINES, truth, other, np.full(LINES.size, 0.5), [(2.0, 10.0), (10.0, 40.0)])

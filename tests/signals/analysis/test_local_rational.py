@@ -79,7 +79,7 @@ def test_doubled_input_doubles_nothing_in_the_ratio():
     np.testing.assert_allclose(twice.response, once.response, rtol=1e-9)  # round-off
 
 
-def test_where_nothing_is_excited_there_is_no_number():
+def test_lines_without_excitation_are_undefined():
     drive, answer = record(60.0)
     spectrum = np.fft.rfft(drive)
     frequency = np.fft.rfftfreq(drive.size, 1.0 / RATE)
@@ -88,14 +88,14 @@ def test_where_nothing_is_excited_there_is_no_number():
     silent = (found.frequency > 10.5) & (found.frequency < 19.5)
     assert silent.sum() > 50 and np.isnan(found.response[0, silent]).all()
     assert np.isnan(found.coherence[0, silent]).all() and np.isnan(found.random_error[0, silent]).all()
-    assert any("10.20 to 19.80 Hz: the input lies below the floor" in text for text in found.reasons), found.reasons
+    assert any("10.20 to 19.80 Hz: the input is below the floor" in text for text in found.reasons), found.reasons
 
 
 def test_refusals_and_warnings():
     drive, answer = record(60.0)
     with pytest.raises(DataError, match="is too short for an FRF up to 50 Hz"):
         local_rational_response(1.0 / RATE, drive[:400], answer[:400])
-    with pytest.raises(DataError, match="excitation: is constant, at 0; an FRF needs an input that moves"):
+    with pytest.raises(DataError, match="excitation: is constant, at 0; an FRF needs a moving input"):
         local_rational_response(1.0 / RATE, np.zeros_like(drive), answer)
     short = local_rational_response(1.0 / RATE, drive[:5000], answer[:5000])
     assert short.resolution_hz == pytest.approx(0.4)
@@ -106,7 +106,7 @@ def test_refusals_and_warnings():
     assert "roof: constant, so its FRF and its coherence are undefined" in still.reasons
 
 
-def test_random_error_and_averages_are_those_that_repetition_shows():
+def test_random_error_and_averages_equal_the_scatter_of_repetitions():
     # One drive, 200 noises: the scatter of |H| is the stated error, and n = (1 - g) / (2 g e^2) averages by H1 give it.
     drive, answer = record(30.0)
     noise = np.random.default_rng(6).normal(size=(200, answer.size)) * 0.3 * np.std(answer)

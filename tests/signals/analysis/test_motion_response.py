@@ -55,7 +55,7 @@ def test_a_front_axle_in_roll_is_one_motion(noise):
     )
 
 
-def test_one_plate_needs_no_words_and_a_late_one_is_refused(noise):
+def test_a_single_plate_has_no_message_and_a_delayed_plate_is_rejected(noise):
     assert what_moves([{"fr": 1.0}]) == ""
     with pytest.raises(DependentInputsError, match="plate rr is 1 times plate fr, delayed by"):
         found(noise | {"rr": np.roll(noise["fr"], 50)})

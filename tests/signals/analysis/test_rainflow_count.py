@@ -24,7 +24,7 @@ def test_the_example_of_the_standard():
     assert found.exceeded().tolist() == [4.0, 3.5, 2.0, 1.5, 0.5]
 
 
-def test_a_sine_on_a_slow_one():
+def test_cycles_of_a_sine_on_a_slow_sine():
     """A fast sine of amplitude a on a slow one of amplitude A: one of 2 (A + a) for each slow cycle."""
     pytest.importorskip("rainflow")
     time = np.arange(0.0, 10.0, 1e-3)
@@ -73,7 +73,7 @@ def test_bad_numbers_are_refused():
         Cycles(ranges=np.ones(1), counts=np.ones(1)).equivalent_amplitude(0.5, 1.0)
 
 
-def test_without_the_package_it_is_named(monkeypatch):
+def test_a_missing_package_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "rainflow", None)
     with pytest.raises(MissingPartError, match="needs rainflow, of the extra 'loads'"):
         count_cycles([0.0, 1.0, 0.0])

@@ -44,7 +44,7 @@ def test_lines_are_sums_over_the_record(in_blocks, first, last):
     np.testing.assert_allclose(blocks.of(record.__getitem__), expected, rtol=0.0, atol=1e-10)
 
 
-def test_estimates_of_a_long_record_are_those_of_any_other(in_blocks):
+def test_estimates_of_a_long_record_equal_those_of_a_whole_transform(in_blocks):
     rng = np.random.default_rng(2)
     drive = np.convolve(rng.normal(size=PRIME + 40), np.hanning(6), mode="same")[:PRIME]
     answers = [
@@ -69,7 +69,7 @@ def test_estimates_of_a_long_record_are_those_of_any_other(in_blocks):
 
 
 @pytest.mark.parametrize(("strength", "looked_at"), [(1e-3, 200), (1e6, PRIME // 2 + 1)])
-def test_the_strongest_line_is_found_beyond_those_asked_for(in_blocks, strength, looked_at):
+def test_the_strongest_line_is_found_beyond_the_requested_lines(in_blocks, strength, looked_at):
     time = np.arange(PRIME) / RATE
     low = np.convolve(np.random.default_rng(3).normal(size=PRIME), np.hanning(90), mode="same")
     record = low + strength * np.sin(2.0 * np.pi * 200.0 * time)

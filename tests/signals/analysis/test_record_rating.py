@@ -52,7 +52,7 @@ def test_a_record_that_is_right_at_low_frequencies_only_is_poor():
     assert found.grade == "poor" and found.overall < 0.5 and found.windows == 12
 
 
-def test_rest_has_no_weight_and_a_motion_that_should_not_be_has():
+def test_rest_has_no_weight_and_a_wrong_motion_has():
     first, _ = made_pair(8.0, 0.0, 0.0)
     event = np.where(np.arange(first.size) < 2000, first, 0.0)
     assert rate_record(event, event, STEP).overall == pytest.approx(1.0)

@@ -9,7 +9,7 @@ from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import checked_rows
 
 
-def test_rows_given_one_by_one_are_taken_without_a_copy():
+def test_a_sequence_of_rows_is_not_copied():
     """A long record stands in memory once."""
     rows = [np.arange(5.0), np.ones(5)]
     found = checked_rows("responses", rows)
@@ -18,7 +18,7 @@ def test_rows_given_one_by_one_are_taken_without_a_copy():
 
 
 @pytest.mark.parametrize("signals", [np.arange(6.0).reshape(2, 3), [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]])
-def test_a_table_is_taken_row_by_row(signals):
+def test_a_table_is_returned_as_rows(signals):
     assert np.array_equal(checked_rows("responses", signals), [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]])
 
 
@@ -32,6 +32,6 @@ def test_a_lost_sample_is_named_with_its_row():
 
 
 @pytest.mark.parametrize("signals", [[], [np.zeros(0)], [np.zeros((2, 3)), np.zeros((2, 3))]])
-def test_what_is_no_row_of_samples_is_refused(signals):
+def test_signals_of_wrong_shape_or_length_are_rejected(signals):
     with pytest.raises(DataError, match="responses"):
         checked_rows("responses", signals)

@@ -33,7 +33,7 @@ def lines(name, *pairs):
 @pytest.mark.parametrize(("place", "name"), [("seat", "Wk"), ("seat_bs6841", "Wb")])
 def test_two_sines_in_closed_form(place, name):
     """After the filters have settled, SEAT^2 = sum (T_i w_i a_i)^2 / sum (w_i a_i)^2."""
-    found = seat_value(STEP, SEAT, RAIL, place=place, skip=10.0)
+    found = seat_value(STEP, SEAT, RAIL, contact=place, skip=10.0)
     expected = lines(name, (2.0, 4.0), (0.5, 10.0)) / lines(name, (1.0, 4.0), (1.0, 10.0))
     assert found.weighting == name
     validated(
@@ -58,14 +58,14 @@ def test_the_axes_of_the_seat_are_weighted_as_the_standard_has_them():
     )  # fmt: skip
 
 
-def test_what_is_no_seat_is_refused():
-    with pytest.raises(ConfigurationError, match="found place 'feet', allowed are seat and seat_bs6841"):
-        seat_value(STEP, SEAT, RAIL, place="feet")
-    with pytest.raises(DataError, match="the rail is at rest"):
+def test_a_point_of_contact_other_than_a_seat_is_rejected():
+    with pytest.raises(ConfigurationError, match="found point of contact 'feet', must be seat or seat_bs6841"):
+        seat_value(STEP, SEAT, RAIL, contact="feet")
+    with pytest.raises(DataError, match="acceleration of the rail is zero"):
         seat_value(STEP, SEAT, 0.0 * RAIL)
 
 
-def test_a_run_says_what_its_seat_does(tmp_path, monkeypatch, capsys):
+def test_a_run_reports_its_seat_value(tmp_path, monkeypatch, capsys):
     """The summary, the page and the command on the file agree; a car without a seat has none, and says so."""
     monkeypatch.chdir(tmp_path)
     road = ["--road", "A", "--speed", "60", "--duration", "4", "--engine", "reduced"]

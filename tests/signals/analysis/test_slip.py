@@ -50,9 +50,9 @@ def test_a_slip_velocity_out_of_range_is_refused(limit):
 def test_bad_records_are_refused():
     with pytest.raises(DataError, match="damper velocity: found nan at sample 1"):
         slip_share([0.0, np.nan], 0.1)
-    with pytest.raises(DataError, match="damper velocity: found 2 signals, needed is one damper at a time"):
+    with pytest.raises(DataError, match="damper velocity: found 2 signals, must be one damper"):
         slip_share(np.ones((2, 5)), 0.1)
     with pytest.raises(DataError, match="time: found 9 samples, the damper velocity has 10"):
         first_slip(TIME[:-1], VELOCITY, 0.1)
-    with pytest.raises(DataError, match="time: found 0 s at sample 1, not after its predecessor"):
+    with pytest.raises(DataError, match="time: found 0 s at sample 1, must increase"):
         first_slip(np.zeros(10), VELOCITY, 0.1)

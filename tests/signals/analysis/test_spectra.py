@@ -41,7 +41,7 @@ def test_welch_density_of_a_sine_holds_its_mean_square():
     )  # fmt: skip
 
 
-def test_band_rms_counts_what_lies_in_the_band_and_nothing_else():
+def test_band_rms_includes_only_lines_in_the_band():
     time = np.arange(10_000) * 1e-3
     low, inside, high = (np.sin(2 * np.pi * f * time) for f in (1.0, 10.0, 80.0))
     signal = 7.0 * low + 2.0 * inside + 4.0 * high + 9.81
@@ -75,7 +75,7 @@ def test_slow_sampling_is_refused_with_the_rate_needed():
     with pytest.raises(DataError) as refusal:
         band_rms(0.01, np.zeros(1000), (2.0, 50.0))
     assert str(refusal.value) == (
-        "sampling rate: found 100 Hz, at least 125 Hz is needed to evaluate up to 50 Hz; sample faster or lower the "
+        "sampling rate: found 100 Hz, must be at least 125 Hz to evaluate up to 50 Hz; sample faster or lower the "
         "band edge to 40 Hz"
     )
 
@@ -87,7 +87,7 @@ def test_an_empty_band_is_refused(band):
 
 
 def test_a_record_without_a_line_in_the_band_is_refused():
-    with pytest.raises(DataError, match=r"record too short: its lines are 10 Hz apart and none lies in 2 to 5 Hz"):
+    with pytest.raises(DataError, match=r"record too short: the line spacing is 10 Hz, without a line in 2 to 5 Hz"):
         band_rms(1e-3, np.ones(100), (2.0, 5.0))
 
 
@@ -100,12 +100,12 @@ def test_a_value_that_is_not_finite_is_located(bad):
 
 
 @pytest.mark.parametrize("step", [0.0, -1e-3, np.nan, np.inf])
-def test_a_time_step_that_is_no_time_step_is_refused(step):
+def test_an_invalid_time_step_is_rejected(step):
     with pytest.raises(ConfigurationError, match="time step: found"):
         periodogram(step, np.ones(10))
 
 
 @pytest.mark.parametrize("signal", [[], np.ones((2, 3, 4)), 1.0])
 def test_a_record_of_the_wrong_shape_is_refused(signal):
-    with pytest.raises(DataError, match=r"needed is \(n,\) or \(k, n\)"):
+    with pytest.raises(DataError, match=r"must be \(n,\) or \(k, n\)"):
         periodogram(1e-3, signal)

@@ -52,7 +52,7 @@ def test_records_that_overlap_in_part():
     assert again.span == pytest.approx(4.0, abs=0.3)
 
 
-def test_one_event_tells_a_shift_and_no_drift():
+def test_a_single_event_identifies_a_shift_but_no_drift():
     time = np.arange(8000) * STEP
     pulse = np.sin(2.0 * np.pi * 6.0 * (time - 3.0)) * np.exp(-(((time - 3.0) / 0.15) ** 2))
     later = np.sin(2.0 * np.pi * 6.0 * (time - 3.2)) * np.exp(-(((time - 3.2) / 0.15) ** 2))
@@ -69,7 +69,7 @@ def test_a_periodic_record_names_its_period():
     assert found.period == pytest.approx(0.5, abs=2.0 * STEP)
 
 
-def test_equal_records_and_those_at_rest():
+def test_equal_records_have_no_shift_and_constant_records_no_result():
     first, _ = made_pair(6.0, 0.0, 0.0)
     found = time_shift(first, first, STEP)
     assert found is not None and found.shift == 0.0 and found.drift == 0.0

@@ -59,7 +59,7 @@ def test_factors_are_those_printed_in_the_standard(name):
     )  # fmt: skip
 
 
-def test_the_left_out_entries_are_where_their_neighbours_say():
+def test_the_omitted_entries_lie_between_their_neighbours():
     # the decibel column of the table prints -13.91 dB for Wd at 10 Hz
     validated(
         "Comfort, ISO 2631", "factor of Wd at 10 Hz", weighting("Wd").spectrum_factor(10.0), 10 ** (-13.91 / 20),
@@ -151,7 +151,7 @@ def bump(time):
 
 @pytest.mark.parametrize("rate", [1000, 500])
 @pytest.mark.parametrize("name", ["Wk", "Wd", "Wj", "Wf", "Wb"])
-def test_a_bump_comes_out_as_the_differential_equation_says_and_not_before_it(name, rate):
+def test_a_weighted_bump_solves_the_differential_equation_and_is_causal(name, rate):
     # second derivation: the filter's differential equation, integrated exactly for a 20 times finer input
     numerator, denominator = polynomials(name)
     fine = np.arange(round(4.0 * 10_000)) / 10_000
@@ -186,7 +186,7 @@ def test_zeros_after_the_record_change_nothing_before():
     assert weighted_record(1e-3, longer, "Wk")[:2000] == pytest.approx(weighted_record(1e-3, record, "Wk"), abs=1e-8)
 
 
-def test_a_constant_dies_away():
+def test_the_response_to_a_constant_decays():
     weighted = weighted_record(1e-3, np.full(20_000, 9.81), "Wk")
     # exp(-1.78 * 10) = 2e-8 of the first peak, and the ringing of the end of the record, 5 s away
     assert np.abs(weighted[10_000:15_000]).max() < 1e-6
@@ -195,16 +195,16 @@ def test_a_constant_dies_away():
 def test_slow_sampling_is_refused():
     with pytest.raises(DataError) as refusal:
         weighted_record(1 / 20, np.ones(1000), "Wk")
-    assert str(refusal.value) == "sampling rate: found 20 Hz, weighting Wk needs at least 25 Hz; sample faster"
+    assert str(refusal.value) == "sampling rate: found 20 Hz, must be at least 25 Hz for Wk; sample faster"
 
 
-def test_an_unknown_weighting_is_refused_with_those_that_exist():
+def test_an_unknown_weighting_is_rejected_with_the_known_names():
     with pytest.raises(ConfigurationError) as refusal:
         weighting("Wx")
-    assert str(refusal.value) == "weighting: found 'Wx', allowed are Wk, Wd, Wf, Wc, We, Wj, Wb"
+    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb"
 
 
-def test_a_frequency_that_is_not_finite_is_refused():
+def test_a_frequency_that_is_not_finite_is_rejected():
     with pytest.raises(ConfigurationError, match="Wk: frequencies must be finite"):
         weighting("Wk").spectrum_factor(np.nan)
 

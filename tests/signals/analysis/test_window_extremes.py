@@ -7,7 +7,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.segments import window_extremes
 
 
-def test_each_window_gives_its_largest_magnitude_and_the_rest_is_left_out():
+def test_each_window_gives_its_largest_magnitude_and_an_incomplete_window_is_ignored():
     signal = [0.0, -3.0, 1.0, 2.0, 0.5, -0.5, 9.0]
     assert window_extremes(0.25, signal).tolist() == [3.0, 2.0, 0.5]
     assert window_extremes(0.25, signal, 0.75).tolist() == [3.0, 2.0]

@@ -165,7 +165,7 @@ def test_a_vertical_record_alone_has_its_value(tmp_path, capsys):
         assert comfort(["--input", str(path), "--json"]) == 0
         found.append(json.loads(capsys.readouterr().out))
     assert found[0]["z"] == found[1]["z"] and found[0]["x"] is None and found[0]["vector_sum"] is None
-    assert "x and y: not given, so there is no vector sum" in found[0]["reasons"]
+    assert "x and y: missing, so there is no vector sum" in found[0]["reasons"]
     assert comfort(["--input", str(alone)]) == 0
     text = capsys.readouterr().out
     assert "Wk" in text and "Wd" not in text and "vector sum" not in text
@@ -177,7 +177,7 @@ def test_a_slow_comfort_record_says_where_it_ends(tmp_path, capsys):
     assert comfort(["--input", str(path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["highest_hz"] == pytest.approx(40.0)
-    assert any("holds vibration up to 40 Hz" in text for text in found["reasons"])
+    assert any("contains vibration up to 40 Hz" in text for text in found["reasons"])
     # Wk(8 Hz)
     validated(
         "Comfort, ISO 2631", "weighted RMS of a sine of 8 Hz sampled at 100 Hz", found["z"]["weighted_rms"],

@@ -35,8 +35,8 @@ def add(tasks: Any) -> None:
 def _fitted(design: BodyDesign, vehicle: Vehicle) -> BodyDesign:
     """Return the design with section factors fitted on this car; print the factors."""
     from vehicle.model.flexbody.body_frame import body_frame
-    from vehicle.model.flexbody.fit import STAGES, fit_factors
     from vehicle.model.flexbody.node_masses import NodeProperties
+    from vehicle.model.flexbody.section_fit import STAGES, fit_factors
 
     frame = body_frame(design, vehicle.points, NodeProperties.of_body(vehicle.body, design.least_ixx))
     factors = fit_factors(frame, dict.fromkeys(design.factors, 1.0), STAGES)
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Compute the body model from its design, write it, and print its properties."""
     from vehicle.model.flexbody.body_design import read_design
     from vehicle.model.flexbody.body_frame import design_superelement
-    from vehicle.model.flexbody.library import body_file
+    from vehicle.model.flexbody.body_model import body_file
 
     require_output(options)
     file = options.design or body_file(vehicle, options.vehicle.parent if options.vehicle else None)

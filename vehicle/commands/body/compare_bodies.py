@@ -75,9 +75,9 @@ def _write_files(
     )
     for i, (frequency, row) in enumerate(zip(rows, likeness, strict=True)):
         table.append(f"{i + 1},{frequency:.9g}," + ",".join(f"{value:.6g}" for value in row))
-    title = f"down: {options.file.name}\nacross: {options.other.name}"
+    axes_title = f"down: {options.file.name}\nacross: {options.other.name}"
     note = f"; the first {MOST} modes" if max(likeness.shape) > MOST else ""
-    shown = [(title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
+    shown = [(axes_title, likeness[:MOST, :MOST], rows[:MOST].tolist(), columns[:MOST].tolist())]
     with output_folder(options.output, force=options.force) as folder:
         write_text(folder / FILES[0], "\n".join(table) + "\n")
         write_whole(folder / FILES[1], lambda file: plot_mac(file, shown, f"{title}{note}"))

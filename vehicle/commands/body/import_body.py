@@ -18,8 +18,8 @@ from vehicle.model.flexbody.sources import FOLLOWING, LENGTHS, MASSES, METHODS
 
 if TYPE_CHECKING:
     from vehicle.model.flexbody.mass_properties import MassProperties
+    from vehicle.model.flexbody.sources.body_units import Units
     from vehicle.model.flexbody.sources.mode_shapes import GivenModes
-    from vehicle.model.flexbody.sources.units import Units
     from vehicle.model.parameters.hardpoints import Point
     from vehicle.model.parameters.vehicle import Vehicle
 
@@ -158,10 +158,10 @@ def _add_model_options(parser: Parser) -> None:
 
 def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
     """Read the source, write the body model, and print its properties."""
+    from vehicle.model.flexbody.sources.body_units import require_first_mode, require_mass, require_size, units_of
     from vehicle.model.flexbody.sources.interfaces import interfaces, read_map
     from vehicle.model.flexbody.sources.residual_table import read_residuals
     from vehicle.model.flexbody.sources.superelement_of import modes_of_matrices, superelement_of
-    from vehicle.model.flexbody.sources.units import require_first_mode, require_mass, require_size, units_of
 
     require_output(options)
     _check_numbers(options)
@@ -233,9 +233,9 @@ def _matrices(options: argparse.Namespace) -> Any:
 
 def _given_modes(options: argparse.Namespace, units: Units, mass: float, points: Mapping[str, Point]) -> GivenModes:
     """Read modes: from CalculiX (.frd) in the units of the options, or from a universal file."""
+    from vehicle.model.flexbody.sources.body_units import require_level, require_size
     from vehicle.model.flexbody.sources.frd import read_frd
     from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
-    from vehicle.model.flexbody.sources.units import require_level, require_size
     from vehicle.signals.records.reader import read_record
 
     if options.file.suffix == ".frd":

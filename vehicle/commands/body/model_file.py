@@ -44,7 +44,7 @@ def write(options: argparse.Namespace, model: Superelement) -> None:
 
 def model_of(file: Path | None, options: argparse.Namespace, vehicle: Vehicle) -> Superelement:
     """Read a body model from a file; by default return that of the vehicle."""
-    from vehicle.model.flexbody.library import body_model
+    from vehicle.model.flexbody.body_model import body_model
     from vehicle.model.flexbody.superelement_file import read_superelement
 
     if file is None:

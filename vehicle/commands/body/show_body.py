@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, vehicle: Vehicle) -> None:
 
 def report(model: Superelement, vehicle: Vehicle) -> list[str]:
     """Return the printed lines: mass properties against the vehicle, modes, participation, residual flexibility."""
-    from vehicle.model.flexbody.loads import body_loads
+    from vehicle.model.flexbody.body_loads import body_loads
     from vehicle.model.flexbody.mass_difference import mass_difference, vehicle_lines
 
     lines = [f"{model.name}: {len(model.nodes)} nodes, {len(model.frequencies)} modes", f"  {model.provenance}"]

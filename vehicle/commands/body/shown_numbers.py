@@ -25,7 +25,7 @@ def numbers(model: Superelement, vehicle: Vehicle, levels: Mapping[str, Any], ba
     """
     import numpy as np
 
-    from vehicle.model.flexbody.loads import body_loads
+    from vehicle.model.flexbody.body_loads import body_loads
     from vehicle.model.flexbody.mass_difference import mass_difference
     from vehicle.model.flexbody.rigid_body import rigid_body
 

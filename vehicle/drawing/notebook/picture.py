@@ -57,7 +57,7 @@ def card(title: str, rows: Mapping[str, str], drawing: str) -> str:
 
 
 def line_drawing(along: Vector, values: Vector, label: str) -> str:
-    """Draw a line as SVG, from its minimum to its maximum in each pixel column.
+    """Draw a curve as SVG, with minimum and maximum in each pixel column.
 
     Args:
         along: increasing horizontal coordinates, (n,).

@@ -11,9 +11,9 @@ UPRIGHT = np.eye(3).ravel()
 
 def add_geom(
     scene: mujoco.MjvScene,
-    kind: mujoco.mjtGeom,
+    geom_type: mujoco.mjtGeom,
     size: npt.ArrayLike,
-    place: npt.ArrayLike,
+    position: npt.ArrayLike,
     colour: npt.NDArray[np.float32],
     frame: npt.NDArray[np.float64] = UPRIGHT,
 ) -> mujoco.MjvGeom:
@@ -21,9 +21,9 @@ def add_geom(
 
     Args:
         scene: the scene; changed in place.
-        kind: sphere, capsule, box, plane.
+        geom_type: sphere, capsule, box or plane.
         size: half lengths or radii in the convention of MuJoCo [m], (3,).
-        place: centre of the shape [m], (3,).
+        position: centre of the shape [m], (3,).
         colour: red, green, blue, opacity, (4,).
         frame: axes of the shape as the columns of a matrix, (9,).
 
@@ -31,7 +31,7 @@ def add_geom(
         The shape in the scene.
     """
     geom = scene.geoms[scene.ngeom]
-    mujoco.mjv_initGeom(geom, kind, size, place, frame, colour)
+    mujoco.mjv_initGeom(geom, geom_type, size, position, frame, colour)
     geom.category = mujoco.mjtCatBit.mjCAT_DECOR
     scene.ngeom += 1
     return geom

@@ -34,7 +34,7 @@ def plot_body(
     edges: npt.NDArray[Any],
     shapes: Vector,
     titles: Sequence[str],
-    places: npt.NDArray[np.intp],
+    attachments: npt.NDArray[np.intp],
     title: str,
     caption: str,
 ) -> None:
@@ -46,7 +46,7 @@ def plot_body(
         edges: pairs of nodes, (m, 2); if empty, nodes are drawn as dots.
         shapes: shapes of the modes, (modes, n, 3); the first `MOST` are drawn.
         titles: titles of the modes.
-        places: nodes at which the car is fixed to the body, shown as dots.
+        attachments: nodes at which the car is fixed to the body, shown as dots.
         title: title above the picture.
         caption: caption below the picture.
     """
@@ -57,7 +57,7 @@ def plot_body(
     flat = positions @ VIEW.T
     length = float(np.ptp(positions, axis=0).max())
     dense = len(edges) > DENSE
-    seen = np.unique(np.concatenate([edges.ravel(), places])) if len(edges) else np.arange(len(positions))
+    seen = np.unique(np.concatenate([edges.ravel(), attachments])) if len(edges) else np.arange(len(positions))
     with saved_figure(path, (4.0 * columns, 2.9 * -(-count // columns) + 0.9), title, caption) as figure:
         grid = np.atleast_1d(figure.subplots(-(-count // columns), columns, squeeze=False)).ravel()
         for axis, shape, title_of_mode in zip(grid, shapes, titles, strict=False):
@@ -74,7 +74,7 @@ def plot_body(
             else:
                 axis.scatter(*flat.T, s=4, color="#b8b8b8")
                 axis.scatter(*moved.T, s=16, c=colours(size, largest))
-            axis.scatter(*moved[places].T, s=6, color=COLOURS[4], zorder=3)
+            axis.scatter(*moved[attachments].T, s=6, color=COLOURS[4], zorder=3)
             axis.set_title(title_of_mode, fontsize=8.5)
             axis.set_aspect("equal")
             axis.margins(0.04)

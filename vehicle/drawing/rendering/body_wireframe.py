@@ -56,32 +56,32 @@ class Wireframe:
         # Show all nodes of a body without lines, otherwise the ends of the lines.
         shown, index = np.unique(lines, return_inverse=True) if len(lines) else (slice(MOST_NODES), lines)
         self.rest, self.edges = np.asarray(element.positions)[shown], index.reshape(-1, 2)
-        self.shapes = np.asarray(element.shapes)[: len(motion.modal), shown]  # (modes, n, 3); none of a rigid body
+        self.shapes = np.asarray(element.shapes)[: len(motion.modal), shown]  # (modes, n, 3); no mode for a rigid body
 
-    def places(self, state: State, factor: float) -> Vector:
+    def positions(self, state: State, factor: float) -> Vector:
         """Return exaggerated positions of the nodes [m], (n, 3)."""
         elastic = np.einsum("m,mni->ni", state.modal, self.shapes)
         return self.motion.moved(state, factor, self.body, self.rest + factor * elastic)
 
     def displacement(self, state: State) -> Vector:
         """Return the true distance of each node from its design position [m], (n,)."""
-        return np.asarray(np.linalg.norm(self.places(state, 1.0) - self.rest, axis=1))
+        return np.asarray(np.linalg.norm(self.positions(state, 1.0) - self.rest, axis=1))
 
-    def draw(self, scene: mujoco.MjvScene, places: Vector, colours: npt.NDArray[np.float32]) -> None:
+    def draw(self, scene: mujoco.MjvScene, positions: Vector, colours: npt.NDArray[np.float32]) -> None:
         """Append spheres and capsules to a scene.
 
         Args:
-            scene: scene that has been updated; must have room.
-            places: node positions [m], (n, 3).
+            scene: updated scene with space for the geoms.
+            positions: node positions [m], (n, 3).
             colours: red, green, blue, opacity of the nodes, (n, 4); a member takes the mean of its ends.
         """
-        for position, colour in zip(places, colours, strict=True):
+        for position, colour in zip(positions, colours, strict=True):
             _glowing(scene, mujoco.mjtGeom.mjGEOM_SPHERE, self.slim * NODE_RADIUS, position, colour)
         middle = 0.5 * (colours[self.edges[:, 0]] + colours[self.edges[:, 1]])
         radius = self.slim * MEMBER_RADIUS
         for (first, second), colour in zip(self.edges, middle, strict=True):
-            capsule = _glowing(scene, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, places[first], colour)
-            mujoco.mjv_connector(capsule, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, places[first], places[second])
+            capsule = _glowing(scene, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, positions[first], colour)
+            mujoco.mjv_connector(capsule, mujoco.mjtGeom.mjGEOM_CAPSULE, radius, positions[first], positions[second])
 
 
 def _glowing(

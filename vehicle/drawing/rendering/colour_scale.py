@@ -26,6 +26,6 @@ def colours(values: npt.ArrayLike, top: float) -> npt.NDArray[np.float32]:
     from matplotlib import colormaps
 
     table = np.array(colormaps[SCALE](np.linspace(0.0, 1.0, SHADES)))[:, :3]
-    place = np.clip(np.atleast_1d(np.asarray(values, dtype=float)) / top, 0.0, 1.0) * (SHADES - 1)
-    rgb = [np.interp(place, np.arange(SHADES), column) for column in table.T]
-    return np.column_stack([*rgb, np.ones(len(place))]).astype(np.float32)
+    index = np.clip(np.atleast_1d(np.asarray(values, dtype=float)) / top, 0.0, 1.0) * (SHADES - 1)
+    rgb = [np.interp(index, np.arange(SHADES), column) for column in table.T]
+    return np.column_stack([*rgb, np.ones(len(index))]).astype(np.float32)

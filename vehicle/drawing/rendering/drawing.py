@@ -30,21 +30,21 @@ class Drawing:
         self.canvas, self.motion, self.wireframe, self.scale_top = canvas, motion, wireframe, scale_top
         self.data = mujoco.MjData(canvas.model)
         # Lights and cameras are positioned once; the geoms are positioned in every frame.
-        for place in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
-            place(canvas.model, self.data)
+        for update in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_camlight):
+            update(canvas.model, self.data)
         self.coils = [Coil(motion, composition, spring) for spring in composition.springs]
 
     def pose(self, state: State, factor: float) -> None:
         """Set the exaggerated poses of all shapes."""
         self.data.geom_xpos[:], self.data.geom_xmat[:] = self.motion.geoms(state, factor)
         for coil in self.coils:
-            coil.write(self.data, coil.places(state, factor))
+            coil.write(self.data, coil.positions(state, factor))
             self.canvas.upload(coil.mesh)
-        self.places = self.wireframe.places(state, factor)
+        self.positions = self.wireframe.positions(state, factor)
         self.shades = colours(self.wireframe.displacement(state), self.scale_top)
 
     def see(self, camera: mujoco.MjvCamera, opacity: npt.NDArray[np.float64]) -> None:
         """Fill the scene of the canvas for a camera; geoms may be appended before it is rendered."""
         self.canvas.model.mat_rgba[:, 3] = opacity
         self.canvas.update(self.data, camera)
-        self.wireframe.draw(self.canvas.scene, self.places, self.shades)
+        self.wireframe.draw(self.canvas.scene, self.positions, self.shades)

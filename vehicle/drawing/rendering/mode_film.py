@@ -115,7 +115,7 @@ class ModeShot:
         )
 
     def frames(self, backend: str) -> Iterator[Picture]:
-        """Draw one cycle, (height, width, 3) each."""
+        """Draw the frames of a cycle, (height, width, 3) each."""
         size = (self.layout.width, self.layout.height)
         camera, opacity = whole_car(self.vehicle), self.model.mat_rgba[:, 3].copy()
         with closing(Canvas(self.model, size, backend)) as canvas:

@@ -153,7 +153,7 @@ def coil_seats(composition: Composition, spring: PlacedSpring) -> list[str]:
 
 
 class Coil:
-    """Mesh of a coil spring that deforms with its seats.
+    """Deforming mesh of a coil spring between its two seats.
 
     A vertex at the relative height s moves by (1 - s) times the motion of the lower seat plus s times that of the upper
     seat.
@@ -180,13 +180,13 @@ class Coil:
         height = self.rest @ (axis / np.linalg.norm(axis))
         self.share = ((height - height.min()) / np.ptp(height))[:, None]
 
-    def places(self, state: State, factor: float) -> Vector:
+    def positions(self, state: State, factor: float) -> Vector:
         """Return the exaggerated positions of the vertices [m], (n, 3)."""
         low, high = (self.motion.moved(state, factor, seat, self.rest) for seat in (self.lower, self.upper))
         return np.asarray((1.0 - self.share) * low + self.share * high)
 
-    def write(self, data: mujoco.MjData, places: Vector) -> None:
+    def write(self, data: mujoco.MjData, positions: Vector) -> None:
         """Write the vertices to the model and reset the geom to its design pose; OpenGL must then reload the mesh."""
-        self.motion.model.mesh_vert[self.rows] = (places - self.origin) @ self.frame
+        self.motion.model.mesh_vert[self.rows] = (positions - self.origin) @ self.frame
         data.geom_xpos[self.geom] = self.origin
         data.geom_xmat[self.geom] = self.frame.ravel()

@@ -27,36 +27,36 @@ Vector = npt.NDArray[np.float64]
 
 def plot_participation(
     path: Path,
-    place: str,
+    channel: str,
     frequency: Vector,
     parts: Mapping[str, Vector],
     at: float,
     shares: Mapping[str, float],
     driven: tuple[str, Mapping[str, float]],
-    about: str,
+    description: str,
 ) -> None:
     """Write the picture of modal participation.
 
     Args:
         path: PNG file.
-        place: name of the acceleration channel.
+        channel: name of the acceleration channel.
         frequency: lines [Hz], (m,).
         parts: contributions in phase with their sum [m/s2 per m], (m,) each; they add up to its magnitude.
         at: frequency of the bars [Hz].
         shares: shares of the contributions at that frequency [-].
         driven: name of a mode, and the shares of the attachments in its modal force at that frequency [-].
-        about: description of car, channel and input.
+        description: description of car, channel and input.
     """
     total = np.sum(list(parts.values()), axis=0)
     # Colour the contributions that are largest where the response is large.
     weight = {name: float(np.sum(np.abs(part) * total)) for name, part in parts.items()}
-    own = sorted(weight, key=lambda name: -weight[name])[: len(COLOURS)]
-    areas = {name: parts[name] for name in own}
+    largest = sorted(weight, key=lambda name: -weight[name])[: len(COLOURS)]
+    areas = {name: parts[name] for name in largest}
     areas["all others"] = total - np.sum(list(areas.values()), axis=0)
     colours = dict(zip(areas, (*COLOURS, OTHERS), strict=False)) | {"all others": OTHERS}
-    hatches = dict(zip(own, HATCHES, strict=False))
-    caption = f"{about}; in phase with the sum: Re(c conj(a)) / |a|, below zero what works against it"
-    with saved_figure(path, (11.0, 9.0), f"What makes {place} loud", caption) as figure:
+    hatches = dict(zip(largest, HATCHES, strict=False))
+    caption = f"{description}; in phase with the sum: Re(c conj(a)) / |a|, below zero what works against it"
+    with saved_figure(path, (11.0, 9.0), f"What makes {channel} loud", caption) as figure:
         halves: Any = figure.subfigures(2, 1, height_ratios=(1.25, 1.0))
         above, below = halves
         upper = above.add_subplot()

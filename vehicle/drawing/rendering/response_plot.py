@@ -15,7 +15,7 @@ from vehicle.signals.analysis.frf import FrequencyResponse
 def plot_response(
     path: Path, response: FrequencyResponse, names: Sequence[str], title: str = "", caption: str = ""
 ) -> None:
-    """Plot FRFs over each other.
+    """Plot several FRFs in the same axes.
 
     Args:
         path: PNG or SVG file.

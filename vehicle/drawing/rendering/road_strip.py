@@ -81,7 +81,7 @@ class RoadStrip:
         """Append the strips to a scene, with heights exaggerated like all motion.
 
         Args:
-            scene: scene that has been updated; must have room.
+            scene: updated scene with space for the geoms.
             time: time [s].
             exposure: exposure time of the frame [s].
             factor: exaggeration.

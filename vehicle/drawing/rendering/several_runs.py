@@ -93,7 +93,7 @@ def plot_densities(
 
 
 def shared_channels(runs: Sequence[RecordedRun], wanted: Mapping[str, str]) -> dict[str, str]:
-    """Return the wanted channels that all runs recorded.
+    """Return the requested channels that are in all runs.
 
     Args:
         runs: the runs.

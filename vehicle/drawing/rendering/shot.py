@@ -236,7 +236,7 @@ class Shot:
         ]
 
     def _traces(self) -> list[Trace]:
-        """Traces under the picture, scaled to the excerpt."""
+        """Return the curves below the picture (plate, seat rail, damper), scaled to their maxima in the shown time."""
         recording, wheel = self.recording, self.wheel
         ahead = 0.5 * self.visible
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)

@@ -54,11 +54,11 @@ class RollingTerms:
 
 
 def rolling_terms(rows: Rows, preload: Vector) -> RollingTerms:
-    """Return the rolling terms of a car in its design position.
+    """Return the damping and stiffness terms that rolling wheels add to the linear car in its design position.
 
     Args:
-        rows: rows of the car with its rolling tyres.
-        preload: static forces of the rows.
+        rows: constraint rows of all elements of the car, with its rolling tyres.
+        preload: static forces of the rows [N].
     """
     model, e, rolling = rows.model, rows.layout, rows.layout.rolling
     data = mujoco.MjData(model)

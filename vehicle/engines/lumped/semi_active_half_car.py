@@ -150,7 +150,18 @@ class _Cars:
         return _times(self.body, state[:, free : 2 * free]), state[:, free:][:, self.wheel]
 
     def slope(self, state: Array, road: Array, rate: Array, coefficient: Array) -> tuple[Array, Array]:
-        """Return the rates of the states (r, s) and the forces of the sliding pairs (r, 2w)."""
+        """Return the time derivatives of the states and the forces of dampers and tyres, for a batch of runs.
+
+        Args:
+            state: states of the half cars, shape (runs, states).
+            road: road heights under the wheels [m], shape (runs, wheels).
+            rate: time derivatives of the road heights [m/s], shape (runs, wheels).
+            coefficient: coefficients c of the dampers [N s/m], shape (runs, wheels).
+
+        Returns:
+            Derivatives, shape (runs, states), and forces [N], shape (runs, 2 wheels): dampers, then the correction
+            of tyres that have lifted off.
+        """
         sliding = _times(self.slide, state)
         ends = len(ENDS)
         force = np.concatenate((coefficient * sliding[:, :ends], np.zeros_like(coefficient)), axis=1)

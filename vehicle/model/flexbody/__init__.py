@@ -1,1 +1,1 @@
-"""The flexible trimmed body: wireframe, beams, modes, and the modal superelement that the car uses."""
+"""Flexible trimmed body: wireframe, beams, modes, and the modal superelement that the car uses."""

@@ -1,4 +1,4 @@
-"""Point masses fixed to a flexible body: new modes of the body with them, by component-mode assembly."""
+"""Modes of a flexible body with attached point masses, by component-mode assembly."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
+from vehicle.model.flexbody.frame_modes import fix_signs
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.modes import fix_signs
 from vehicle.model.flexbody.superelement import Superelement
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Attached:
-    """A body with what is attached to it.
+    """Flexible body with attached masses, and its new modes as combinations Phi X - R Y of the old modes.
 
     Attributes:
-        body: the body with its new modes.
-        elastic: old elastic modes in each new mode X, shape (modes, modes).
-        rigid: mass-normalised rigid motions of the body alone in each new mode Y, shape (6, modes): Phi X - R Y.
+        body: body with its new modes.
+        elastic: X, share of each old elastic mode Phi in each new mode, shape (modes, modes).
+        rigid: Y, share of each mass-normalised rigid motion R of the bare body, shape (6, modes).
     """
 
     body: Superelement
@@ -31,28 +31,28 @@ class Attached:
 
 
 def with_attached_masses(superelement: Superelement, masses: Mapping[str, float]) -> Superelement:
-    """Return the body with point masses; see `attached`, whose body it is."""
+    """Return only the body of `attached`."""
     return attached(superelement, masses).body
 
 
 def attached(superelement: Superelement, masses: Mapping[str, float]) -> Attached:
-    """The body with point masses fixed rigidly to its nodes, inside the space of its rigid-body and elastic modes.
+    """Fix point masses rigidly to nodes of a body, within the space of its rigid motions R and elastic modes Phi.
 
-    With T = [R | Phi], T' M T = 1 of the body alone, a mass m at node n adds m T_n' T_n. Rigid coordinates have no
-    stiffness, so they follow exactly, r = -M_rr^-1 M_rf q, which leaves
+    With T = [R | Phi] and T' M T = 1 for the bare body, a mass m at node n adds m T_n' T_n. Rigid coordinates have no
+    stiffness, so they are eliminated exactly, r = -M_rr^-1 M_rf q, which leaves
     (diag(w^2) - W^2 (M_ff - M_fr M_rr^-1 M_rf)) q = 0. Damping: the diagonal of the transformed modal damping.
-    The residual flexibility of an attachment point is not between the mass and the node.
+    The mass is fixed to the node without the residual flexibility of that node in series.
 
     Args:
         superelement: the body.
         masses: node name -> mass to add [kg], not negative.
 
     Returns:
-        The body with new mass properties, frequencies, damping ratios and mode shapes, and what its modes are made of.
-        A new mode keeps the name of the old one that it is mostly made of.
+        Body with new mass properties, frequencies, damping ratios and mode shapes, and the combinations of old modes.
+        A new mode is named after the old mode with the largest share in it.
 
     Raises:
-        DataError: no node of this name.
+        DataError: the body has no node of this name.
         ConfigurationError: a mass is negative or not finite.
 
     Source: R. R. Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2006, chapter 17, free-interface modes.
@@ -60,47 +60,50 @@ def attached(superelement: Superelement, masses: Mapping[str, float]) -> Attache
     for node, mass in masses.items():
         if not (np.isfinite(mass) and mass >= 0.0):
             raise ConfigurationError(
-                f"mass attached to body node {node!r}: {mass} kg; it must be finite and not negative."
+                f"mass attached to body node {node!r}: found {mass} kg, must be finite and not negative"
             )
-    where = np.array([superelement.node_index(node) for node in masses], dtype=int)
+    loaded_nodes = np.array([superelement.node_index(node) for node in masses], dtype=int)
     added = np.array(list(masses.values()), dtype=float)
-    places = superelement.positions
-    rigid, _ = superelement.rigid.rigid_motions(places)
-    both = np.concatenate([rigid[:, where], superelement.shapes[:, where]])  # (6 + modes, masses, 3)
-    own, node_mass = superelement.rigid.with_points(added, places[where]), superelement.node_mass
-    found = with_added_mass(superelement, np.einsum("ank,bnk,n->ab", both, both, added), own)
+    positions = superelement.positions
+    rigid, _ = superelement.rigid.rigid_motions(positions)
+    motions = np.concatenate([rigid[:, loaded_nodes], superelement.shapes[:, loaded_nodes]])  # (6 + modes, masses, 3)
+    properties, node_mass = superelement.rigid.with_points(added, positions[loaded_nodes]), superelement.node_mass
+    loaded = with_added_mass(superelement, np.einsum("ank,bnk,n->ab", motions, motions, added), properties)
     if node_mass is None:
-        return found
+        return loaded
     node_mass = node_mass.copy()
-    np.add.at(node_mass, where, added)
-    return replace(found, body=replace(found.body, node_mass=node_mass, mass_properties=None))
+    np.add.at(node_mass, loaded_nodes, added)
+    return replace(loaded, body=replace(loaded.body, node_mass=node_mass, mass_properties=None))
 
 
 def with_added_mass(superelement: Superelement, added: FloatArray, properties: MassProperties) -> Attached:
-    """Solve for the modes of a body whose mass matrix grows; equations as of `attached`.
+    """Solve for the modes of a body with an additional mass matrix; see `attached` for the equations.
 
     Args:
         superelement: the body.
-        added: what is added to T' M T = 1 [1], shape (6 + modes, 6 + modes).
-        properties: mass, CoG and inertia with what is added.
+        added: mass matrix to add to T' M T = 1 [1], shape (6 + modes, 6 + modes).
+        properties: mass, CoG and inertia including the added mass.
 
     Returns:
-        The body with these mass properties, in place of masses of its nodes, and what its modes are made of.
+        Body with these mass properties instead of node masses, and the combinations of old modes.
     """
-    count, places = len(superelement.frequencies), superelement.positions
-    rigid, turns = superelement.rigid.rigid_motions(places)
+    count, positions = len(superelement.frequencies), superelement.positions
+    rigid, rigid_rotations = superelement.rigid.rigid_motions(positions)
     total = np.eye(6 + count) + added
-    follow = np.linalg.solve(total[:6, :6], total[:6, 6:])  # (6, modes)
+    rigid_per_mode = np.linalg.solve(total[:6, :6], total[:6, 6:])  # (6, modes)
     omega = 2.0 * np.pi * superelement.frequencies
-    squared, mix = scipy.linalg.eigh(np.diag(omega**2), total[6:, 6:] - total[6:, :6] @ follow)
-    rest = mix.T @ follow.T  # the rigid motion in each new mode, (modes, 6)
-    shapes = np.tensordot(mix.T, superelement.shapes, 1) - np.tensordot(rest, rigid, 1)
+    squared, mix = scipy.linalg.eigh(np.diag(omega**2), total[6:, 6:] - total[6:, :6] @ rigid_per_mode)
+    rigid_share = mix.T @ rigid_per_mode.T  # share of the rigid motions in each new mode, (modes, 6)
+    shapes = np.tensordot(mix.T, superelement.shapes, 1) - np.tensordot(rigid_share, rigid, 1)
     signed = fix_signs(shapes)
     sign = np.where(np.einsum("ank,ank->a", signed, shapes) < 0.0, -1.0, 1.0)[:, None]
-    turned = {node: sign * (mix.T @ own - rest @ turns) for node, own in superelement.rotations.items()}
+    rotations = {
+        node: sign * (mix.T @ rotation - rigid_share @ rigid_rotations)
+        for node, rotation in superelement.rotations.items()
+    }
     new_omega = np.sqrt(squared)
     damping = np.einsum("im,i,im->m", mix, 2.0 * superelement.damping_ratio * omega, mix)
-    mostly = np.abs(mix).argmax(axis=0)
+    largest_share = np.abs(mix).argmax(axis=0)
     body = replace(
         superelement,
         node_mass=None,
@@ -108,8 +111,8 @@ def with_added_mass(superelement: Superelement, added: FloatArray, properties: M
         frequencies=new_omega / (2.0 * np.pi),
         damping_ratio=damping / (2.0 * new_omega),
         shapes=signed,
-        rotations=turned,
-        mode_names=tuple(superelement.mode_names[i] for i in mostly),
+        rotations=rotations,
+        mode_names=tuple(superelement.mode_names[i] for i in largest_share),
         derived=True,
     )
-    return Attached(body=body, elastic=mix * sign.T, rigid=(sign * rest).T)
+    return Attached(body=body, elastic=mix * sign.T, rigid=(sign * rigid_share).T)

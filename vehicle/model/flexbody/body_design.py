@@ -1,7 +1,7 @@
-"""The design of a body as data: nodes, members and sections of a space frame, apart from the car that it is built for.
+"""Design of a body as data: nodes, members and sections of a space frame, independent of a particular car.
 
-Interface and output points are hardpoints of the vehicle and stand in its file only; a design adds the joints of the
-shell, the members between all of them, and what a frame of beams cannot know: guessed masses and local stiffnesses.
+Interface and output points are hardpoints, defined in the vehicle file only. A design adds the joints of the shell, the
+members between all nodes, and data that beams do not provide: estimated masses and local stiffnesses.
 """
 
 from __future__ import annotations
@@ -18,64 +18,64 @@ from vehicle.model.parameters.toml_file import build, nearest, read_table
 
 FORMAT = "body design 1"
 _SIDES = (("_fr", "_fl"), ("_rr", "_rl"), ("_right", "_left"))
-"""Endings of the right and the left node of a pair: at the wheels, elsewhere."""
+"""Name suffixes of the right and left node of a pair: at front and rear wheels, elsewhere."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class DesignNode:
-    """A node, or a pair of them; without `place` and `mirror` it is the hardpoint of its name."""
+    """Node, or right and left pair of nodes; without `place` and `mirror`, the hardpoint with the name of the entry."""
 
-    mass: float = quantity("kg", "guess of the mass that it carries", above=0.0)
-    freedom: float = quantity("-", "how far the guess may be changed, relative to the others", above=0.0)
+    mass: float = quantity("kg", "estimate of the mass that the node carries", above=0.0)
+    freedom: float = quantity("-", "allowed relative change of the estimated mass, relative to other nodes", above=0.0)
     place: Point | None = quantity("m", "joint of the shell, right side; single where y = 0", length=3, default=None)
-    mirror: str | None = quantity("-", "single hardpoint whose mirror image it is", default=None)
+    mirror: str | None = quantity("-", "single hardpoint of which the node is the mirror image", default=None)
     attachment: Point | None = quantity("N/m", "local stiffness, x, y, z", above=0.0, length=3, default=None)
 
     def __post_init__(self) -> None:
         validate(self)
         if self.place is not None and self.mirror is not None:
-            raise ConfigurationError("DesignNode.mirror: found beside place; a node has one of them, or none")
+            raise ConfigurationError("DesignNode.mirror: found together with place; set at most one of the two")
         if self.place is not None and self.place[1] < 0.0:
             raise ConfigurationError(
-                f"DesignNode.place: found y = {self.place[1]} m, allowed are 0 and more; the left side is mirrored"
+                f"DesignNode.place: found y = {self.place[1]} m, must be at least 0; the left side is mirrored"
             )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MemberGroup:
-    """Members of one section: a thin-walled square tube (`width`, `wall`), or a strut for a panel in shear (`area`)."""
+    """Members with a common section: thin-walled square tube (`width`, `wall`) or strut for a shear panel (`area`)."""
 
     between: tuple[str, ...]
-    """ends of each member: "a-b", crossed "a=b", "a" across the car"""
+    """end nodes of each member: "a-b", "a=b" crosswise between the sides, "a" from right to left across the car"""
     width: float | None = quantity("m", "width of a tube", above=0.0, default=None)
     wall: float | None = quantity("m", "wall thickness of a tube", above=0.0, default=None)
     area: float | None = quantity("m2", "area of a strut", above=0.0, default=None)
-    factor: float | None = quantity("-", "fitted factor on the stiffness; none: 1", above=0.0, default=None)
+    factor: float | None = quantity("-", "fitted factor on the stiffness; 1 where omitted", above=0.0, default=None)
 
     def __post_init__(self) -> None:
         validate(self)
-        given = [name for name in ("width", "wall", "area") if getattr(self, name) is not None]
-        if given not in (["width", "wall"], ["area"]):
+        dimensions = [name for name in ("width", "wall", "area") if getattr(self, name) is not None]
+        if dimensions not in (["width", "wall"], ["area"]):
             raise ConfigurationError(
-                f"MemberGroup.between: a section of {', '.join(given) or 'nothing'}; needed are width and wall of a "
-                "tube, or the area of a strut"
+                f"MemberGroup.between: found a section with {', '.join(dimensions) or 'no dimension'}; set width and "
+                "wall of a tube, or the area of a strut"
             )
         if not self.between:
-            raise ConfigurationError("MemberGroup.between: found an empty list, needed is at least one member")
+            raise ConfigurationError("MemberGroup.between: found an empty list, must contain at least one member")
 
     def sections(self, youngs: float, shear: float) -> tuple[BeamSection, BeamSection]:
-        """Stiffness that the factor scales, and stiffness that stays.
+        """Return the section scaled by the factor, and the section independent of the factor.
 
-        Tube of width w and wall t: A = 4 w t, I = 2/3 w^3 t, J = w^3 t; its axial stiffness stays nominal.
+        Tube of width w and wall t: A = 4 w t, I = 2/3 w^3 t, J = w^3 t; the factor does not scale its axial stiffness.
 
         Args:
             youngs: Young's modulus [N/m2].
             shear: shear modulus [N/m2].
         """
-        nothing = BeamSection(axial=0.0, torsion=0.0, bending_y=0.0, bending_z=0.0)
+        zero = BeamSection(axial=0.0, torsion=0.0, bending_y=0.0, bending_z=0.0)
         if self.width is None or self.wall is None:
             area = self.area or 0.0
-            return BeamSection(axial=youngs * area, torsion=0.0, bending_y=0.0, bending_z=0.0), nothing
+            return BeamSection(axial=youngs * area, torsion=0.0, bending_y=0.0, bending_z=0.0), zero
         bending = youngs * (2.0 / 3.0 * self.width**3 * self.wall)
         torsion = shear * self.width**3 * self.wall
         return (
@@ -86,20 +86,20 @@ class MemberGroup:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BodyDesign:
-    """Everything of a body that is neither a hardpoint nor a mass property of the vehicle."""
+    """Data of a body apart from the hardpoints and mass properties of the vehicle."""
 
-    format: str = quantity("-", "kind of file", choices=(FORMAT,))
+    format: str = quantity("-", "file format and version", choices=(FORMAT,))
     name: str = quantity("-", "name of the body")
     provenance: str
-    """where the numbers come from, in words"""
-    mode_count: float = quantity("-", "number of elastic modes, the lowest", at_least=1.0, at_most=60.0)
+    """sources of the values, as text"""
+    mode_count: float = quantity("-", "number of elastic modes, lowest frequencies first", at_least=1.0, at_most=60.0)
     damping_ratio: float = quantity("-", "share of critical damping of every mode", at_least=0.0, at_most=0.3)
     youngs_modulus: float = quantity("N/m2", "Young's modulus", above=0.0)
     shear_modulus: float = quantity("N/m2", "shear modulus", above=0.0)
     node_rotations: bool = False
-    """true: the model knows the rotations of its nodes, which elements with a rotational stiffness then act on"""
+    """true: the model includes node rotations, on which elements with a rotational stiffness act"""
     least_ixx: float = quantity(
-        "kg m2", "least Ixx about the CoG that the node masses are fitted to", at_least=0.0, default=0.0
+        "kg m2", "minimum Ixx about the CoG to which the node masses are fitted", at_least=0.0, default=0.0
     )
     nodes: Mapping[str, DesignNode]
     members: Mapping[str, MemberGroup]
@@ -107,11 +107,11 @@ class BodyDesign:
     def __post_init__(self) -> None:
         validate(self)
         if self.mode_count != int(self.mode_count):
-            raise ConfigurationError(f"BodyDesign.mode_count: found {self.mode_count!r}, needed is a whole number")
+            raise ConfigurationError(f"BodyDesign.mode_count: found {self.mode_count!r}, must be a whole number")
 
     @property
     def factors(self) -> dict[str, float]:
-        """Factor of every member group [1]."""
+        """Stiffness factor of every member group [1]."""
         return {name: 1.0 if group.factor is None else group.factor for name, group in self.members.items()}
 
     @property
@@ -120,49 +120,50 @@ class BodyDesign:
         return tuple(name for name, group in self.members.items() if group.factor is not None)
 
     def placed(self, points: Mapping[str, Point]) -> dict[str, dict[str, Point]]:
-        """Nodes of every entry on a car: one, or the right and the left one.
+        """Return the node positions of every entry for a car: a single node, or a right and a left node.
 
         Args:
-            points: of the car.
+            points: hardpoints of the car in the vehicle frame [m], by name.
 
         Returns:
             Name of the entry -> name of the node -> position in the vehicle frame [m].
 
         Raises:
-            ConfigurationError: the car has no such hardpoint, or two nodes have one name.
+            ConfigurationError: the car lacks a hardpoint, or two entries define the same node name.
         """
-        found: dict[str, dict[str, Point]] = {}
+        positions: dict[str, dict[str, Point]] = {}
         for name, node in self.nodes.items():
             pair = next((ends for ends in _SIDES if f"{name}{ends[0]}" in points), None)
             if node.place is not None:
                 right, left = (f"{name}{end}" for end in _SIDES[-1])
-                pairs = {right: node.place, left: mirrored(node.place, -1.0)}
-                found[name] = pairs if node.place[1] > 0.0 else {name: node.place}
+                sides = {right: node.place, left: mirrored(node.place, -1.0)}
+                positions[name] = sides if node.place[1] > 0.0 else {name: node.place}
             elif node.mirror is not None and node.mirror in points:
-                found[name] = {name: mirrored(points[node.mirror], -1.0)}
+                positions[name] = {name: mirrored(points[node.mirror], -1.0)}
             elif node.mirror is None and (name in points or pair):
-                found[name] = {f"{name}{end}": points[f"{name}{end}"] for end in (pair or ("",))}
+                positions[name] = {f"{name}{end}": points[f"{name}{end}"] for end in (pair or ("",))}
             else:
-                wanted, known = node.mirror or name, [*points, *(key.removesuffix("_fr") for key in points)]
+                hardpoint = node.mirror or name
+                similar = nearest(hardpoint, [*points, *(key.removesuffix("_fr") for key in points)])
                 raise ConfigurationError(
-                    f"nodes.{name}: the vehicle has no hardpoint {wanted}; the nearest is {nearest(wanted, known)}. "
-                    "Give the node a place, or the name of a hardpoint"
+                    f"nodes.{name}: the vehicle has no hardpoint {hardpoint}; the nearest is {similar}. "
+                    "Set the place of the node, or name it after a hardpoint"
                 )
-        names = [name for nodes in found.values() for name in nodes]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise ConfigurationError(f"nodes: {', '.join(twice)} made by two entries; rename one of them")
-        return found
+        names = [name for nodes in positions.values() for name in nodes]
+        duplicates = sorted({name for name in names if names.count(name) > 1})
+        if duplicates:
+            raise ConfigurationError(f"nodes: {', '.join(duplicates)} defined by two entries; rename one entry")
+        return positions
 
     def member_ends(self, group: str, placed: Mapping[str, Mapping[str, Point]]) -> list[tuple[str, str]]:
-        """End nodes of every member of a group.
+        """Return the end nodes of every member of a group.
 
         Args:
             group: name of the group.
-            placed: as `placed` returns it.
+            placed: node positions returned by `placed`.
 
         Raises:
-            ConfigurationError: a member without such a node, or from a node to itself.
+            ConfigurationError: a member names an unknown node or connects a node with itself.
         """
         sides = {node: (node, node) for nodes in placed.values() for node in nodes}
         sides |= {name: (next(iter(nodes)), tuple(nodes)[-1]) for name, nodes in placed.items()}
@@ -172,7 +173,7 @@ class BodyDesign:
             for name in names:
                 if name not in sides:
                     raise ConfigurationError(
-                        f"members.{group}.between: {member!r} ends at no node {name!r}; the nearest is "
+                        f"members.{group}.between: {member!r} has no node {name!r}; the nearest is "
                         f"{nearest(name, sides)}"
                     )
             if len(names) == 1:
@@ -182,24 +183,18 @@ class BodyDesign:
                 pairs = list(zip(first, second[::-1] if "=" in member else second, strict=True))
             if len(names) > 2 or any(a == b for a, b in pairs):
                 raise ConfigurationError(
-                    f"members.{group}.between: {member!r} is no member; allowed are 'a-b', 'a=b' crossed and 'a' "
-                    "across the car, between two different nodes"
+                    f"members.{group}.between: found {member!r}, must be 'a-b', 'a=b' crosswise, or 'a' across the "
+                    "car, between two different nodes"
                 )
             ends += [pair for pair in dict.fromkeys(pairs) if pair not in ends]
         return ends
 
 
 def read_design(path: Path) -> BodyDesign:
-    """Read a body design.
-
-    Args:
-        path: TOML file.
-
-    Returns:
-        The design.
+    """Read a body design from a TOML file.
 
     Raises:
-        ConfigurationError: the file, a name or a value is wrong; the message names it.
+        ConfigurationError: the file, a name or a value is wrong; the message names the file.
     """
     try:
         return build(BodyDesign, read_table(path))

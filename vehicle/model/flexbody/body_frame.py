@@ -1,4 +1,4 @@
-"""The trimmed body as a space frame: a design on the hardpoints and with the masses of a vehicle, modes out."""
+"""Trimmed body as a space frame: modes of a body design with the hardpoints and mass properties of a vehicle."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray, frame_stiffness
 from vehicle.model.flexbody.body_design import BodyDesign
+from vehicle.model.flexbody.body_loads import BodyLoad, load_mass, loaded_properties
 from vehicle.model.flexbody.carried_nodes import with_carried_nodes
-from vehicle.model.flexbody.loads import BodyLoad, load_mass, loaded_properties
+from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes
 from vehicle.model.flexbody.mode_names import mode_names
-from vehicle.model.flexbody.modes import condense_rotations, free_free_modes
 from vehicle.model.flexbody.node_masses import NodeProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.body import TrimmedBody
@@ -23,18 +23,18 @@ from vehicle.model.parameters.hardpoints import COINCIDENT_M, Point
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BodyFrame:
-    """Matrices of the frame; the stiffness is linear in one factor for each member group."""
+    """Space frame of a body; its stiffness matrix is linear in one factor per member group."""
 
     design: BodyDesign
-    """what it was made from"""
+    """body design from which the frame was built"""
     skeleton: Superelement
-    """nodes, masses and lines of it, without modes"""
+    """nodes, masses and lines of the frame, without modes"""
     fixed_stiffness: FloatArray
-    """what no factor scales [N/m, N, N m], shape (6 n, 6 n)"""
+    """stiffness independent of the factors [N/m, N, N m], shape (6 n, 6 n)"""
     group_stiffness: Mapping[str, FloatArray]
-    """member group -> stiffness at factor 1, shape (6 n, 6 n)"""
+    """member group -> stiffness at factor 1 [N/m, N, N m], shape (6 n, 6 n)"""
     loads: tuple[BodyLoad, ...] = ()
-    """loads on it"""
+    """loads on the body"""
 
     @property
     def node_mass(self) -> FloatArray:
@@ -43,7 +43,7 @@ class BodyFrame:
         return self.skeleton.node_mass
 
     def modes(self, factors: Mapping[str, float], count: int) -> tuple[FloatArray, FloatArray]:
-        """Free-free modes.
+        """Compute the lowest free-free modes.
 
         Args:
             factors: factor of every member group [1].
@@ -53,66 +53,70 @@ class BodyFrame:
             Frequencies [Hz], shape (count,); mass-normalised shapes [kg^-1/2], shape (count, n, 3).
         """
         condensed, _ = condense_rotations(self._stiffness(factors))
-        rest = self.skeleton
-        added = load_mass(rest.positions, self.loads, rest.hardpoint_tolerance) if self.loads else None
-        return free_free_modes(condensed, self.node_mass, rest.positions, count, added)
+        skeleton = self.skeleton
+        added = load_mass(skeleton.positions, self.loads, skeleton.hardpoint_tolerance) if self.loads else None
+        return free_free_modes(condensed, self.node_mass, skeleton.positions, count, added)
 
     def _stiffness(self, factors: Mapping[str, float]) -> FloatArray:
-        """Stiffness of all members [N/m, N, N m], shape (6 n, 6 n)."""
+        """Return the stiffness of all members [N/m, N, N m], shape (6 n, 6 n)."""
         stiffness = self.fixed_stiffness.copy()
         for group, matrix in self.group_stiffness.items():
             stiffness += factors[group] * matrix
         return stiffness
 
     def superelement(self, factors: Mapping[str, float] | None = None) -> Superelement:
-        """The modal superelement of the frame; factors of the member groups: by default those of the design."""
-        rest, count = self.skeleton, int(self.design.mode_count)
+        """Return the modal superelement of the frame.
+
+        Args:
+            factors: factor of every member group [1]; by default the factors of the design.
+        """
+        skeleton, count = self.skeleton, int(self.design.mode_count)
         factors = self.design.factors if factors is None else factors
         frequencies, shapes = self.modes(factors, count)
         rotations = {}
         if self.design.node_rotations:
-            # They follow the displacements, as nothing resists them but the members.
+            # Nodes have no rotational inertia, so the displacements determine the rotations statically.
             _, recovery = condense_rotations(self._stiffness(factors))
-            turns = (recovery @ shapes.reshape(count, -1).T).reshape(-1, 6, count)[:, 3:]
-            rotations = {node: turn.T for node, turn in zip(rest.nodes, turns, strict=True)}
-        loaded = loaded_properties(rest.rigid, self.loads) if self.loads else None
+            rotation = (recovery @ shapes.reshape(count, -1).T).reshape(-1, 6, count)[:, 3:]
+            rotations = {node: node_rotation.T for node, node_rotation in zip(skeleton.nodes, rotation, strict=True)}
+        loaded = loaded_properties(skeleton.rigid, self.loads) if self.loads else None
         return replace(
-            rest,
-            node_mass=None if self.loads else rest.node_mass,
+            skeleton,
+            node_mass=None if self.loads else skeleton.node_mass,
             mass_properties=loaded,
             frequencies=frequencies,
             damping_ratio=np.full(count, self.design.damping_ratio),
             shapes=shapes,
             rotations=rotations,
-            mode_names=mode_names(shapes, rest.nodes, rest.positions, self.node_mass),
+            mode_names=mode_names(shapes, skeleton.nodes, skeleton.positions, self.node_mass),
         )
 
 
 def skeleton(design: BodyDesign, points: Mapping[str, Point]) -> Superelement:
-    """The body of a design on a car without modes, its masses as guessed: all of a rigid body, the start of a frame.
+    """Return a body without modes from a design on a car, with estimated masses: a rigid body, or the base of a frame.
 
     Args:
         design: members, joints of the shell, attachments.
-        points: interface and output points.
+        points: interface and output points of the car [m], by name.
 
     Raises:
-        ConfigurationError: a name of the design leads nowhere.
+        ConfigurationError: the design names an unknown hardpoint or node.
     """
     placed = design.placed(points)
-    entries = {node: design.nodes[name] for name, made in placed.items() for node in made}
-    places = {node: np.array(place) for made in placed.values() for node, place in made.items()}
-    index = {name: i for i, name in enumerate(places)}
+    entries = {node: design.nodes[name] for name, nodes in placed.items() for node in nodes}
+    positions = {node: np.array(position) for nodes in placed.values() for node, position in nodes.items()}
+    index = {name: i for i, name in enumerate(positions)}
     tubes = [group for group, members in design.members.items() if members.area is None]  # struts stand for panels
     lines = [ends for group in tubes for ends in design.member_ends(group, placed)]
     return Superelement(
         name=design.name,
-        nodes=tuple(places),
-        positions=np.array(list(places.values())),
+        nodes=tuple(positions),
+        positions=np.array(list(positions.values())),
         edges=np.array([(index[a], index[b]) for a, b in lines]),
         node_mass=np.array([entry.mass for entry in entries.values()]),
         frequencies=np.zeros(0),
         damping_ratio=np.zeros(0),
-        shapes=np.zeros((0, len(places), 3)),
+        shapes=np.zeros((0, len(positions), 3)),
         mode_names=(),
         residual={
             node: np.diag(1.0 / np.array(entry.attachment))
@@ -124,27 +128,25 @@ def skeleton(design: BodyDesign, points: Mapping[str, Point]) -> Superelement:
 
 
 def body_frame(design: BodyDesign, points: Mapping[str, Point], properties: NodeProperties) -> BodyFrame:
-    """The frame of a design on the hardpoints of a car, with its mass, centre of gravity and inertia.
+    """Build the frame of a design on the hardpoints of a car, with its mass, centre of gravity and inertia.
 
     Args:
-        design: of the body.
-        points: interface and output points of the car.
-        properties: mass properties of the car.
-
-    Returns:
-        The frame.
+        design: body design.
+        points: interface and output points of the car [m], by name.
+        properties: mass properties of the body.
 
     Raises:
-        ConfigurationError: as of `skeleton`; a node without a tube, or a member without length; fewer elastic modes
-            than wanted; no positive node masses with the mass properties.
+        ConfigurationError: see `skeleton`; a node without a tube, a member without length, fewer elastic modes than
+            `mode_count`, or no positive node masses with the mass properties.
     """
-    rest, placed = skeleton(design, points), design.placed(points)
-    count, positions = len(rest.nodes), rest.positions
+    base, placed = skeleton(design, points), design.placed(points)
+    count, positions = len(base.nodes), base.positions
     if design.mode_count > 3 * count - 6:
         raise ConfigurationError(
-            f"mode_count: found {design.mode_count:g}, but {count} nodes have {3 * count - 6} elastic modes"
+            f"mode_count: found {design.mode_count:g}, must be at most {3 * count - 6}, the elastic modes of {count} "
+            "nodes"
         )
-    loose = [name for i, name in enumerate(rest.nodes) if i not in rest.edges]
+    loose = [name for i, name in enumerate(base.nodes) if i not in base.edges]
     if loose:
         raise ConfigurationError(
             f"nodes: no tube ends at {', '.join(loose)}, which could turn freely; add members with width and wall"
@@ -152,22 +154,22 @@ def body_frame(design: BodyDesign, points: Mapping[str, Point], properties: Node
     fixed = np.zeros((6 * count, 6 * count))
     groups: dict[str, FloatArray] = {}
     for group, members in design.members.items():
-        ends = [(rest.node_index(a), rest.node_index(b)) for a, b in design.member_ends(group, placed)]
+        ends = [(base.node_index(a), base.node_index(b)) for a, b in design.member_ends(group, placed)]
         for a, b in ends:
             if (distance := float(np.linalg.norm(positions[a] - positions[b]))) < COINCIDENT_M:
                 raise ConfigurationError(
-                    f"members.{group}: {rest.nodes[a]} at {positions[a].tolist()} m and {rest.nodes[b]} are "
-                    f"{distance:.3g} m apart; a member needs {COINCIDENT_M:g} m and more. Move the hardpoint, or the "
-                    "place of a node in the body design"
+                    f"members.{group}: {base.nodes[a]} at {positions[a].tolist()} m and {base.nodes[b]} are "
+                    f"{distance:.3g} m apart, must be at least {COINCIDENT_M:g} m. Move the hardpoint, or change "
+                    "the place of the node in the body design"
                 )
-        scaled, stays = members.sections(design.youngs_modulus, design.shear_modulus)
-        groups[group] = frame_stiffness(positions, [(a, b, scaled) for a, b in ends])
-        if stays.axial > 0.0:
-            fixed += frame_stiffness(positions, [(a, b, stays) for a, b in ends])
-    freedom = np.array([design.nodes[name].freedom for name, made in placed.items() for _ in made])
-    assert rest.node_mass is not None
-    masses = properties.masses(rest.node_mass, freedom, positions)
-    loaded = replace(rest, node_mass=masses)
+        scaled_section, fixed_section = members.sections(design.youngs_modulus, design.shear_modulus)
+        groups[group] = frame_stiffness(positions, [(a, b, scaled_section) for a, b in ends])
+        if fixed_section.axial > 0.0:
+            fixed += frame_stiffness(positions, [(a, b, fixed_section) for a, b in ends])
+    freedom = np.array([design.nodes[name].freedom for name, nodes in placed.items() for _ in nodes])
+    assert base.node_mass is not None
+    masses = properties.masses(base.node_mass, freedom, positions)
+    loaded = replace(base, node_mass=masses)
     return BodyFrame(design=design, skeleton=loaded, fixed_stiffness=fixed, group_stiffness=groups)
 
 
@@ -178,36 +180,36 @@ def design_superelement(
     body: TrimmedBody,
     loads: tuple[BodyLoad, ...] = (),
 ) -> Superelement:
-    """The modal superelement of a design on a car, computed once for the same points and masses.
+    """Return the modal superelement of a design on a car, cached by points and mass properties.
 
     Args:
-        design: of the body.
-        points: of the car.
-        attachments: those at which something acts on the body, or is measured: it has a node at each.
-        body: mass properties of the car.
-        loads: on the body.
+        design: body design.
+        points: hardpoints of the car [m], by name.
+        attachments: points with a force on the body or an output [m], by name; the body gets a node at each.
+        body: mass properties of the body in the vehicle file.
+        loads: loads on the body.
 
     Returns:
-        The body; with loads, that with its masses times `body.model_factor`.
+        Superelement; with loads, its masses are multiplied by `body.model_factor`.
 
     Raises:
-        ConfigurationError: as of `body_frame`.
+        ConfigurationError: see `body_frame`.
     """
     properties = NodeProperties.of_body(body, design.least_ixx)
-    places = tuple(points.items()), tuple(attachments.items())
+    point_sets = tuple(points.items()), tuple(attachments.items())
     if not loads:
-        return _built(design, *places, properties)
-    return _built(design, *places, properties, loads, body.model_factor)
+        return _built(design, *point_sets, properties)
+    return _built(design, *point_sets, properties, loads, body.model_factor)
 
 
-Places = tuple[tuple[str, Point], ...]
+NamedPoints = tuple[tuple[str, Point], ...]
 
 
 @lru_cache(maxsize=32)
 def _built(
     design: BodyDesign,
-    points: Places,
-    attachments: Places,
+    points: NamedPoints,
+    attachments: NamedPoints,
     properties: NodeProperties,
     loads: tuple[BodyLoad, ...] = (),
     factor: float = 1.0,

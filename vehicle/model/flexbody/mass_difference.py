@@ -1,8 +1,8 @@
-"""Mass and centre of gravity of a body model against those of the vehicle file.
+"""Comparison of mass and centre of gravity of a body model with the vehicle file.
 
-Rigid motions take the mass properties of the vehicle file, and the modes are free-free modes of those of the model.
-Where both are the same body there is no inertia coupling between them. Where not, M phi' R is left out: of the order of
-the relative difference of the masses, and of the distance of the centres over the radius of gyration.
+Rigid motions use the mass properties of the vehicle file; the modes are free-free modes with the masses of the model.
+If the masses agree, rigid motions and modes have no inertia coupling. If not, the simulation neglects the coupling
+phi' M R, of the order of the relative mass difference and of the CoG distance over the radius of gyration.
 """
 
 from __future__ import annotations
@@ -12,82 +12,87 @@ from collections.abc import Sequence
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.loads import BodyLoad, loaded_properties
+from vehicle.model.flexbody.body_loads import BodyLoad, loaded_properties
 from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.body import TrimmedBody
 
 MASS_DIFFERENCE = 0.01
-"""Relative difference of two masses of one trimmed body from which they are not the same: a scale is good to 0.1 %, but
-fluids, trim and the mass of glue, paint and wiring in a model are known to a percent only."""
+"""Maximum relative difference of two masses of the same body [1]: scales are accurate to 0.1 %, but fluids, trim, glue,
+paint and wiring in a model only to 1 %."""
 
 COG_DISTANCE = 0.02
-"""Distance of two centres of gravity of one trimmed body from which they are not the same [m]. Wheel loads tell the
-place along and across it to millimetres; the height, about 1 m, follows from a lifted axle within a few percent
-(ISO 10392:2011, scope)."""
+"""Maximum distance of two centres of gravity of the same body [m]. Wheel loads determine x and y to millimetres; the
+height, about 1 m, follows from a lifted axle within a few percent (ISO 10392:2011, scope)."""
 
 _ROUND_OFF = 1e-9
-"""Share of the largest component below which one is round-off of a symmetric body: files have seven digits."""
+"""Components below this share of the largest are round-off of a symmetric body: files have seven digits."""
 
 
 def powers_of_thousand(mass: float, other: float) -> int:
-    """Power of 1000 that is nearest to the ratio of two masses: not zero of one body in two units.
+    """Return the power of 1000 nearest to the ratio mass / other; nonzero indicates different units.
 
     Args:
-        mass, other: [kg].
+        mass, other: masses of the same body [kg].
     """
     return round(float(np.log10(mass / other)) / 3.0)
 
 
 def require_unit_of_mass(model: Superelement, body: TrimmedBody) -> None:
-    """Refuse a body model whose mass is in another unit than kg.
+    """Check that the mass of a body model is in kg, by comparison with the vehicle file.
 
     Args:
-        model: body model without what is fixed to it.
-        body: of the vehicle file.
+        model: body model without attached masses.
+        body: body of the vehicle file.
 
     Raises:
-        DataError: the masses are about a power of 1000 apart.
+        DataError: the masses differ by about a power of 1000.
     """
     if body.flexible and len(model.frequencies) and powers_of_thousand(model.mass, body.mass):
         raise DataError(
             f"superelement {model.name!r}, mass: found {model.mass:.4g} kg, body.mass is {body.mass:.4g} kg: another "
-            "unit of mass. Import the model again with --mass-unit (t of matrices in mm, N and s), or give its "
-            "vehicle's body.mass."
+            "unit of mass. Import the model again with --mass-unit (t for matrices in mm, N and s), or correct "
+            "body.mass of the vehicle."
         )
 
 
 def mass_difference(model: Superelement, body: TrimmedBody, loads: Sequence[BodyLoad] = ()) -> list[str]:
-    """A sentence where model and vehicle file differ by more than weighing and tilting can be wrong; else nothing.
+    """Return a notice if mass or CoG of body model and vehicle file differ by more than the measurement uncertainty.
 
     Args:
-        model: body model without what is fixed to it.
-        body: of the vehicle file.
-        loads: on the body, which are in the model.
+        model: body model without attached masses.
+        body: body of the vehicle file.
+        loads: loads on the body that the model includes.
+
+    Returns:
+        One notice, or an empty list.
     """
     if not (body.flexible and len(model.frequencies)):
         return []
-    given = MassProperties(mass=body.mass, cog=np.array(body.cog), inertia=np.eye(3))
-    given = loaded_properties(given, loads)
-    relative = abs(model.mass / given.mass - 1.0)
-    apart = float(np.linalg.norm(model.cog - given.cog))
-    if relative <= MASS_DIFFERENCE and apart <= COG_DISTANCE:
+    vehicle_properties = MassProperties(mass=body.mass, cog=np.array(body.cog), inertia=np.eye(3))
+    vehicle_properties = loaded_properties(vehicle_properties, loads)
+    relative = abs(model.mass / vehicle_properties.mass - 1.0)
+    distance = float(np.linalg.norm(model.cog - vehicle_properties.cog))
+    if relative <= MASS_DIFFERENCE and distance <= COG_DISTANCE:
         return []
-    place = ", ".join(f"{value:z.3f}" for value in model.cog)
+    cog = ", ".join(f"{value:z.3f}" for value in model.cog)
     return [
-        f"body model {model.name}: {model.mass:.1f} kg with the CoG at [{place}] m; the vehicle file has "
-        f"{given.mass:.1f} kg and a CoG {1e3 * apart:.0f} mm away. More than {100 * MASS_DIFFERENCE:g} % or "
-        f"{1e3 * COG_DISTANCE:g} mm is not one body: rigid motions take the vehicle file, modes the model, and their "
-        "inertia coupling is left out. `python -m vehicle body show` prints the table [body] of the model"
+        f"body model {model.name}: {model.mass:.1f} kg with the CoG at [{cog}] m; the vehicle file has "
+        f"{vehicle_properties.mass:.1f} kg and a CoG {1e3 * distance:.0f} mm away. More than "
+        f"{100 * MASS_DIFFERENCE:g} % or {1e3 * COG_DISTANCE:g} mm means two different bodies: rigid motions use the "
+        "vehicle file, modes the model, and their inertia coupling is neglected. `python -m vehicle body show` prints "
+        "the table [body] of the model"
     ]
 
 
 def vehicle_lines(model: Superelement) -> list[str]:
-    """Mass properties of a body model as a vehicle file has them: inertia about the CoG, products as integrals."""
-    cog, tensor = (np.asarray(own, dtype=float) for own in (model.cog, model.inertia))
-    cog, tensor = (np.where(np.abs(own) < _ROUND_OFF * np.abs(own).max(), 0.0, own) for own in (cog, tensor))
-    places = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
-    moments = [f"{name} = {(1.0 if i == j else -1.0) * tensor[i, j]:z.6g}" for name, (i, j) in places.items()]
+    """Format the mass properties of a body model as TOML lines of a vehicle file, inertia about the CoG."""
+    cog, tensor = (
+        np.where(np.abs(array) < _ROUND_OFF * np.abs(array).max(), 0.0, array)
+        for array in (np.asarray(model.cog, dtype=float), np.asarray(model.inertia, dtype=float))
+    )
+    components = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
+    moments = [f"{name} = {(1.0 if i == j else -1.0) * tensor[i, j]:z.6g}" for name, (i, j) in components.items()]
     return [
         f"mass = {model.mass:.6g}",
         f"cog = [{', '.join(f'{value:.5g}' for value in cog)}]",

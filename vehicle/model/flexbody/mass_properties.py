@@ -1,4 +1,4 @@
-"""Mass, centre of gravity and inertia of a body, and the six rigid motions normalised by them."""
+"""Mass, centre of gravity and inertia of a body, and its six mass-normalised rigid motions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vehicle.model.flexbody.beam import FloatArray
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MassProperties:
-    """What a body is where it does not bend.
+    """Mass properties of a rigid body.
 
     Attributes:
         mass: m [kg].
@@ -26,32 +26,31 @@ class MassProperties:
 
     @classmethod
     def of_points(cls, masses: FloatArray, positions: FloatArray) -> MassProperties:
-        """Of point masses: sum of m, sum of m r / m, sum of m (|r - c|^2 1 - (r - c)(r - c)').
+        """Return the mass properties of point masses: M = sum m, c = sum m r / M, sum m (|d|^2 1 - d d').
 
         Args:
-            masses: [kg], shape (n,).
-            positions: [m], shape (n, 3).
+            masses: point masses m [kg], shape (n,).
+            positions: their positions r = c + d [m], shape (n, 3).
         """
         mass = float(masses.sum())
         cog = np.asarray(masses @ positions / mass)
         return cls(mass=mass, cog=cog, inertia=_steiner(masses, positions - cog))
 
     def with_points(self, masses: FloatArray, positions: FloatArray) -> MassProperties:
-        """The same body with point masses [kg], (n,), fixed at positions [m], (n, 3)."""
+        """Return the mass properties with additional point masses [kg], (n,), at positions [m], (n, 3)."""
         total = self.mass + float(masses.sum())
         cog = (self.mass * self.cog + masses @ positions) / total
         tensor = self.inertia + _steiner(np.array([self.mass]), np.atleast_2d(self.cog - cog))
         return MassProperties(mass=total, cog=np.asarray(cog), inertia=tensor + _steiner(masses, positions - cog))
 
     def rigid_motions(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Mass-normalised rigid motions: R' M R = 1 for the six of them.
+        """Return the six mass-normalised rigid motions, R' M R = 1: translations, then rotations about the CoG.
 
         Args:
-            positions: where they are wanted [m], shape (n, 3).
+            positions: points of the body [m], shape (n, 3).
 
         Returns:
-            Displacements [kg^-1/2], shape (6, n, 3): translations, then rotations about the CoG; their rotations
-            [rad kg^-1/2 / m], the same at every place, shape (6, 3).
+            Displacements of the points [kg^-1/2], shape (6, n, 3); rotations [rad kg^-1/2 / m], shape (6, 3).
         """
         shapes, turns = np.zeros((6, len(positions), 3)), np.zeros((6, 3))
         turns[3:] = np.linalg.inv(np.linalg.cholesky(self.inertia))
@@ -62,7 +61,7 @@ class MassProperties:
 
 
 def _steiner(masses: FloatArray, arms: ArrayLike) -> FloatArray:
-    """Sum of m (|r|^2 1 - r r') [kg m2], shape (3, 3)."""
+    """Return the sum of m (|r|^2 1 - r r') [kg m2], shape (3, 3)."""
     r = np.asarray(arms)
     moments = (r.T * masses) @ r
     return np.asarray(np.trace(moments) * np.eye(3) - moments)

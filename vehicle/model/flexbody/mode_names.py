@@ -1,27 +1,27 @@
-"""Names of body modes by a computed rule: where the kinetic energy is, and likeness to global deformation patterns."""
+"""Names of body modes, from the modal assurance with global deformation patterns and the kinetic energy by region."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.modes import rigid_shapes
+from vehicle.model.flexbody.frame_modes import rigid_shapes
 from vehicle.model.flexbody.symmetry import parity
 
 _LIKE = 0.30
-"""Modal assurance with a global pattern from which a mode is called by it."""
+"""Minimum modal assurance with a global pattern for a mode to be named after the pattern [1]."""
 _LONE = 0.50
-"""Share of kinetic energy from which one node gives the mode its name."""
+"""Minimum share of a node in the kinetic energy for a mode to be named after the node [1]."""
 _SYMMETRY = 0.80
-"""Parity from which a mode counts as symmetric, and below whose negative as antisymmetric."""
+"""Minimum |parity| of a mode named symmetric (positive) or antisymmetric (negative) [1]."""
 _DIRECTION = ("fore-aft", "lateral", "vertical")
 
 
 def global_patterns(positions: FloatArray, node_mass: FloatArray) -> dict[str, FloatArray]:
-    """Global deformation patterns, orthogonal to the rigid-body modes, mass-normalised.
+    """Return mass-normalised global deformation patterns, orthogonal to the rigid-body modes.
 
-    Torsion is a twist about x that grows with x, bending a parabola over x whose sections stay plane, lozenging a shear
-    of every cross-section, racking the same growing with x.
+    Torsion is a twist about x that grows with x, bending a parabola over x with plane sections, lozenging a uniform
+    shear of the cross-sections, racking a shear of the cross-sections that grows with x.
 
     Args:
         positions: node positions [m], shape (n, 3).
@@ -54,7 +54,7 @@ def global_patterns(positions: FloatArray, node_mass: FloatArray) -> dict[str, F
 
 
 def modal_assurance(shapes: FloatArray, pattern: FloatArray, node_mass: FloatArray) -> FloatArray:
-    """Mass-weighted modal assurance (phi^T M p)^2 of mass-normalised shapes with one pattern [1], shape (modes,)."""
+    """Return the modal assurance (phi^T M p)^2 of mass-normalised shapes with one pattern [1], shape (modes,)."""
     return np.asarray(np.einsum("mni,ni,n->m", shapes, pattern, node_mass) ** 2)
 
 
@@ -72,10 +72,11 @@ def _region(position: FloatArray) -> str:
 def mode_names(
     shapes: FloatArray, nodes: tuple[str, ...], positions: FloatArray, node_mass: FloatArray
 ) -> tuple[str, ...]:
-    """Name of every mode.
+    """Return a name for every mode.
 
-    The global pattern with a modal assurance of at least 0.3 gives its name; else one node with more than half of the
-    kinetic energy; else the region with the most energy, and whether both sides move alike. Direction by energy.
+    A mode is named after the global pattern with the highest modal assurance, if at least 0.3; else after a node with
+    more than half of the kinetic energy; else after the region with the highest energy, with the parity. The direction
+    is the axis with the highest energy.
 
     Args:
         shapes: mass-normalised shapes [kg^-1/2], shape (modes, n, 3).
@@ -84,7 +85,7 @@ def mode_names(
         node_mass: lumped masses [kg], shape (n,).
 
     Returns:
-        Names; equal names are numbered.
+        Names; equal names get a number.
     """
     patterns = global_patterns(positions, node_mass)
     regions = [_region(position) for position in positions]
@@ -102,8 +103,8 @@ def mode_names(
             share = {region: np.zeros(3) for region in regions}
             for region, part in zip(regions, energy, strict=True):
                 share[region] += part
-            most = max(share, key=lambda region: float(share[region].sum()))
-            name = f"{most} {_DIRECTION[int(share[most].argmax())]}"
+            region_of_mode = max(share, key=lambda region: float(share[region].sum()))
+            name = f"{region_of_mode} {_DIRECTION[int(share[region_of_mode].argmax())]}"
             if abs(likeness) >= _SYMMETRY:
                 name += ", symmetric" if likeness > 0.0 else ", antisymmetric"
         names.append(name)

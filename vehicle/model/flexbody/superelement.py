@@ -1,8 +1,9 @@
-"""The modal superelement: a flexible body as mass properties, free-free modes at nodes, and residual flexibility.
+"""Modal superelement: a flexible body as mass properties, free-free modes at nodes, and residual flexibility.
 
-A displacement of a node is that of the rigid body plus Phi_n q, with q'' + 2 zeta w q' + w^2 q = Phi_n' f. What the
-modes above those that are kept give way to a force is the residual flexibility of its node, G_n = sum of phi phi' / w^2
-[m/N], in series with what is fixed there. So no mass matrix is needed: mass properties, modal masses of one, shapes.
+The displacement of a node is the rigid-body displacement plus Phi_n q, with q'' + 2 zeta w q' + w^2 q = Phi_n' f. The
+static deflection of the truncated higher modes under a force is the residual flexibility of the node,
+G_n = sum of phi phi' / w^2 [m/N], in series with the attached element. No mass matrix is needed: mass properties,
+modal masses of 1 kg and shapes suffice.
 """
 
 from __future__ import annotations
@@ -31,42 +32,42 @@ def _frozen(array: object, dtype: type = float) -> FloatArray:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Superelement:
-    """A flexible body: rigid motion about its CoG plus mass-normalised elastic modes.
+    """Flexible body: rigid motion about its CoG plus mass-normalised elastic modes.
 
     Raises:
-        DataError: anything that `check_superelement` refuses.
+        DataError: the data violate a check of `check_superelement`.
     """
 
     name: str
     """name of the body"""
     nodes: tuple[str, ...]
-    """node names, all different"""
+    """node names, unique"""
     positions: FloatArray
     """node positions in the vehicle frame [m], shape (n, 3)"""
     edges: npt.NDArray[np.intp] | FloatArray
     """wireframe lines as pairs of node indices, shape (m, 2), integers"""
     node_mass: FloatArray | None = None
-    """lumped translational masses, where the body is nothing else [kg], shape (n,); the checks are exact with them"""
+    """lumped translational masses if these are the whole mass [kg], shape (n,); they allow exact checks of the modes"""
     mass_properties: MassProperties | None = None
-    """mass, CoG and inertia, where no masses of nodes are known"""
+    """mass, CoG and inertia if `node_mass` is unknown"""
     frequencies: FloatArray
-    """natural frequencies of the free body, ascending [Hz], shape (modes,); none of a rigid body"""
+    """natural frequencies of the free body, ascending [Hz], shape (modes,); empty for a rigid body"""
     damping_ratio: FloatArray
-    """share of critical damping of each mode [1], shape (modes,)"""
+    """modal damping ratio [1], shape (modes,)"""
     shapes: FloatArray
     """mass-normalised mode shapes, translations in the vehicle frame [kg^-1/2], shape (modes, n, 3)"""
     rotations: Mapping[str, FloatArray] = field(default_factory=dict)
-    """node -> its rotation in the same modes, where it is known [rad m^-1 kg^-1/2], shape (modes, 3)"""
+    """node name -> rotation of the node in each mode, if known [rad m^-1 kg^-1/2], shape (modes, 3)"""
     residual: Mapping[str, FloatArray] = field(default_factory=dict)
-    """node -> residual flexibility, symmetric [m/N], shape (3, 3)"""
+    """node name -> residual flexibility, symmetric [m/N], shape (3, 3)"""
     mode_names: tuple[str, ...]
-    """one name for each mode"""
+    """name of each mode"""
     provenance: str
-    """where the numbers come from, in words: program, units and frame of the source, what was scaled"""
+    """origin of the values, as text: program, units and frame of the source, scaling"""
     hardpoint_tolerance: float = 1e-3
-    """largest distance of a node from the hardpoint that it is measured for [m]"""
+    """maximum distance of a node from its hardpoint [m]"""
     derived: bool = field(default=False, repr=False)
-    """made from a body that has been checked, which is not repeated for every car of a sweep"""
+    """true: derived from a checked body; skips the checks, which would cost time for every car of a sweep"""
 
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
@@ -80,7 +81,7 @@ class Superelement:
             except (TypeError, ValueError) as error:
                 raise DataError(
                     f"superelement {self.name!r}, {name}: not a regular array of numbers ({error}). "
-                    "Give one row of three numbers for every node."
+                    "Specify one row of three numbers for every node."
                 ) from error
         put("edges", _frozen(np.asarray(self.edges, dtype=int).reshape(-1, 2), int))
         put("nodes", tuple(self.nodes))
@@ -92,7 +93,7 @@ class Superelement:
 
     @property
     def rigid(self) -> MassProperties:
-        """Mass, CoG and inertia: those of the node masses, or those given."""
+        """Mass, CoG and inertia, computed from `node_mass` or taken from `mass_properties`."""
         if self.node_mass is not None:
             return MassProperties.of_points(self.node_mass, self.positions)
         assert self.mass_properties is not None
@@ -114,10 +115,10 @@ class Superelement:
         return self.rigid.inertia
 
     def node_index(self, name: str) -> int:
-        """Index of a node.
+        """Return the index of a node.
 
         Raises:
-            DataError: no node of this name; the message lists the names that exist.
+            DataError: no node has this name; the message lists the existing names.
         """
         try:
             return self.nodes.index(name)
@@ -127,16 +128,16 @@ class Superelement:
             ) from None
 
     def shape_at(self, node: str) -> FloatArray:
-        """Mode shapes at one node: displacement = shape @ q [kg^-1/2], shape (3, modes)."""
+        """Return the mode shapes at a node [kg^-1/2], shape (3, modes): elastic displacement = shape @ q."""
         return np.asarray(self.shapes[:, self.node_index(node), :].T)
 
     def without_modes(self) -> Superelement:
-        """The same body, rigid."""
-        none = np.zeros(0)
+        """Return the body without elastic modes."""
+        no_modes = np.zeros(0)
         return replace(
             self,
-            frequencies=none,
-            damping_ratio=none,
+            frequencies=no_modes,
+            damping_ratio=no_modes,
             shapes=np.zeros((0, len(self.nodes), 3)),
             rotations={},
             mode_names=(),
@@ -144,23 +145,23 @@ class Superelement:
         )
 
     def scaled(self, factor: float) -> Superelement:
-        """Return the body with all its masses times a factor and its stiffness as it is.
+        """Return the body with all masses multiplied by a factor f and unchanged stiffness.
 
-        (K - w^2 f M) phi = 0 has the shapes of M, so that w goes with f^-1/2, and so do mass-normalised shapes.
-        Residual flexibility is static and stays; each damping ratio stays.
+        (K - w^2 f M) phi = 0 has the same shapes for every f; w and the mass-normalised shapes scale with f^-1/2.
+        Residual flexibility, being static, and damping ratios do not change.
 
         Args:
             factor: f [1].
         """
         if factor == 1.0:
             return self
-        root, own = factor**-0.5, self.mass_properties
+        root, properties = factor**-0.5, self.mass_properties
         return replace(
             self,
             node_mass=None if self.node_mass is None else factor * self.node_mass,
             mass_properties=None
-            if own is None
-            else MassProperties(mass=factor * own.mass, cog=own.cog, inertia=factor * own.inertia),
+            if properties is None
+            else MassProperties(mass=factor * properties.mass, cog=properties.cog, inertia=factor * properties.inertia),
             frequencies=root * self.frequencies,
             shapes=root * self.shapes,
             rotations={node: root * turns for node, turns in self.rotations.items()},
@@ -168,13 +169,13 @@ class Superelement:
         )
 
     def up_to(self, frequency: float, kept: Collection[str]) -> Superelement:
-        """The body with its modes up to a frequency; the others as residual flexibility of the nodes that are used.
+        """Truncate the modes above a frequency and add their static share to the residual flexibility of loaded nodes.
 
-        A mode at f_i that answers statically is wrong by (f/f_i)^2 / (1 - (f/f_i)^2) of its own share at f.
+        At f, the static share of a mode at f_i is too small by (f/f_i)^2 / (1 - (f/f_i)^2) of the static share.
 
         Args:
-            frequency: modes above are left out [Hz].
-            kept: names of the nodes where something acts on the body.
+            frequency: highest frequency of the remaining modes [Hz].
+            kept: names of the nodes at which forces act on the body.
         """
         count = int(np.searchsorted(self.frequencies, frequency, side="right"))
         if count == len(self.frequencies):
@@ -196,11 +197,11 @@ class Superelement:
         )
 
     def combined(self, spread: FloatArray, kept: Collection[str]) -> Superelement:
-        """The body in combinations of its modes, without springs, at the nodes that are kept.
+        """Return the body with linear combinations of its modes as shapes, without modal stiffness, at some nodes.
 
         Args:
-            spread: modal coordinates by the new ones, shape (modes, new).
-            kept: names of these nodes.
+            spread: modal coordinates as a function of the new coordinates, shape (modes, new).
+            kept: names of the remaining nodes.
         """
         where = [self.node_index(node) for node in kept]
         count = spread.shape[1]
@@ -221,35 +222,35 @@ class Superelement:
         )
 
 
-def attached_nodes(body: Superelement, places: Mapping[str, Point]) -> dict[Point, str]:
-    """The node of a body model at each point where something acts on it: found by its place, never by its name.
+def attached_nodes(body: Superelement, points: Mapping[str, Point]) -> dict[Point, str]:
+    """Find the node of a body model at each attachment point by its position; node names are not used.
 
     Args:
-        body: the body model; says how far a node may be from a point of the car.
-        places: points of the car in the vehicle frame [m], by name.
+        body: the body model; its `hardpoint_tolerance` is the maximum distance of a node from its point.
+        points: points of the car in the vehicle frame [m], by name.
 
     Returns:
-        Point to the name of its node. What is rigid reaches everywhere: there a node is only needed for its local
-        stiffness, and may be as far as that of a body that is measured.
+        Point -> name of its node. For a rigid body, which needs only the local stiffness, points without a node within
+        `LARGEST_TOLERANCE` are omitted.
 
     Raises:
-        DataError: no node is near enough; names the nearest, the distance and both positions.
+        DataError: no node of a flexible body is near enough; the message contains the nearest node and its distance.
     """
-    found: dict[Point, str] = {}
-    for name, place in places.items():
-        gap = np.linalg.norm(body.positions - np.array(place), axis=1)
+    nodes: dict[Point, str] = {}
+    for name, point in points.items():
+        gap = np.linalg.norm(body.positions - np.array(point), axis=1)
         best = int(np.argmin(gap))
         distance, tolerance = float(gap[best]), body.hardpoint_tolerance
         if not body.frequencies.size:
             if distance <= LARGEST_TOLERANCE:
-                found[place] = body.nodes[best]
+                nodes[point] = body.nodes[best]
             continue
         if not distance <= tolerance:
             raise DataError(
-                f"superelement {body.name!r}: no node at {name} {list(place)} m, where the car is fixed to it: node "
-                f"{body.nodes[best]!r} at {body.positions[best].tolist()} m is {distance * 1e3:.4g} mm away; "
-                f"{tolerance * 1e3:g} mm is allowed. Move the hardpoint or use a body model measured at it, or one "
-                "that is computed from the hardpoints (body.superelement = body_design.toml)."
+                f"superelement {body.name!r}: no node at {name} {list(point)} m, an attachment of the car; the nearest "
+                f"is {body.nodes[best]!r} at {body.positions[best].tolist()} m, {distance * 1e3:.4g} mm away, must be "
+                f"at most {tolerance * 1e3:g} mm. Move the hardpoint, use a body model with a node there, or compute "
+                "the body from the hardpoints (body.superelement = body_design.toml)."
             )
-        found[place] = body.nodes[best]
-    return found
+        nodes[point] = body.nodes[best]
+    return nodes

@@ -1,4 +1,4 @@
-"""What a modal superelement must satisfy before a simulation may use it."""
+"""Checks of a modal superelement before a simulation uses it."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ if TYPE_CHECKING:
     from vehicle.model.flexbody.superelement import Superelement
 
 NORMALISATION = 1e-6
-"""largest deviation of phi^T M phi from the identity, and of the modes' rigid content from zero [1]"""
+"""Maximum deviation of phi^T M phi from the identity, and of R^T M phi (R: rigid motions) from zero [1]."""
 _RIGID_LIKENESS = 0.999
-"""Largest share of a shape that may be a rigid motion, where masses of nodes are not known: elastic modes of cars at
-some twenty points have 0.1 to 0.8 of it, rigid ones 1; what is left is the noise of a modal test."""
+"""Maximum share of rigid motion in a shape if node masses are unknown [1]: elastic modes of cars at some twenty points
+have 0.1 to 0.8, rigid-body modes 1; the margin is the noise of a modal test."""
 _SOFTEST_RESIDUAL = 1e-4  # m/N; towers and mounts of car bodies are stiffer than 1e6 N/m, exports in mm/N 1000 times
 _SYMMETRY = 1e-6  # of a residual flexibility; exports have seven digits
 _LARGEST_BODY = 30.0  # m; a road vehicle in millimetres is thousands
 _SMALLEST_BODY = 0.05  # m; a road vehicle in kilometres is below
 HIGHEST_DAMPING = 0.3
-"""Largest damping ratio [1]: trimmed bodies have 0.01 to 0.08; ten times that is no vibration any more."""
+"""Maximum damping ratio [1]: car bodies have 0.01 to 0.08; with ten times as much a mode hardly vibrates."""
 LARGEST_TOLERANCE = 0.05
-"""Largest distance of a node from its point [m]: half that of the two interface nodes nearest to each other."""
+"""Maximum distance of a node from its point [m]: half the smallest distance between two interface nodes."""
 HIGHEST_FIRST_MODE = 90.0
-"""Highest first mode of a trimmed body [Hz]: they begin between 15 and 60 Hz, which is 94 rad/s and more."""
+"""Maximum frequency of the first mode of a car body [Hz]: typical are 15 to 60 Hz, which is 94 rad/s and more."""
 LOWEST_FIRST_MODE = 5.0
-"""Frequency [Hz] below which no elastic mode of a road vehicle's body lies: convertibles have 12, vans and buses 8."""
+"""Minimum frequency of the first elastic mode of a vehicle body [Hz]: convertibles have 12, vans and buses 8."""
 
 
 def check_superelement(body: Superelement) -> None:
-    """Refuse a body model that is inconsistent, in a wrong unit, not mass-normalised or not free of rigid motion.
+    """Check that a body model is consistent, in SI units, mass-normalised and free of rigid motion.
 
     Raises:
-        DataError: what is wrong, where, the value found, what is allowed and how to mend it.
+        DataError: a check failed; the message contains the item, its value, the limit and the remedy.
     """
     _check_counts(body)
     _check_values(body)
@@ -57,64 +57,64 @@ def _refuse(body: Superelement, text: str) -> None:
 def _check_counts(body: Superelement) -> None:
     nodes, modes = len(body.nodes), body.frequencies.size
     if nodes < 3:
-        _refuse(body, f"size: {nodes} nodes; at least 3 are needed.")
-    wanted: dict[str, tuple[int, ...]] = {
+        _refuse(body, f"size: found {nodes} nodes, must be at least 3.")
+    required: dict[str, tuple[int, ...]] = {
         "positions": (nodes, 3),
         "frequencies": (modes,),
         "damping_ratio": (modes,),
         "shapes": (modes, nodes, 3),
     }
     if body.node_mass is not None:
-        wanted["node_mass"] = (nodes,)
-    for name, shape in wanted.items():
-        found = getattr(body, name).shape
-        if found != shape:
+        required["node_mass"] = (nodes,)
+    for name, shape in required.items():
+        actual = getattr(body, name).shape
+        if actual != shape:
             _refuse(
                 body,
-                f"{name}: shape {found}, but {nodes} nodes and {modes} frequencies need {shape}. "
+                f"{name}: shape {actual}, but {nodes} nodes and {modes} frequencies need {shape}. "
                 "Export every array for the same nodes and modes.",
             )
     if len(body.mode_names) != modes:
-        _refuse(body, f"mode_names: {len(body.mode_names)} names for {modes} frequencies. Name every mode once.")
-    twice = sorted(name for name, count in Counter(body.nodes).items() if count > 1)
-    if twice:
-        _refuse(body, f"nodes: {', '.join(map(repr, twice))} given more than once. Node names must be unique.")
+        _refuse(body, f"mode_names: {len(body.mode_names)} names for {modes} frequencies. Specify a name per mode.")
+    duplicates = sorted(name for name, count in Counter(body.nodes).items() if count > 1)
+    if duplicates:
+        _refuse(body, f"nodes: {', '.join(map(repr, duplicates))} given more than once. Node names must be unique.")
     if body.edges.size and not (body.edges.min() >= 0 and body.edges.max() < nodes):
-        _refuse(body, f"edges: index {body.edges.min()} to {body.edges.max()}; allowed are 0 to {nodes - 1}.")
-    for name, owned in (("rotations", body.rotations), ("residual", body.residual)):
-        for node in owned:
+        _refuse(body, f"edges: found index {body.edges.min()} to {body.edges.max()}, must be 0 to {nodes - 1}.")
+    for name, node_values in (("rotations", body.rotations), ("residual", body.residual)):
+        for node in node_values:
             if node not in body.nodes:
                 _refuse(body, f"{name}: no node {node!r}. Its nodes are: {', '.join(body.nodes)}.")
-    for node, turns in body.rotations.items():
-        if turns.shape != (modes, 3) or not np.all(np.isfinite(turns)):
+    for node, rotation in body.rotations.items():
+        if rotation.shape != (modes, 3) or not np.all(np.isfinite(rotation)):
             _refuse(
-                body, f"rotations of {node!r}: shape {turns.shape}; {modes} rows of three finite numbers are needed."
+                body, f"rotations of {node!r}: shape {rotation.shape}, must be {modes} rows of three finite numbers."
             )
     for node, flexibility in body.residual.items():
         if flexibility.shape != (3, 3):
-            _refuse(body, f"residual of {node!r}: shape {flexibility.shape}; three rows of three numbers are needed.")
+            _refuse(body, f"residual of {node!r}: shape {flexibility.shape}, must be three rows of three numbers.")
         _check_residual(body, node, flexibility)
 
 
 def _check_residual(body: Superelement, node: str, flexibility: FloatArray) -> None:
     if not np.all(np.isfinite(flexibility)):
-        _refuse(body, f"residual of {node!r}: {flexibility.tolist()}; every number must be finite. Repair the export.")
+        _refuse(body, f"residual of {node!r}: {flexibility.tolist()}; every number must be finite. Correct the export.")
     largest = float(np.abs(flexibility).max())
     if np.abs(flexibility - flexibility.T).max() > _SYMMETRY * largest:
-        _refuse(body, f"residual of {node!r}: {flexibility.tolist()} m/N is not symmetric. Give G = G'.")
+        _refuse(body, f"residual of {node!r}: {flexibility.tolist()} m/N is not symmetric. Specify G = G'.")
     lowest = float(np.linalg.eigvalsh(flexibility)[0])
     if lowest < -_SYMMETRY * largest:
         _refuse(
             body,
-            f"residual of {node!r}: its smallest principal value is {lowest:.4g} m/N, must not be negative: a spring "
-            "in series would push the wrong way. Take modes and residual of the same model.",
+            f"residual of {node!r}: its smallest principal value is {lowest:.4g} m/N, must not be negative (negative "
+            "spring in series). Use modes and residual of the same model.",
         )
     if largest > _SOFTEST_RESIDUAL:
         _refuse(
             body,
-            f"residual of {node!r}: {largest:.4g} m/N, at most {_SOFTEST_RESIDUAL:g} is a car's; looks like mm/N, "
-            "or a node on a soft spot. Give m/N in a file, [mm/N] in the head of a --residual table; import matrices "
-            "with their --length-unit and --mass-unit, and points on more nodes with --spread.",
+            f"residual of {node!r}: found {largest:.4g} m/N, must be at most {_SOFTEST_RESIDUAL:g} for a car; probably "
+            "mm/N, or a node at a soft spot. Use m/N in a file, [mm/N] in the head of a --residual table; import "
+            "matrices with their --length-unit and --mass-unit, and points on more nodes with --spread.",
         )
 
 
@@ -123,7 +123,7 @@ def _check_values(body: Superelement) -> None:
         array = getattr(body, name)
         if array is not None and not np.all(np.isfinite(array)):
             where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-            _refuse(body, f"{name}{list(where)}: {array[where]}; every number must be finite. Repair the export.")
+            _refuse(body, f"{name}{list(where)}: {array[where]}; every number must be finite. Correct the export.")
     if body.node_mass is not None and (body.node_mass.min() < 0.0 or body.node_mass.sum() <= 0.0):
         worst = int(body.node_mass.argmin())
         _refuse(
@@ -134,15 +134,15 @@ def _check_values(body: Superelement) -> None:
     if not 0.0 < body.hardpoint_tolerance <= LARGEST_TOLERANCE:
         _refuse(
             body,
-            f"hardpoint_tolerance: {body.hardpoint_tolerance:g} m; allowed is above 0, up to {LARGEST_TOLERANCE:g} m: "
-            "a node farther away is another point of the body.",
+            f"hardpoint_tolerance: found {body.hardpoint_tolerance:g} m, must be above 0 and at most "
+            f"{LARGEST_TOLERANCE:g} m: a node farther away is a different point of the body.",
         )
     if np.any(body.frequencies <= 0.0):
         worst = int(body.frequencies.argmin())
         _refuse(
             body,
             f"frequencies[{worst}]: {body.frequencies[worst]:g} Hz; elastic modes have positive frequencies. "
-            "Leave rigid-body modes out: they follow from the masses.",
+            "Omit rigid-body modes: they follow from the masses.",
         )
     falls = np.flatnonzero(np.diff(body.frequencies) < 0.0)
     if falls.size:
@@ -157,38 +157,39 @@ def _check_values(body: Superelement) -> None:
         i = int(bad[0])
         _refuse(
             body,
-            f"damping_ratio[{i}]: {body.damping_ratio[i]:g}; allowed is 0 to {HIGHEST_DAMPING:g}. Give the share of "
-            "critical damping, 0.02 for 2 %.",
+            f"damping_ratio[{i}]: found {body.damping_ratio[i]:g}, must be 0 to {HIGHEST_DAMPING:g}. Specify the "
+            "fraction of critical damping, 0.02 for 2 %.",
         )
 
 
 def _check_units(body: Superelement) -> None:
     extent = float(np.ptp(body.positions, axis=0).max())
     if extent > _LARGEST_BODY:
-        _refuse(body, f"positions: the body is {extent:g} m long, at most {_LARGEST_BODY:g} m; looks like mm. Give m.")
+        limit = f"must be at most {_LARGEST_BODY:g} m"
+        _refuse(body, f"positions: the body is {extent:g} m long, {limit}; probably mm. Convert to m.")
     if extent < _SMALLEST_BODY:
-        _refuse(body, f"positions: the body is {extent:g} m long, at least {_SMALLEST_BODY:g} m. Give metres.")
+        _refuse(body, f"positions: the body is {extent:g} m long, must be at least {_SMALLEST_BODY:g} m. Convert to m.")
     first = float(body.frequencies[0]) if body.frequencies.size else 0.0
     if first > HIGHEST_FIRST_MODE:
         _refuse(
             body,
-            f"frequencies: the first mode is at {first:g} Hz, at most {HIGHEST_FIRST_MODE:g} Hz is expected; looks "
-            f"like rad/s ({first / (2.0 * np.pi):.4g} Hz). Give Hz.",
+            f"frequencies: the first mode is at {first:g} Hz, must be at most {HIGHEST_FIRST_MODE:g} Hz; probably "
+            f"rad/s ({first / (2.0 * np.pi):.4g} Hz). Convert to Hz.",
         )
 
 
 def _check_rigid(body: Superelement) -> None:
-    """Mass, CoG and inertia: those of the node masses, or their own."""
+    """Check mass, CoG and inertia, from the node masses or specified directly."""
     if (body.node_mass is None) == (body.mass_properties is None):
-        found = "none of them" if body.node_mass is None else "both"
-        _refuse(body, f"mass: found {found}; give mass, CoG and inertia, or the mass of every node.")
+        mass_data = "neither" if body.node_mass is None else "both"
+        _refuse(body, f"mass: found {mass_data}; specify mass, CoG and inertia, or the mass of every node.")
     rigid = body.rigid
     numbers = np.array([rigid.mass, *np.ravel(rigid.cog), *np.ravel(rigid.inertia)])
     if numbers.size != 13 or not np.all(np.isfinite(numbers)) or rigid.mass <= 0.0:
         _refuse(
             body,
             f"mass {rigid.mass:g} kg, cog {np.ravel(rigid.cog).tolist()} m, inertia "
-            f"{np.ravel(rigid.inertia).tolist()} kg m2; needed are a positive mass, three and nine finite numbers.",
+            f"{np.ravel(rigid.inertia).tolist()} kg m2; must be a positive mass, three and nine finite numbers.",
         )
     low, high = body.positions.min(axis=0), body.positions.max(axis=0)
     room = 0.5 * float(np.max(high - low))
@@ -196,82 +197,84 @@ def _check_rigid(body: Superelement) -> None:
         _refuse(
             body,
             f"cog: {np.asarray(rigid.cog).tolist()} m lies far outside the nodes, {low.tolist()} to {high.tolist()} m. "
-            "Give it in the frame and unit of the nodes.",
+            "Specify the CoG in the frame and unit of the nodes.",
         )
     if not body.frequencies.size:
         return
     low_moment, middle, top = np.linalg.eigvalsh(rigid.inertia)
     if low_moment <= 1e-9 * top:
-        _refuse(body, "node_mass: all mass lies on one line, so the body has no inertia about it. Add mass beside it.")
+        _refuse(body, "node_mass: all mass is on one line, so the body has no inertia about the line. Add mass off it.")
     if not np.allclose(rigid.inertia, np.transpose(rigid.inertia), rtol=0.0, atol=_SYMMETRY * top):
         _refuse(body, f"inertia: {np.asarray(rigid.inertia).tolist()} kg m2 is not symmetric.")
     if low_moment + middle < top * (1.0 - 1e-6):
         _refuse(
             body,
-            f"inertia: principal moments {low_moment:.4g}, {middle:.4g} and {top:.4g} kg m2; of a body the two smaller "
-            "add up to the largest at least. Give the tensor about the CoG, its products negative.",
+            f"inertia: principal moments {low_moment:.4g}, {middle:.4g} and {top:.4g} kg m2; the sum of the two "
+            "smaller must be at least the largest. Specify the tensor about the CoG with negative products.",
         )
 
 
 def _check_likeness(body: Superelement) -> None:
-    """Without masses of nodes: shapes in a plausible unit, and none that is a rigid motion."""
+    """Check shapes without node masses: plausible unit, different shapes, and no shape a rigid motion."""
     level = float(np.sqrt(np.mean(body.shapes**2)) * np.sqrt(3.0 * body.mass))
     if not 1e-2 < level < 1e2:
         _refuse(
             body,
-            f"shapes: their RMS is {level:.3g} of that of a rigid motion with modal mass 1, expected is about 1; "
-            "give shapes with modal masses of 1 kg in kg^-1/2 (of millimetres and tonnes: divide by sqrt(1000)).",
+            f"shapes: their RMS is {level:.3g} times that of a rigid motion with modal mass 1, must be about 1. "
+            "Use shapes with modal masses of 1 kg in kg^-1/2 (from mm and tonnes: divide by sqrt(1000)).",
         )
     motions, _ = body.rigid.rigid_motions(body.positions)
     basis, _ = np.linalg.qr(motions.reshape(6, -1).T)
     flat = body.shapes.reshape(len(body.shapes), -1)
     still = np.flatnonzero(~flat.any(axis=1))
     if still.size:
-        _refuse(body, f"shapes: mode {still[0] + 1} is zero at all nodes. Leave it out, or give nodes that it moves.")
+        _refuse(body, f"shapes: mode {still[0] + 1} is zero at all nodes. Omit the mode, or add nodes that it moves.")
     share = np.sum((flat @ basis) ** 2, axis=1) / np.sum(flat**2, axis=1)
     if share.max() > _RIGID_LIKENESS:
         mode = int(share.argmax())
         _refuse(
             body,
-            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) is a rigid motion ({share[mode]:.4%}); allowed "
-            f"is {_RIGID_LIKENESS:.1%}. Leave rigid-body modes out: they follow from mass and inertia.",
+            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) is a rigid motion (share {share[mode]:.4%}, must "
+            f"be at most {_RIGID_LIKENESS:.1%}). Omit rigid-body modes: they follow from mass and inertia.",
         )
     twins = mac(body.shapes, body.shapes) - np.eye(len(body.shapes))
     if twins.max(initial=0.0) > _RIGID_LIKENESS:
-        one, other = sorted(int(k) for k in np.unravel_index(int(twins.argmax()), twins.shape))
+        mode_a, mode_b = sorted(int(k) for k in np.unravel_index(int(twins.argmax()), twins.shape))
         _refuse(
             body,
-            f"shapes: modes {one + 1} ({body.frequencies[one]:g} Hz) and {other + 1} ({body.frequencies[other]:g} Hz) "
-            f"are the same shape (MAC {twins.max():.4f}). Leave one out, or give more nodes.",
+            f"shapes: modes {mode_a + 1} ({body.frequencies[mode_a]:g} Hz) and {mode_b + 1} "
+            f"({body.frequencies[mode_b]:g} Hz) have the same shape (MAC {twins.max():.4f}). Omit one mode, or add "
+            "nodes.",
         )
 
 
 def _check_modes(body: Superelement, node_mass: FloatArray) -> None:
     gram = np.einsum("ank,bnk,n->ab", body.shapes, body.shapes, node_mass)
     scale = np.diag(gram)
-    for factor, unit in ((1e6, "looks like mm: divide the shapes by 1000"), (1e-6, "looks like km: multiply by 1000")):
+    for factor, unit in ((1e6, "probably mm: divide the shapes by 1000"), (1e-6, "probably km: multiply by 1000")):
         if np.allclose(scale, factor, rtol=0.01):
             _refuse(body, f"shapes: modal masses are {scale[0]:.4g} instead of 1; {unit}.")
     for factor, unit in ((1e3, "masses or shapes"), (1e-3, "masses or shapes")):
         if np.allclose(scale, factor, rtol=0.01):
-            _refuse(body, f"shapes: modal masses are {scale[0]:.4g} instead of 1; looks like tonne in {unit}. Give kg.")
+            _refuse(body, f"shapes: modal masses are {scale[0]:.4g} instead of 1; probably tonnes in {unit}. Use kg.")
     error = np.abs(gram - np.eye(len(gram)))
     if error.max() > NORMALISATION:
         i, j = (int(k) for k in np.unravel_index(int(error.argmax()), error.shape))
         _refuse(
             body,
             f"shapes: modes {i + 1} and {j + 1} have phi^T M phi = {gram[i, j]:.8g} instead of {float(i == j):g} "
-            f"(within {NORMALISATION:g}): not mass-normalised with the node masses given. Export mass-normalised "
-            "modes and the masses that belong to them.",
+            f"(within {NORMALISATION:g}): not mass-normalised with these node masses. Export mass-normalised modes "
+            "and the corresponding masses.",
         )
     rigid, _ = body.rigid.rigid_motions(body.positions)
     content = np.abs(np.einsum("ank,bnk,n->ab", rigid, body.shapes, node_mass))
     if content.max() > NORMALISATION:
         motion, mode = (int(k) for k in np.unravel_index(int(content.argmax()), content.shape))
-        kind = "translation along" if motion < 3 else "rotation about"
+        rigid_motion = "translation along" if motion < 3 else "rotation about"
         _refuse(
             body,
-            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) holds {content[motion, mode]:.3g} of the rigid "
-            f"{kind} {'xyz'[motion % 3]} (at most {NORMALISATION:g}): it is not a free-free mode of these masses. "
-            "Export free-free modes with the masses they were computed with, rigid-body modes left out.",
+            f"shapes: mode {mode + 1} ({body.frequencies[mode]:g} Hz) contains {content[motion, mode]:.3g} of the "
+            f"rigid {rigid_motion} {'xyz'[motion % 3]}, must be at most {NORMALISATION:g}: "
+            "not a free-free mode of these masses. Export free-free modes and the masses of their computation, without "
+            "rigid-body modes.",
         )

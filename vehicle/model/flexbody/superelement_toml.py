@@ -1,4 +1,4 @@
-"""A modal superelement as TOML with a unit in every key, read strictly."""
+"""Modal superelement as TOML with a unit in every key; unknown or missing keys are errors."""
 
 from __future__ import annotations
 
@@ -33,34 +33,34 @@ _OF_VERSION_1 = "attachment_stiffness_n_per_m"
 
 
 def of_tables(content: dict[str, Any]) -> Superelement:
-    """The superelement of the content of a file.
+    """Build a superelement from the parsed content of a TOML file.
 
     Raises:
-        DataError: incomplete, an unknown key, or refused by `check_superelement`.
+        DataError: a key is missing or unknown, or a check of `check_superelement` failed.
     """
-    found = content.get("format")
-    if found not in (FORMAT, _OLDER):
-        raise DataError(f"format is {found!r}; {FORMAT!r} and {_OLDER!r} can be read.")
-    older = found == _OLDER
+    file_format = content.get("format")
+    if file_format not in (FORMAT, _OLDER):
+        raise DataError(f"format is {file_format!r}, must be {FORMAT!r} or {_OLDER!r}.")
+    older = file_format == _OLDER
     _check_keys(content, "", "top level", older)
-    nodes, modes = (_tables(content, kind, older) for kind in ("node", "mode"))
+    nodes, modes = (_tables(content, table_type, older) for table_type in ("node", "mode"))
     names = tuple(str(node["name"]) for node in nodes)
     tolerance = numbers(content.get("hardpoint_tolerance_m", 1e-3), "hardpoint_tolerance_m")
     if tolerance.shape != ():
-        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, needed is one number.")
+        raise DataError(f"hardpoint_tolerance_m: found {tolerance.tolist()}, must be one number.")
     index = {name: i for i, name in enumerate(names)}
     edges = []
-    listed = content.get("edges", [])
-    for edge in listed if isinstance(listed, list) else [listed]:
+    edge_list = content.get("edges", [])
+    for edge in edge_list if isinstance(edge_list, list) else [edge_list]:
         if not (isinstance(edge, list) and len(edge) == 2 and all(str(end) in index for end in edge)):
-            raise DataError(f"edges: {edge!r} is no pair of node names.")
+            raise DataError(f"edges: {edge!r} is not a pair of node names.")
         edges.append([index[str(end)] for end in edge])
     for i, mode in enumerate(modes):
         shape = numbers(mode["shape_per_sqrt_kg"], f"mode {i + 1}, shape_per_sqrt_kg").shape
         if shape != (len(names), 3):
             raise DataError(
-                f"mode {i + 1}, shape_per_sqrt_kg: {shape[0] if shape else 0} rows; {len(names)} nodes need "
-                f"{len(names)} rows of three numbers."
+                f"mode {i + 1}, shape_per_sqrt_kg: {shape[0] if shape else 0} rows, must be {len(names)} rows of three "
+                "numbers, one per node."
             )
     residual = {}
     for node in nodes:
@@ -93,86 +93,99 @@ def of_tables(content: dict[str, Any]) -> Superelement:
 
 
 def _of_stiffness(stiffness: FloatArray) -> FloatArray:
-    """Flexibility of three springs along the axes [m/N], shape (3, 3)."""
+    """Return the flexibility of three springs along the axes [m/N], shape (3, 3)."""
     if stiffness.shape != (3,) or not np.all(np.isfinite(stiffness) & (stiffness > 0.0)):
         raise DataError(
-            f"{_OF_VERSION_1}: {stiffness.tolist()} N/m; three positive finite numbers are needed. Leave the node out "
-            "where it is rigid."
+            f"{_OF_VERSION_1}: found {stiffness.tolist()} N/m, must be three positive finite numbers. Omit the key "
+            "for a rigid attachment."
         )
     return np.diag(1.0 / stiffness)
 
 
-def given_rigid(given: dict[str, Any]) -> MassProperties | None:
-    """Mass properties, complete or left out."""
-    if not given:
+def given_rigid(table: dict[str, Any]) -> MassProperties | None:
+    """Return mass properties from the keys `RIGID`, which must be complete; None if all are absent."""
+    if not table:
         return None
     for key in RIGID:
-        if key not in given:
-            raise DataError(f"top level: key {key!r} is missing; {', '.join(RIGID)} belong together.")
-    mass, cog, inertia = (numbers(given[key], key) for key in RIGID)
+        if key not in table:
+            raise DataError(f"top level: key {key!r} is missing; set all of {', '.join(RIGID)}.")
+    mass, cog, inertia = (numbers(table[key], key) for key in RIGID)
     for key, array, shape in zip(RIGID, (mass, cog, inertia), ((), (3,), (3, 3)), strict=True):
         if array.shape != shape:
-            raise DataError(f"{key}: shape {array.shape}, needed is {shape}.")
+            raise DataError(f"{key}: shape {array.shape}, must be {shape}.")
     return MassProperties(mass=float(mass), cog=cog, inertia=inertia)
 
 
-def _check_keys(table: dict[str, Any], kind: str, where: str, older: bool) -> None:
-    known = [key for key in _KEYS[kind] if older or key != _OF_VERSION_1]
+def _check_keys(table: dict[str, Any], table_type: str, where: str, older: bool) -> None:
+    valid_keys = [key for key in _KEYS[table_type] if older or key != _OF_VERSION_1]
     for key in table:
-        if key not in known:
-            near = difflib.get_close_matches(key, known, n=1, cutoff=0.0)
-            raise DataError(f"{where}: unknown key {key!r}; the nearest valid one is {near[0]!r}.")
-    for key in known:
+        if key not in valid_keys:
+            similar = difflib.get_close_matches(key, valid_keys, n=1, cutoff=0.0)
+            raise DataError(f"{where}: unknown key {key!r}; the nearest valid one is {similar[0]!r}.")
+    for key in valid_keys:
         if key not in table and key not in _OPTIONAL and key != _OF_VERSION_1:
-            raise DataError(f"{where}: key {key!r} is missing. The file is incomplete or was cut off; write it again.")
+            raise DataError(f"{where}: key {key!r} is missing. The file is incomplete or truncated; write it again.")
 
 
-def _tables(content: dict[str, Any], kind: str, older: bool) -> list[dict[str, Any]]:
-    tables, count = content[kind], content[f"{kind}_count"]
+def _tables(content: dict[str, Any], table_type: str, older: bool) -> list[dict[str, Any]]:
+    tables, count = content[table_type], content[f"{table_type}_count"]
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise DataError(f"{kind}: must be a list of [[{kind}]] tables.")
+        raise DataError(f"{table_type}: must be a list of [[{table_type}]] tables.")
     if len(tables) != count:
         raise DataError(
-            f"{len(tables)} [[{kind}]] tables, but {kind}_count = {count!r}. The file is incomplete, was cut off, or "
-            "the count was not changed with it."
+            f"{len(tables)} [[{table_type}]] tables, but {table_type}_count = {count!r}. The file is incomplete or "
+            "truncated, or the count is outdated."
         )
     if not tables:
-        raise DataError(f"{kind}_count is 0; at least 1 {kind} is needed. A rigid body is body.flexible = false.")
+        raise DataError(f"{table_type}_count is 0, must be at least 1. For a rigid body, set body.flexible = false.")
     for i, table in enumerate(tables):
-        # A body of masses at its nodes needs them all; one with mass properties of its own needs none.
-        free = {"mass_kg": 0.0} if kind == "node" and "mass_kg" in content and not older else {}
-        _check_keys({**free, **table}, kind, f"{kind} {i + 1}", older)
+        # Node masses are optional if the file has mass properties of the whole body.
+        free = {"mass_kg": 0.0} if table_type == "node" and "mass_kg" in content and not older else {}
+        _check_keys({**free, **table}, table_type, f"{table_type} {i + 1}", older)
     return tables
 
 
-def _all_or_none(tables: list[dict[str, Any]], kind: str, key: str) -> bool:
-    having = [key in table for table in tables]
-    if any(having) and not all(having):
-        raise DataError(f"{kind} {having.index(False) + 1}: key {key!r} is missing; give it for each {kind}, or none.")
-    return all(having)
+def _all_or_none(tables: list[dict[str, Any]], table_type: str, key: str) -> bool:
+    present = [key in table for table in tables]
+    if any(present) and not all(present):
+        raise DataError(
+            f"{table_type} {present.index(False) + 1}: key {key!r} is missing; set it for every "
+            f"{table_type} or for no {table_type}."
+        )
+    return all(present)
 
 
 def numbers(value: Any, where: str) -> FloatArray:
-    """A regular array of numbers; a DataError names where it is none."""
+    """Convert a value to a regular array of numbers.
+
+    Args:
+        value: number or nested lists of numbers.
+        where: item named in messages.
+
+    Raises:
+        DataError: rows of different length, or entries other than numbers.
+    """
     try:
         array = np.array(value)
     except ValueError as error:
-        raise DataError(f"{where}: rows of different length. Give three numbers in each row.") from error
+        raise DataError(f"{where}: rows of different length. Specify three numbers in each row.") from error
     if array.dtype.kind not in "if":
-        raise DataError(f"{where}: {str(value)[:40]!r} is not made of numbers.")
+        raise DataError(f"{where}: found {str(value)[:40]!r}, must be numbers.")
     return array.astype(float)
 
 
-def _column(tables: list[dict[str, Any]], kind: str, key: str) -> FloatArray:
-    rows = [numbers(table[key], f"{kind} {i + 1}, {key}") for i, table in enumerate(tables)]
+def _column(tables: list[dict[str, Any]], table_type: str, key: str) -> FloatArray:
+    rows = [numbers(table[key], f"{table_type} {i + 1}, {key}") for i, table in enumerate(tables)]
     for i, row in enumerate(rows):
         if row.shape != rows[0].shape:
-            raise DataError(f"{kind} {i + 1}, {key}: shape {row.shape}, the first one has {rows[0].shape}.")
+            raise DataError(
+                f"{table_type} {i + 1}, {key}: shape {row.shape}, must be {rows[0].shape} as in the first {table_type}."
+            )
     return np.array(rows)
 
 
 def head_of(body: Superelement) -> dict[str, Any]:
-    """What stands above nodes and modes; the mass properties where the nodes do not have them."""
+    """Return the top-level entries of a file: format, name, provenance, tolerance, and mass properties if needed."""
     head: dict[str, Any] = {"format": FORMAT, "name": body.name, "provenance": body.provenance}
     head |= {"hardpoint_tolerance_m": body.hardpoint_tolerance}
     if body.node_mass is None:
@@ -181,7 +194,7 @@ def head_of(body: Superelement) -> dict[str, Any]:
 
 
 def lines(body: Superelement) -> Iterable[str]:
-    """The lines of a file, every number with all its digits."""
+    """Yield the lines of a TOML file, with all digits of every number."""
     text = json.dumps  # a JSON string or list of numbers is valid TOML
     yield "# Vehicle frame: x to the rear, y to the driver's right, z up. SI units."
     head = head_of(body)

@@ -1,4 +1,4 @@
-"""Mirror images about the plane y = 0: which node faces which, and whether a mode is symmetric or antisymmetric."""
+"""Mirror symmetry about the plane y = 0: opposite nodes, and symmetric or antisymmetric modes."""
 
 from __future__ import annotations
 
@@ -8,29 +8,30 @@ from numpy.typing import NDArray
 from vehicle.model.flexbody.beam import FloatArray
 
 _FACING = 0.10
-"""Largest distance [m] of a node from the mirror image of its counterpart: the two engine mounts differ by 82 mm."""
+"""Maximum distance of a node from the mirror image of its counterpart [m]: the two engine mounts differ by 82 mm."""
 
 
 def mirror_nodes(positions: FloatArray) -> NDArray[np.intp]:
-    """Counterpart of every node on the other side.
+    """Return the counterpart of every node on the other side of the car.
 
     Args:
         positions: node positions [m], shape (n, 3).
 
     Returns:
-        Index of the node nearest to the mirror image, shape (n,); its own in the plane, -1 without a counterpart.
+        Index of the node nearest to the mirror image, shape (n,): the node itself if in the plane, -1 without a
+        counterpart.
     """
     images = positions * (1.0, -1.0, 1.0)
     distance = np.linalg.norm(images[:, None] - positions[None], axis=2)  # (n, n)
     nearest = distance.argmin(axis=1)
-    found = distance[np.arange(len(positions)), nearest] <= _FACING
-    return np.where(found, nearest, -1)
+    has_counterpart = distance[np.arange(len(positions)), nearest] <= _FACING
+    return np.where(has_counterpart, nearest, -1)
 
 
 def parity(shapes: FloatArray, positions: FloatArray, node_mass: FloatArray) -> FloatArray:
-    """Likeness of mass-normalised shapes to their own mirror image.
+    """Return the similarity of mass-normalised shapes to their mirror images.
 
-    sum of m phi . S phi' over the nodes with a counterpart, S = diag(1, -1, 1), phi' at the counterpart.
+    Sum of m phi . S phi' over the nodes with a counterpart, S = diag(1, -1, 1), phi' at the counterpart.
 
     Args:
         shapes: mass-normalised shapes [kg^-1/2], shape (modes, n, 3).
@@ -38,7 +39,7 @@ def parity(shapes: FloatArray, positions: FloatArray, node_mass: FloatArray) -> 
         node_mass: lumped masses [kg], shape (n,).
 
     Returns:
-        1 for a symmetric mode, -1 for an antisymmetric one, between for neither [1], shape (modes,).
+        1 for a symmetric mode, -1 for an antisymmetric mode, else in between [1], shape (modes,).
     """
     facing = mirror_nodes(positions)
     paired = np.flatnonzero(facing >= 0)

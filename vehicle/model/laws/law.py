@@ -28,7 +28,7 @@ class Constant:
     value: Numbers
 
     def force(self, velocity: Numbers) -> npt.NDArray[np.float64]:
-        """Return F0 [N] at every velocity."""
+        """Return the constant force F0 [N], one value for each velocity [m/s]."""
         return np.asarray(self.value + 0.0 * np.asarray(velocity))
 
     def slope(self, velocity: Numbers) -> npt.NDArray[np.float64]:

@@ -230,4 +230,6 @@ class Damper:
     @property
     def static_friction(self) -> float:
         """Friction limit at rest [N]: Fs for the Stribeck law, Fd for the Coulomb law."""
-        return (self.stribeck_friction or 0.0) if self.friction_law == "stribeck" else self.coulomb_friction
+        if self.friction_law == "coulomb" or self.stribeck_friction is None:
+            return self.coulomb_friction
+        return self.stribeck_friction

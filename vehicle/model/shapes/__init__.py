@@ -1,4 +1,4 @@
-"""Visible shapes of car and rig: meshes made from the points of parts by their roles, for the MJCF and its pictures."""
+"""Visible shapes of car and rig: meshes built from the points of parts according to their roles, for the MJCF."""
 
 from vehicle.model.shapes.roles import Part, part_shapes
 from vehicle.model.shapes.scene import SHELL

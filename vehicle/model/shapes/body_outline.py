@@ -1,8 +1,8 @@
-"""The outline of an estate car: plan curve, waist, sill and roof rails, fitted to the hardpoints.
+"""Outline of an estate car: plan curve, waist, sill and roof rails, fitted to the hardpoints.
 
-The curves of `estate.toml` are drawn in coordinates of a reference car that stands on its wheels (X from the front
-bumper, Y to the right, H above the road) and mapped piecewise linearly onto the vehicle: the wheel arches onto the
-wheels, the roof onto its output point.
+The curves of `estate.toml` are in coordinates of a reference car on the road (X from the front bumper, Y to the right,
+H above the road) and are mapped piecewise linearly to the vehicle: the wheel arches to the wheels, the roof to its
+output point.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from vehicle.model.shapes.shape import Array, Points, Sizes
 from vehicle.model.shapes.surface import spline
 
 DRAWING = tomllib.loads((resources.files(__package__) / "estate.toml").read_text(encoding="utf-8"))
-WHEEL_TO_SIDE = 0.103  # [m] the body's side lies this far outside the wheel's middle plane
-ARCH_GAP = 0.036  # [m] between free tyre and edge of the arch
+WHEEL_TO_SIDE = 0.103  # [m] lateral distance from the middle plane of the wheel to the side of the body
+ARCH_GAP = 0.036  # [m] gap between free tyre and edge of the arch
 
 PLAN_POINTS, WAIST, SILL, CANT_RAIL = (np.array(DRAWING[name]) for name in ("plan", "waist", "sill", "cant_rail"))
 INSETS = [np.array(DRAWING[f"{name}_inset"]) for name in ("front", "rear", "side")]
 MIRROR = np.array([1.0, -1.0])
 _WHOLE = spline(np.vstack([PLAN_POINTS[1:3][::-1] * MIRROR, PLAN_POINTS, PLAN_POINTS[-3:-1][::-1] * MIRROR]), 1201)
-# drawn past the middle at both ends, so that the halves meet without a crease
+# the curve extends past the middle at both ends, so that the halves join without a crease
 PLAN = np.vstack([PLAN_POINTS[:1], _WHOLE[_WHOLE[:, 1] > 1e-3], PLAN_POINTS[-1:]])
 NORMAL = np.column_stack([-np.gradient(PLAN[:, 1]), np.gradient(PLAN[:, 0])])
-NORMAL[[0, -1], 1] = 0.0  # ends lie in the middle plane
+NORMAL[[0, -1], 1] = 0.0  # ends are in the middle plane
 NORMAL = NORMAL / np.linalg.norm(NORMAL, axis=1)[:, None]
 STATION = np.linspace(0, 1, len(PLAN))  # runs along the plan curve
 THIRD = len(PLAN) // 3
@@ -35,7 +35,7 @@ THIRD = len(PLAN) // 3
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """The reference drawing mapped onto one vehicle."""
+    """Mapping of the reference drawing to a vehicle."""
 
     x_knots: Array
     """vehicle x of the four reference stations [m]"""
@@ -47,33 +47,33 @@ class Outline:
     """radius of both wheel arches [m]"""
 
     def place(self, reference: Array) -> Array:
-        """Reference points (X, Y, H), shape (..., 3), as vehicle points; linear beyond the outermost knots too."""
+        """Convert reference points (X, Y, H), shape (..., 3), to vehicle points; extrapolate linearly."""
         X, Y, H = np.moveaxis(np.asarray(reference, dtype=float), -1, 0)
         x, z = _linear(X, DRAWING["reference_x"], self.x_knots), _linear(H, DRAWING["reference_h"], self.z_knots)
         return np.stack([x, Y * self.widen, z], axis=-1)
 
     def height(self, z: float | Array) -> Array:
-        """Reference height H [m] of a vehicle height z."""
+        """Return the reference height H [m] of a vehicle height z."""
         return _linear(np.asarray(z, dtype=float), self.z_knots, DRAWING["reference_h"])
 
     def along(self, x: float | Array) -> Array:
-        """Reference X [m] of a vehicle x."""
+        """Return the reference X [m] of a vehicle x."""
         return _linear(np.asarray(x, dtype=float), self.x_knots, DRAWING["reference_x"])
 
     def arch_centre(self, axle: int) -> tuple[float, float]:
-        """Vehicle x and z [m] of the middle of the front (0) or rear (1) arch."""
+        """Return vehicle x and z [m] of the centre of the front (0) or rear (1) arch."""
         return float(self.x_knots[1 + axle]), float(self.z_knots[1])
 
     def side(self, station: Array, height: Array, lift: float = 0.0) -> Array:
-        """Points of the right lower body surface.
+        """Return points of the right lower body surface.
 
-        The plan curve moved inward by inset(H), blended between side and ends by the direction of its normal, and
-        outward by a flare around the wheel arches.
+        The plan curve is moved inward by inset(H), which blends between side and ends by the direction of the normal,
+        and outward by a flare around the wheel arches.
 
         Args:
             station: parameter of the plan curve, 0 at the front middle, 1 at the rear middle
             height: reference height H [m], same shape
-            lift: extra distance outward [m]
+            lift: additional distance outward [m]
 
         Returns:
             vehicle points, shape (..., 3)
@@ -82,7 +82,7 @@ class Outline:
         nx, ny = (np.interp(station, STATION, NORMAL[:, k]) for k in (0, 1))
         front, rear, side = (np.interp(height, *table.T) for table in INSETS)
         inset = nx**2 * np.where(X < 2.0, front, rear) + ny**2 * side - lift
-        # in a corner the inset may not pull a point across the middle plane
+        # in a corner the inset must not move a point across the middle plane
         x, y = X - inset * nx, np.maximum(Y - inset * ny, 0.0)
         points = self.place(np.stack([x, y, height], axis=-1))
         for axle in (0, 1):
@@ -92,23 +92,23 @@ class Outline:
         return points
 
     def waist(self, station: Array) -> Array:
-        """Reference height [m] of the upper edge of the lower body at stations of the plan curve."""
+        """Return the reference height [m] of the upper edge of the lower body at stations of the plan curve."""
         height: Array = np.interp(np.interp(station, STATION, PLAN[:, 0]), *WAIST.T)
         return height
 
 
 def station_at(X: float | Array) -> Array:
-    """Station of the plan curve at a reference X [m]."""
+    """Return the station of the plan curve at a reference X [m]."""
     return np.asarray(np.interp(X, PLAN[:, 0], STATION))
 
 
 def station_front(Y: float | Array) -> Array:
-    """Station of the plan curve at a reference Y [m] on the front."""
+    """Return the station of the plan curve at a reference Y [m] on the front."""
     return np.asarray(np.interp(Y, PLAN[:THIRD, 1], STATION[:THIRD]))
 
 
 def station_rear(Y: float | Array) -> Array:
-    """Station of the plan curve at a reference Y [m] on the rear."""
+    """Return the station of the plan curve at a reference Y [m] on the rear."""
     return np.asarray(np.interp(Y, PLAN[: -THIRD - 1 : -1, 1], STATION[: -THIRD - 1 : -1]))
 
 
@@ -116,7 +116,7 @@ OUTLINE = ("wheel_center", "tyre_patch", "rear_axle", "roof")
 
 
 def outline(points: Points, size: Sizes) -> Outline:
-    """The drawing fitted to a vehicle: x at front, axles, rear; z at plate, wheel centre, roof; width of track."""
+    """Fit the drawing to a vehicle: x at front, axles, rear; z at plate, wheel centre, roof; width by the track."""
     wheel, patch, rear = points["wheel_center"], points["tyre_patch"], float(points["rear_axle"][0])
     return Outline(
         np.array([0.0, wheel[0], rear, rear + size["rear_overhang"]]),

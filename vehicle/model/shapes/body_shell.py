@@ -1,4 +1,4 @@
-"""The body's sheet metal and glass, built as patches between the curves of the outline."""
+"""Sheet metal and glass of the body, built as patches between the curves of the outline."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from vehicle.model.shapes.shape import Array
 from vehicle.model.shapes.solids import both, inverted, joined
 from vehicle.model.shapes.surface import bezier, coons, grid, spline
 
-CORNER_Y = 0.58  # [m] reference Y of the bonnet's front corner
+CORNER_Y = 0.58  # [m] reference Y of the front corner of the bonnet
 LINING_GAP = 0.014  # [m]
 HOUSE_DEPTH = (0.16, 0.22)  # [m] depth of the wheel houses; strut and spring stay visible behind the front one
 ARCH_POINTS = 11  # along the half circle of a wheel arch
-FAN = 0.075  # [m] the row over the foot of an arch leans away from the wheel by this much
+FAN = 0.075  # [m] distance by which the row over the foot of an arch leans away from the wheel
 LEVELS = 7  # rows of the lower body between sill and waist
 ROOF_STATIONS = 13
 CANT_STEPS = 4
@@ -25,17 +25,17 @@ SILL_GLASS, TOP_GLASS = 0.06, 0.93  # share of the height of the side where the 
 MIRROR_Y = np.array([1.0, -1.0, 1.0])
 ACROSS = 9  # points across the flat of the roof, odd
 ROOF_X = (float(CANT_RAIL[0, 0]), float(CANT_RAIL[-1, 0]))
-BOW_FRONT, BOW_REAR = 0.085, -0.045  # [m] the middles of the roof's edges lie ahead by this
+BOW_FRONT, BOW_REAR = 0.085, -0.045  # [m] forward distance of the middle of the roof edges from their ends
 COWL_X, TAIL_X, WINDOWS = DRAWING["cowl_x"], DRAWING["tail_x"], DRAWING["windows"]
 _ROUNDING = 1 - 0.13 * np.linspace(0, 1, CANT_STEPS)
-# where the points of an edge of the roof lie across the car, 1 at the right rail, -1 at the left one
+# lateral positions of the points of a roof edge, 1 at the right rail, -1 at the left rail
 SHARES = np.concatenate([_ROUNDING[:-1], np.linspace(_ROUNDING[-1], -_ROUNDING[-1], ACROSS), -_ROUNDING[::-1][1:]])
 
 
 def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
-    """Stations and heights of the lower and upper edge of the lower body, right half, front middle to rear middle.
+    """Return stations and heights of the lower and upper edge of the right lower body, from front to rear middle.
 
-    The lower edge follows bumper, front arch, sill, rear arch, bumper; both edges have as many points.
+    The lower edge follows bumper, front arch, sill, rear arch, bumper; both edges have the same number of points.
 
     Returns:
         station and height H of the lower edge, station and height H of the upper edge, each shape (n,)
@@ -54,12 +54,12 @@ def lower_loops(body: Outline) -> tuple[Array, Array, Array, Array]:
     def sill(station: Array) -> Array:
         return np.asarray(np.interp(station, station_at(SILL[:, 0]), SILL[:, 1]))
 
-    heights = np.concatenate([sill(front), sill(front_side), fh, sill(middle), rh, sill(rear_side), sill(rear)])
-    return low, heights, top, body.waist(top)
+    low_heights = np.concatenate([sill(front), sill(front_side), fh, sill(middle), rh, sill(rear_side), sill(rear)])
+    return low, low_heights, top, body.waist(top)
 
 
 def arch_edge(body: Outline, axle: int) -> tuple[Array, Array]:
-    """Reference X and H [m] of the edge of a wheel arch: upright from the sill, half a circle, upright to the sill."""
+    """Return reference X and H [m] of the edge of a wheel arch: vertical, half circle, vertical to the sill."""
     cx, cz = body.arch_centre(axle)
     phi = np.linspace(np.pi, 0, ARCH_POINTS)
     X = body.along(cx + body.arch_radius * np.cos(phi))
@@ -69,32 +69,32 @@ def arch_edge(body: Outline, axle: int) -> tuple[Array, Array]:
 
 
 def lower_grid(body: Outline, lift: float = 0.0) -> Array:
-    """Points of the right lower body, shape (levels, n, 3), from the lower edge to the waist."""
+    """Return points of the right lower body from the lower edge to the waist, shape (levels, n, 3)."""
     low, low_h, top, top_h = lower_loops(body)
     share = np.linspace(0, 1, LEVELS)[:, None]
     return body.side((1 - share) * low + share * top, (1 - share) * low_h + share * top_h, lift)
 
 
 def waist_curve(body: Outline, X: Array) -> Array:
-    """The waist as vehicle points at reference X [m] of the plan curve, shape (n, 3)."""
+    """Return vehicle points of the waist at reference X [m] of the plan curve, shape (n, 3)."""
     station = station_at(X)
     return body.side(station, body.waist(station))
 
 
 def cant_rail(body: Outline, X: Array) -> tuple[Array, Array, Array]:
-    """Lower edge, corner and upper edge of the roof's rounding at reference X [m], each shape (n, 3)."""
+    """Return lower edge, corner and upper edge of the roof rounding at reference X [m], each of shape (n, 3)."""
     rail = spline(CANT_RAIL, 200)
     low = np.column_stack([X, *(np.interp(X, rail[:, 0], rail[:, k]) for k in (1, 2))])
     return body.place(low), body.place(low + DRAWING["roof_corner_step"]), body.place(low + DRAWING["roof_edge_step"])
 
 
 def header(body: Outline, X: float, bow: float) -> Array:
-    """Edge of the roof over the windscreen or the tailgate, from the right rail over the middle to the left one.
+    """Return the edge of the roof over the windscreen or the tailgate, from the right rail to the left rail.
 
     Args:
         body: the outline
-        X: reference X of its ends [m]
-        bow: how far its middle lies ahead [m]
+        X: reference X of the ends of the edge [m]
+        bow: forward distance of the middle from the ends [m]
 
     Returns:
         points, shape (ACROSS + 2 * (CANT_STEPS - 1), 3)
@@ -108,7 +108,7 @@ def header(body: Outline, X: float, bow: float) -> Array:
 
 
 def roof(body: Outline) -> Array:
-    """Points of the roof with both rounded rails, from the windscreen to the tailgate, right to left."""
+    """Return points of the roof with both rounded rails, from the windscreen to the tailgate, right to left."""
     rows = []
     for share, X in zip(np.linspace(0, 1, ROOF_STATIONS), np.linspace(*ROOF_X, ROOF_STATIONS), strict=True):
         bow = BOW_FRONT * max(0.0, 1 - 6 * share) ** 2 + BOW_REAR * max(0.0, 6 * share - 5) ** 2
@@ -117,27 +117,27 @@ def roof(body: Outline) -> Array:
 
 
 def windscreen_grid(body: Outline) -> Array:
-    """Points of the windscreen plane with the pillars, from cowl to header, shape (6, n, 3)."""
+    """Return points of the windscreen plane with the pillars, from cowl to header, shape (6, n, 3)."""
     bottom, top = cowl(body), header(body, ROOF_X[0], BOW_FRONT)
     left, right = (bottom[k] + np.linspace(0, 1, 6)[:, None] * (top[k] - bottom[k]) for k in (0, -1))
     return coons(bottom, top, left, right)
 
 
 def cowl(body: Outline) -> Array:
-    """Foot of the windscreen, bowed forward, from right to left; spaced like the header above it."""
+    """Return the foot of the windscreen, bowed forward, from right to left, spaced like the header above."""
     x, y, z = waist_curve(body, np.array([COWL_X]))[0]
     return np.column_stack([x - 0.215 * (1 - SHARES**2), y * SHARES, z + 0.060 * (1 - SHARES**2)])
 
 
 def bonnet(body: Outline) -> Array:
-    """Points of the bonnet between the front edge, both wing edges and the cowl, with a little extra crown."""
-    edge = lower_loops(body)[2]  # the edges share their points with the lower body: no gap
+    """Return points of the bonnet between the front edge, both wing edges and the cowl, with additional crown."""
+    edge = lower_loops(body)[2]  # shared points with the lower body avoid a gap
     ahead = edge[edge <= station_front(CORNER_Y) + 1e-9]
     half = np.concatenate([ahead[::-1], ahead[1:]])
     wing_stations = edge[(edge >= station_front(CORNER_Y) - 1e-9) & (edge <= station_at(COWL_X) + 1e-9)]
     count, rows = len(half), len(wing_stations)
     shares = np.linspace(1, -1, count)
-    rear = np.column_stack([np.interp(-shares, -SHARES, places) for places in cowl(body).T])
+    rear = np.column_stack([np.interp(-shares, -SHARES, coordinate) for coordinate in cowl(body).T])
     front = body.side(half, body.waist(half))
     front[:, 1] *= np.sign(shares) + (shares == 0)
     wing = body.side(wing_stations, body.waist(wing_stations))
@@ -148,7 +148,7 @@ def bonnet(body: Outline) -> Array:
 
 
 def tailgate_grid(body: Outline) -> Array:
-    """Points of the tailgate above the waist, from the waist to the header, shape (7, n, 3)."""
+    """Return points of the tailgate from the waist to the header, shape (7, n, 3)."""
     top, steps = header(body, ROOF_X[1], BOW_REAR), np.linspace(0, 1, 7)[:, None]
     station = 1 - (1 - station_at(TAIL_X)) * np.abs(SHARES)
     bottom = body.side(station, body.waist(station))
@@ -160,13 +160,13 @@ def tailgate_grid(body: Outline) -> Array:
 
 
 def side_columns(body: Outline) -> tuple[list[Array], list[Array]]:
-    """Patches of the right side above the waist: sheet metal and glass, each shape (m, n, 3)."""
+    """Return patches of the right side above the waist, sheet metal and glass, each of shape (m, n, 3)."""
     edges = [edge for window in WINDOWS for edge in (window[:2], window[2:])]
     lines = [(COWL_X, ROOF_X[0]), *edges, (TAIL_X, ROOF_X[1])]
     metal: list[Array] = []
     glass: list[Array] = []
     for k, (first, last) in enumerate(pairwise(lines)):
-        # the bulge fades in the outermost pillars, whose edges belong to windscreen and tailgate too
+        # the bulge fades in the outermost pillars, whose edges are shared with windscreen and tailgate
         fade = (float(k > 0), float(k < len(lines) - 2))
         if k % 2 == 0:
             metal.append(side_patch(body, first, last, np.linspace(0.0, 1.0, 5), 3, fade))
@@ -181,14 +181,14 @@ def side_columns(body: Outline) -> tuple[list[Array], list[Array]]:
 def side_patch(
     body: Outline, first: Sequence[float], last: Sequence[float], levels: Array, count: int, fade: Sequence[float]
 ) -> Array:
-    """Points between two slanted lines on the right side above the waist, with the bulge of the side glass.
+    """Return points between two slanted lines on the right side above the waist, with the bulge of the side glass.
 
     Args:
         body: the outline
         first: reference X of the front line at the waist and at the roof rail [m]
-        last: the same of the rear line
+        last: reference X of the rear line at the waist and at the roof rail [m]
         levels: shares of the height of the side, shape (m,)
-        count: points between the lines
+        count: number of points between the lines
         fade: share of the bulge at the front and at the rear line
     """
     share = np.linspace(0, 1, count)
@@ -201,7 +201,7 @@ def side_patch(
 
 
 def split_pane(surface: Array, rows: tuple[int, int], flip: bool) -> tuple[list[trimesh.Trimesh], trimesh.Trimesh]:
-    """A pane cut from a grid between two rows and two columns from either side: the frame around it, and the pane."""
+    """Cut a pane from a grid, between two rows and two columns from either side; return frame and pane."""
     low, high = rows
     inside = surface[low : high + 1]
     frame = [surface[: low + 1], surface[high:], inside[:, :3], inside[:, -3:]]
@@ -209,7 +209,7 @@ def split_pane(surface: Array, rows: tuple[int, int], flip: bool) -> tuple[list[
 
 
 def upper_body(body: Outline) -> tuple[trimesh.Trimesh, trimesh.Trimesh]:
-    """Everything above the waist but the roof: pillars with the frames of the windows, and the glass."""
+    """Build the body between waist and roof: pillars with window frames, and the glass."""
     metal, glass = ([grid(patch, flip=True) for patch in patches] for patches in side_columns(body))
     front_frame, windscreen = split_pane(windscreen_grid(body), (0, 5), flip=False)
     rear_frame, rear_window = split_pane(tailgate_grid(body), (1, 5), flip=True)
@@ -217,12 +217,12 @@ def upper_body(body: Outline) -> tuple[trimesh.Trimesh, trimesh.Trimesh]:
 
 
 def sheet_metal(body: Outline, pillars: trimesh.Trimesh) -> trimesh.Trimesh:
-    """All painted panels: bumpers, wings, doors and side panels up to the waist, pillars, bonnet and roof."""
+    """Build all painted panels: bumpers, wings, doors and side panels up to the waist, pillars, bonnet and roof."""
     return joined(both(grid(lower_grid(body), flip=True)), pillars, grid(bonnet(body)), grid(roof(body)))
 
 
 def lining(body: Outline, pillars: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The inner side of the sheet metal, a little further inside and facing inward, with fewer triangles."""
+    """Build the inner surface of the sheet metal, offset and facing inward, with fewer triangles."""
     right = grid(lower_grid(body, -LINING_GAP)[[0, 3, LEVELS - 1]])
     inner = inverted(pillars)
     inner.vertices = np.asarray(pillars.vertices) - LINING_GAP * np.asarray(pillars.vertex_normals)
@@ -232,7 +232,7 @@ def lining(body: Outline, pillars: trimesh.Trimesh) -> trimesh.Trimesh:
 
 
 def wheel_house(body: Outline, axle: int, depth: float) -> trimesh.Trimesh:
-    """Sheet from the edge of an arch inward, facing the wheel, both sides of the car."""
+    """Build the sheets from the edge of an arch inward, facing the wheel, on both sides of the car."""
     X, H = arch_edge(body, axle)
     edge = body.side(station_at(X), H) - (0, 0.012, 0)
     inner = edge.copy()

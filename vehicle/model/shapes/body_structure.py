@@ -1,4 +1,4 @@
-"""What the shell hides: floor, front rails with strut towers, subframe and rack, exhaust, seats, dashboard."""
+"""Structure and interior inside the shell: floor, front rails, strut towers, subframe, exhaust, seats, dashboard."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SHEET = (-0.004, 0.004)  # [m] faces of an 8 mm sheet
 
 
 def floor(points: Points, size: Sizes) -> list[Piece]:
-    """Cabin floor with tunnel and cross members, firewall, raised rear floor."""
+    """Draw the cabin floor with tunnel and cross members, firewall, raised rear floor."""
     body = outline(points, size)
     rear_z = float(points["rear_axle"][2]) + 0.055
     half = 0.775 * body.widen
@@ -53,7 +53,7 @@ def floor(points: Points, size: Sizes) -> list[Piece]:
 
 
 def front_structure(points: Points, size: Sizes) -> list[Piece]:
-    """Longitudinal rails, bumper beam and strut towers that carry the top mounts."""
+    """Draw the longitudinal rails, bumper beam and strut towers that carry the top mounts."""
     front, strut_top = points["body_front"], points["strut_top"]
     front_x, front_z = float(front[0]), float(front[2])
     firewall = float(outline(points, size).place(np.array([1.26, 0.0, 0.0]))[0])
@@ -78,7 +78,7 @@ def front_structure(points: Points, size: Sizes) -> list[Piece]:
 
 
 def subframe(points: Points, size: Sizes) -> list[Piece]:
-    """Cross member with the brackets of arms, stabilizer and torque arm; housing of the steering rack, its bellows."""
+    """Draw the cross member with brackets of arms, stabilizer and torque arm, and the steering rack with bellows."""
     front, rear, stab, tie = (points[name] for name in ("arm_front", "arm_rear", "stab_body", "tie_inner"))
     low_front = shifted(front, 0.0, -0.075, 0.0)
     path = [low_front, shifted((front + rear) / 2, 0.0, -0.075, 0.0), shifted(rear, 0.02, -0.07, 0.0)]
@@ -100,8 +100,8 @@ def subframe(points: Points, size: Sizes) -> list[Piece]:
     fork = [plate(eye, UPRIGHT, (s * 0.03 - 0.004, s * 0.03 + 0.004), cheek) for s in (-1, 1)]
     bolt = rod(eye - (0, 0, 0.045), shifted(eye, 0, 0, 0.045), 0.008)
     rack = rod((tie[0], -tie[1], tie[2]), tie, 0.019, sides=8)
-    pinion_place = (tie[0], 0.55 * points["seat"][1], tie[2])
-    pinion = placed(ring(0.0, 0.026, -0.03, 0.05, sections=10), pinion_place, (0.3, 0, 1))
+    pinion_centre = (tie[0], 0.55 * points["seat"][1], tie[2])
+    pinion = placed(ring(0.0, 0.026, -0.03, 0.05, sections=10), pinion_centre, (0.3, 0, 1))
     folds = [(0.010, -0.085)]
     for k in range(2):
         folds += [(0.028 - 0.0015 * k, -0.065 + 0.06 * k), (0.020 - 0.0012 * k, -0.035 + 0.06 * k)]
@@ -113,7 +113,7 @@ def subframe(points: Points, size: Sizes) -> list[Piece]:
 
 
 def exhaust(points: Points, size: Sizes) -> list[Piece]:
-    """Exhaust pipe in the tunnel with a silencer, ahead of the rear axle."""
+    """Draw the exhaust pipe in the tunnel and the silencer near the rear axle."""
     start = points["bottom_body"] + (0.12, 0.06, -0.01)
     x, z = float(points["rear_axle"][0]) + 0.55, start[2]
     behind = [(x - 0.9, 0.06, z), (x - 0.3, 0.2, z + 0.09), (x + 0.36, 0.36, z + 0.06)]
@@ -123,13 +123,13 @@ def exhaust(points: Points, size: Sizes) -> list[Piece]:
 
 
 def support_shoes(points: Points, size: Sizes) -> list[Piece]:
-    """Steel shoes of the body on the rubber blocks, one at each point, up to the rear floor."""
+    """Draw a steel shoe of the body at each point on a rubber block, up to the rear floor."""
     shoe = lathe([(0, 0), (0.084, 0), (0.084, 0.012), (0.046, 0.060), (0, 0.060)], sections=12)
-    return [Piece("_support_shoes", joined([placed(shoe, place) for place in points.values()]), palette.STAND)]
+    return [Piece("_support_shoes", joined([placed(shoe, point) for point in points.values()]), palette.STAND)]
 
 
 def cabin(points: Points, size: Sizes) -> list[Piece]:
-    """Both front seats, at the seat's point and its mirror image, and the rear bench; seat rails; dashboard."""
+    """Draw both front seats, at the seat point and its mirror image, rear bench, seat rails and dashboard."""
     driver = points["seat"]
     bench = np.array([driver[0] + 0.87, 0.0, driver[2] + 0.03])
     seats = [
@@ -137,7 +137,7 @@ def cabin(points: Points, size: Sizes) -> list[Piece]:
         seat(driver * (1.0, -1.0, 1.0), 0.26, (0.0,)),
         seat(bench, 0.62, (-0.36, 0.36)),
     ]
-    rails = []  # the measuring point is on them
+    rails = []  # position of the measurement point
     for side in (1.0, -1.0):
         middle = points["seat_rail"] * (1.0, side, 1.0)
         rails += [block(middle, (-0.22, y - 0.015, -0.016), (0.3, y + 0.015, 0.012)) for y in (-0.20, 0.20)]
@@ -150,12 +150,12 @@ def cabin(points: Points, size: Sizes) -> list[Piece]:
 
 
 def seat(cushion: Array, half_width: float, headrests: tuple[float, ...]) -> trimesh.Trimesh:
-    """Cushion, leaning back rest and head rests.
+    """Draw a seat: cushion, inclined backrest and headrests.
 
     Args:
-        cushion: middle of the cushion's upper side
-        half_width: [m]
-        headrests: places of the head rests along y from the middle [m]
+        cushion: middle of the upper side of the cushion [m], shape (3,)
+        half_width: half width of the seat [m]
+        headrests: y of the headrests relative to the middle [m]
     """
     w = half_width
     base = ((-0.27, 0.86 * w, -0.01), (-0.29, 0.9 * w, -0.06), (-0.24, 0.9 * w, -0.14), (0.20, w, -0.14),
@@ -172,7 +172,7 @@ def seat(cushion: Array, half_width: float, headrests: tuple[float, ...]) -> tri
 
 
 def dashboard(driver: Array) -> trimesh.Trimesh:
-    """Dashboard with its cowl, and the steering wheel before the driver."""
+    """Draw the dashboard with its cowl, and the steering wheel in front of the driver."""
     x, z = driver[0] - 0.66, driver[2] + 0.36
     half = 0.70
     section = ((-0.17, 0.96, 0.02), (-0.02, 1.0, 0.045), (0.07, 1.0, -0.03), (0.05, 1.0, -0.20), (-0.17, 0.96, -0.30))

@@ -1,4 +1,4 @@
-"""What makes the body a car: lamps, grille, bumper strips, joints of the doors, handles, mirrors, roof rails."""
+"""Details of the outer body: lamps, grille, bumper strips, door joints, handles, mirrors, roof rails."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
 from vehicle.model.shapes.solids import block, both, hull, rod, shifted, tube
 from vehicle.model.shapes.surface import grid, spline
 
-JOINT_RADIUS = 0.0035  # [m] half width of the dark line that stands for a gap between panels
-LIFT = 0.008  # [m] trim lies this far on the paint
+JOINT_RADIUS = 0.0035  # [m] half width of the dark line drawn for a gap between panels
+LIFT = 0.008  # [m] distance of the trim from the paint
 
 
 def estate_body(points: Points, size: Sizes) -> list[Piece]:
-    """Lining, painted panels, trim, lamps, number plates and glass of an estate car."""
+    """Draw lining, painted panels, trim, lamps, number plates and glass of an estate car."""
     body = outline(points, size)
     pillars, glass = body_shell.upper_body(body)
     tail = np.linspace(station_at(4.20), station_rear(0.60), 7)
@@ -35,22 +35,22 @@ def estate_body(points: Points, size: Sizes) -> list[Piece]:
 
 
 def field(body: Outline, stations: Array, low: float | Array, high: float | Array, rows: int = 3) -> trimesh.Trimesh:
-    """A patch on the right lower body.
+    """Draw a patch on the right lower body.
 
     Args:
         body: the outline
-        stations: of the plan curve, shape (n,)
-        low: height H of its lower edge [m], a number or shape (n,)
-        high: height H of its upper edge [m], a number or shape (n,)
-        rows: points between them
+        stations: stations of the plan curve, shape (n,)
+        low: height H of the lower edge [m], a number or shape (n,)
+        high: height H of the upper edge [m], a number or shape (n,)
+        rows: number of points from the lower to the upper edge
     """
     share = np.linspace(0, 1, rows)[:, None]
-    heights = np.broadcast_to((1 - share) * low + share * high, (rows, len(stations)))
-    return grid(body.side(np.broadcast_to(stations, heights.shape), heights, LIFT), flip=True)
+    height = np.broadcast_to((1 - share) * low + share * high, (rows, len(stations)))
+    return grid(body.side(np.broadcast_to(stations, height.shape), height, LIFT), flip=True)
 
 
 def headlamps(body: Outline) -> trimesh.Trimesh:
-    """Lamps around the front corners, higher at the outside."""
+    """Draw the lamps around the front corners, higher at the outside."""
     stations, share = np.linspace(station_front(0.40), station_at(0.42), 9), np.linspace(0, 1, 9)
     low = 0.565 + 0.055 * share**2
     high = np.minimum(body.waist(stations) - 0.018, 0.60 + 0.30 * share)
@@ -58,13 +58,13 @@ def headlamps(body: Outline) -> trimesh.Trimesh:
 
 
 def plates(body: Outline) -> trimesh.Trimesh:
-    """Number plates, front and rear."""
+    """Draw the number plates, front and rear."""
     front, rear = np.linspace(0, station_front(0.25), 3), np.linspace(station_rear(0.25), 1.0, 3)
     return both(field(body, front, 0.375, 0.475, 2), field(body, rear, 0.70, 0.80, 2))
 
 
 def dark_trim(body: Outline) -> trimesh.Trimesh:
-    """Grille, air intake, bumper and side strips, edges of the arches, joints of the doors, pillars between windows."""
+    """Draw grille, air intake, bumper and side strips, arch edges, door joints and pillars between windows."""
     parts = [
         field(body, stations, low, high)
         for stations, low, high in (
@@ -92,13 +92,13 @@ def dark_trim(body: Outline) -> trimesh.Trimesh:
 
 
 def mirror_place(body: Outline) -> Array:
-    """Root of the right door mirror on the waist."""
-    place: Array = waist_curve(body, np.array([1.70]))[0]
-    return place
+    """Return the root of the right door mirror on the waist [m], shape (3,)."""
+    root: Array = waist_curve(body, np.array([1.70]))[0]
+    return root
 
 
 def painted_parts(body: Outline) -> trimesh.Trimesh:
-    """Door mirrors and door handles."""
+    """Draw door mirrors and door handles."""
     centre = shifted(mirror_place(body), 0.0, 0.145, 0.075)
     rows = []
     for x, y, z in ((-0.045, 0.060, 0.035), (0.0, 0.095, 0.062), (0.045, 0.098, 0.066)):  # an octagon each
@@ -106,12 +106,12 @@ def painted_parts(body: Outline) -> trimesh.Trimesh:
             for sz in (-1, 1):
                 rows += [(x, sy * y, 0.6 * sz * z), (x, 0.7 * sy * y, sz * z)]
     shell = hull(centre + np.array(rows))
-    places = [body.side(station_at(X), np.asarray(0.80), 0.006) for X in (2.30, 3.16)]
-    return both(shell, *(block(place, (-0.085, -0.010, -0.016), (0.085, 0.014, 0.014)) for place in places))
+    handles = [body.side(station_at(X), np.asarray(0.80), 0.006) for X in (2.30, 3.16)]
+    return both(shell, *(block(handle, (-0.085, -0.010, -0.016), (0.085, 0.014, 0.014)) for handle in handles))
 
 
 def roof_rails(body: Outline) -> trimesh.Trimesh:
-    """Rails along both sides of the roof on three feet."""
+    """Draw the rails along both sides of the roof, on three feet each."""
     X = np.linspace(2.16, 3.98, 10)
     edge = cant_rail(body, X)[2]
     height = 0.034 * np.minimum(1.0, 8 * np.sin(np.pi * np.linspace(0.0, 1, 10)))

@@ -1,4 +1,4 @@
-"""Transverse engine with gearbox, belt drive, the cans of its side mounts and the torque arm."""
+"""Transverse engine with gearbox, belt drive, cans of the side mounts and torque arm."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from vehicle.model.shapes.surface import bezier
 
 ACROSS = (0.0, 1.0, 0.0)
 UPRIGHT = (0.0, 0.0, 1.0)
-MOUNT_SPAN = 0.86  # [m] distance of the side mounts along y for which the drawing was made
-CYLINDERS = -0.045 + 0.095 * np.arange(4)  # [m] their places along y
+MOUNT_SPAN = 0.86  # [m] distance of the side mounts along y in the drawing
+CYLINDERS = -0.045 + 0.095 * np.arange(4)  # [m] y of the cylinders
 SIDE_MOUNTS = (("hydromount", 0.052), ("linear_mount", 0.046))  # point, radius of the can [m]
 PULLEYS = (  # x, z of the axle and radius in drawing coordinates [m]: crank, water pump, alternator, air conditioning
     (0.010, -0.135, 0.074),
@@ -26,35 +26,35 @@ PULLEYS = (  # x, z of the axle and radius in drawing coordinates [m]: crank, wa
 
 
 class EngineFrame:
-    """Drawing coordinates about the engine's centre of gravity, stretched along y to the distance of the mounts."""
+    """Drawing coordinates about the centre of gravity of the engine, scaled along y to the distance of the mounts."""
 
     def __init__(self, points: Points) -> None:
         self.origin = np.array(points["engine_cog"], dtype=float)
         self.stretch = float(points["hydromount"][1] - points["linear_mount"][1]) / MOUNT_SPAN
 
     def at(self, x: float, y: float, z: float) -> Array:
-        """Drawing coordinates [m] as a point of the vehicle."""
+        """Convert drawing coordinates [m] to a point of the vehicle [m], shape (3,)."""
         point: Array = self.origin + np.array([x, y * self.stretch, z])
         return point
 
     def box(self, low: Sequence[float], high: Sequence[float], bevel: float = 0.0) -> trimesh.Trimesh:
-        """A bevelled box between two points in drawing coordinates."""
+        """Build a bevelled box between two points in drawing coordinates."""
         return box(self.at(*low), self.at(*high), bevel)
 
     def hull(self, points: Iterable[Sequence[float]]) -> trimesh.Trimesh:
-        """The hull of points in drawing coordinates."""
+        """Build the convex hull of points in drawing coordinates."""
         return hull([self.at(*point) for point in points])
 
     def arm(
         self, start: Sequence[float], corner: Sequence[float], end: Array, half: float, width: Array
     ) -> trimesh.Trimesh:
-        """A bracket from the engine up to the point of a mount."""
+        """Build a bracket from the engine up to the point of a mount."""
         path = bezier(self.at(*start), self.at(*corner), end, 6)
         return tube(path, half, width=width, up=UPRIGHT, sides=4)
 
 
 def engine(points: Points, size: Sizes) -> list[Piece]:
-    """Castings, block, covers, auxiliary drive, rubber of the mounts and the bolt of the torque arm."""
+    """Draw castings, block, covers, auxiliary drive, rubber of the mounts and the bolt of the torque arm."""
     e = EngineFrame(points)
     neck = lathe([(0, -0.024), (0.040, -0.024), (0.022, 0.0), (0, 0.0)], sections=14)
     bolt = points["bottom_engine"]
@@ -70,7 +70,7 @@ def engine(points: Points, size: Sizes) -> list[Piece]:
 
 
 def castings(e: EngineFrame, points: Points) -> trimesh.Trimesh:
-    """Cylinder head, gearbox with bell housing and differential, sump and the brackets of the mounts."""
+    """Draw cylinder head, gearbox with bell housing and differential, sump and the brackets of the mounts."""
     hydromount, linear, bottom = points["hydromount"], points["linear_mount"], points["bottom_engine"]
     head = e.box((-0.105, -0.10, 0.055), (0.105, 0.285, 0.150), 0.012)
     sump = e.hull(
@@ -101,7 +101,7 @@ def castings(e: EngineFrame, points: Points) -> trimesh.Trimesh:
 
 
 def cylinder_block(e: EngineFrame) -> trimesh.Trimesh:
-    """Cast block with the four bores showing as ribs, exhaust heat shield, starter and oil filter."""
+    """Draw the cast block with the four bores as ribs, exhaust heat shield, starter and oil filter."""
     shell = e.box((-0.100, -0.11, -0.190), (0.110, 0.285, 0.060), 0.010)
     bores = [placed(drum(0.040, -0.130, 0.05, sections=8), e.at(0.085, y, 0)) for y in CYLINDERS]
     starter = placed(drum(0.036, 0.0, 0.17, bevel=0.006, sections=10), e.at(-0.135, -0.09, -0.12), ACROSS)
@@ -112,7 +112,7 @@ def cylinder_block(e: EngineFrame) -> trimesh.Trimesh:
 
 
 def covers(e: EngineFrame) -> trimesh.Trimesh:
-    """Dark plastic: camshaft cover with ribs, intake plenum with four runners, timing cover, hoses."""
+    """Draw parts of dark plastic: camshaft cover with ribs, intake plenum with four runners, timing cover, hoses."""
     cam = e.hull(
         [(x, y, 0.148) for x in (-0.095, 0.095) for y in (-0.095, 0.28)]
         + [(x, y, 0.192) for x in (-0.070, 0.070) for y in (-0.080, 0.265)]
@@ -131,7 +131,7 @@ def covers(e: EngineFrame) -> trimesh.Trimesh:
 
 
 def pulleys(e: EngineFrame) -> trimesh.Trimesh:
-    """Pulleys of the auxiliary drive at the timing end, with the bodies of alternator and compressor."""
+    """Draw the pulleys of the auxiliary drive at the timing end, with the bodies of alternator and compressor."""
     wheels = []
     for x, z, r in PULLEYS:
         profile = [(0, 0.0), (r, 0.0), (r - 0.004, 0.014), (r, 0.028), (r - 0.007, 0.028), (0.6 * r, 0.014), (0, 0.026)]
@@ -144,7 +144,7 @@ def pulleys(e: EngineFrame) -> trimesh.Trimesh:
 
 
 def belt(e: EngineFrame) -> trimesh.Trimesh:
-    """Belt around the pulleys: at every angle it touches the pulley that reaches farthest in that direction."""
+    """Draw the belt around the pulleys: at every angle, the belt touches the outermost pulley in that direction."""
     phi = np.linspace(0, 2 * np.pi, 30, endpoint=False)
     normal = np.column_stack([np.cos(phi), np.sin(phi)])
     circles = np.array(PULLEYS)
@@ -155,7 +155,7 @@ def belt(e: EngineFrame) -> trimesh.Trimesh:
 
 
 def side_mounts(points: Points, size: Sizes) -> list[Piece]:
-    """Cans of hydromount and linear mount with their feet, fixed to the body."""
+    """Draw the cans of hydromount and linear mount with their feet, fixed to the body."""
     cans = []
     for name, r in SIDE_MOUNTS:
         profile = [(0, -0.072), (r, -0.072), (r, -0.030), (r - 0.008, -0.022), (0, -0.018)]
@@ -165,13 +165,13 @@ def side_mounts(points: Points, size: Sizes) -> list[Piece]:
 
 
 def torque_arm(points: Points, size: Sizes) -> list[Piece]:
-    """Dog bone between engine and body: a waisted bar with an eye at each end, and the rubber of both eyes."""
+    """Draw the dog bone between engine and body: a waisted bar with an eye at each end, and the rubber of both eyes."""
     a, b = points["bottom_engine"], points["bottom_body"]
     along = (b - a) / np.linalg.norm(b - a)
     path = np.linspace(a + 0.026 * along, b - 0.034 * along, 5)
     bar = tube(path, 0.011, sides=4, width=np.array([0.020, 0.013, 0.012, 0.015, 0.026]), up=UPRIGHT)
     eyes, cores = [], []
-    for place, axis, inner, outer, half in ((a, ACROSS, 0.020, 0.030, 0.018), (b, UPRIGHT, 0.028, 0.040, 0.024)):
-        eyes.append(placed(ring(inner, outer, -half, half, sections=14), place, axis))
-        cores.append(placed(ring(0.008, inner + 0.0005, -half - 0.002, half + 0.002, sections=10), place, axis))
+    for centre, axis, inner, outer, half in ((a, ACROSS, 0.020, 0.030, 0.018), (b, UPRIGHT, 0.028, 0.040, 0.024)):
+        eyes.append(placed(ring(inner, outer, -half, half, sections=14), centre, axis))
+        cores.append(placed(ring(0.008, inner + 0.0005, -half - 0.002, half + 0.002, sections=10), centre, axis))
     return [Piece("", joined(bar, eyes), palette.LINK), Piece("_rubber", joined(cores), palette.RUBBER)]

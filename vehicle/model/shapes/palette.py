@@ -1,4 +1,4 @@
-"""The colours of the scene: restrained, so that springs and dampers are what the eye finds first."""
+"""Colours of the scene: muted, so that springs and dampers stand out."""
 
 from __future__ import annotations
 

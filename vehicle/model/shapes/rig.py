@@ -1,4 +1,4 @@
-"""The rig: shaker with its table, pedestal with its plate, stands with rubber blocks, bed plate."""
+"""Parts of the rig: shaker with its table, pedestal with its plate, stands with rubber blocks, bed plate."""
 
 from __future__ import annotations
 
@@ -14,31 +14,39 @@ from vehicle.model.shapes.solids import block, box, drum, hull, joined, lathe, p
 
 BED_TOP = 0.04  # [m] top of the bed plate above the ground
 TABLE = 0.030  # [m] thickness of both plates
-AIR = 0.045  # [m] free air between the shaker's upper face and the table
+AIR = 0.045  # [m] gap between the upper face of the shaker and the table
 RUBBER = 0.060  # [m] height of the rear blocks
 PLANKS = 9
 
 
 def foot(point: Array) -> Array:
-    """The point on the bed plate below a point."""
+    """Return the point on the bed plate below a point."""
     return np.array([point[0], point[1], BED_TOP])
 
 
-def screws(centre: Array, reach: float, radius: float = 0.009) -> list[trimesh.Trimesh]:
-    """Four square screw heads at the corners of a square [m] on a surface."""
-    places = centre + reach * np.array([(-1, -1, 0), (-1, 1, 0), (1, -1, 0), (1, 1, 0)])
-    return [block(place, (-radius, -radius, -0.002), (radius, radius, 0.008)) for place in places]
+def screws(centre: Array, half: float, radius: float = 0.009) -> list[trimesh.Trimesh]:
+    """Build four square screw heads at the corners (+-half, +-half) [m] of a square on a surface."""
+    centres = centre + half * np.array([(-1, -1, 0), (-1, 1, 0), (1, -1, 0), (1, 1, 0)])
+    return [block(corner, (-radius, -radius, -0.002), (radius, radius, 0.008)) for corner in centres]
 
 
 def square(centre: Array, half: float, low: float, high: float, bevel: float = 0.0) -> trimesh.Trimesh:
-    """A square plate or column [m] about an upright axis through a point."""
+    """Build a square plate or column [m] about a vertical axis through a point."""
     return block(centre, (-half, -half, low), (half, half, high), bevel)
 
 
 def _ribs(
     base: Array, turns: Array, corners: Sequence[tuple[float, float]], half: float, beside: Sequence[float]
 ) -> list[trimesh.Trimesh]:
-    """Upright sheets around a column, by the directions outward, (radius, height) of the corners, places beside it."""
+    """Build vertical sheets around a column.
+
+    Args:
+        base: foot of the column [m], shape (3,)
+        turns: outward directions of the sheets, shape (n, 3)
+        corners: radius and height of the corners of a sheet [m]
+        half: half thickness of a sheet [m]
+        beside: sideways offsets of the sheets of each direction [m]
+    """
     sheets = []
     for along in turns:
         across = np.array([-along[1], along[0], 0.0])
@@ -48,17 +56,17 @@ def _ribs(
 
 
 def shaker_table(points: Points, size: Sizes) -> list[Piece]:
-    """Round ribbed table whose top is at the tyre patch, with the armature stem that dips into the shaker.
+    """Draw the round ribbed table with its top at the tyre patch, and the armature stem down into the shaker.
 
-    Threaded inserts on a circle outside the tyre's footprint.
+    Threaded inserts are on a circle outside the contact patch of the tyre.
     """
     patch = points["tyre_patch"]
     stem, low = shaker_top(patch) - float(patch[2]) - 0.01, float(patch[2]) - TABLE - float(patch[2])
     profile = [(0, stem), (0.085, stem), (0.085, low - 0.012), (0.17, low), (0.205, low)]
     profile += [(0.210, low + 0.005), (0.210, -0.005), (0.205, 0.0), (0, 0.0)]
     phi = 2 * np.pi * (np.arange(6) + 0.5) / 6
-    places = patch + 0.19 * np.column_stack([np.cos(phi), np.sin(phi), 0 * phi])
-    inserts = [placed(drum(0.0075, -0.004, 0.0012, sections=6), place) for place in places]
+    circle = patch + 0.19 * np.column_stack([np.cos(phi), np.sin(phi), 0 * phi])
+    inserts = [placed(drum(0.0075, -0.004, 0.0012, sections=6), centre) for centre in circle]
     return [
         Piece("", placed(lathe(profile, sections=24), patch), palette.PLATE),
         Piece("_inserts", joined(inserts), palette.DARK_STEEL),
@@ -66,12 +74,12 @@ def shaker_table(points: Points, size: Sizes) -> list[Piece]:
 
 
 def shaker_top(patch: Array) -> float:
-    """Height [m] of the shaker's upper face."""
+    """Return the height z of the upper face of the shaker [m], below a contact patch at (x, y, z) [m]."""
     return float(patch[2]) - TABLE - AIR
 
 
 def shaker(points: Points, size: Sizes) -> list[Piece]:
-    """Electrodynamic shaker: ribbed drum with an opening for the armature, in its frame."""
+    """Draw the electrodynamic shaker: ribbed drum with an opening for the armature, in its frame."""
     patch = points["tyre_patch"]
     low, high = BED_TOP + 0.035, shaker_top(patch)
     step = (high - low) / 10
@@ -87,7 +95,7 @@ def shaker(points: Points, size: Sizes) -> list[Piece]:
 
 
 def shaker_frame(patch: Array, top: float) -> trimesh.Trimesh:
-    """Trunnions, their bearing pedestals and the base frame of a shaker whose upper face is at a height [m]."""
+    """Build trunnions, bearing pedestals and base frame of a shaker with its upper face at a height `top` [m]."""
     middle = 0.5 * (BED_TOP + 0.035 + top)
     base = foot(patch)
     parts = [block(base, (-0.38, s * 0.2 - 0.045, 0), (0.38, s * 0.2 + 0.045, 0.035)) for s in (-1, 1)]
@@ -103,12 +111,12 @@ def shaker_frame(patch: Array, top: float) -> trimesh.Trimesh:
 
 
 def fixed_plate(points: Points, size: Sizes) -> list[Piece]:
-    """Square plate under a standing tyre, its top at the tyre patch."""
+    """Draw the square plate under a tyre at rest, its top at the tyre patch."""
     return [Piece("", square(points["tyre_patch"], 0.205, -TABLE, 0, 0.005), palette.PLATE)]
 
 
 def pedestal(points: Points, size: Sizes) -> list[Piece]:
-    """Welded steel pedestal under a plate: column, gussets, head and foot plates with screws."""
+    """Draw the welded steel pedestal under a plate: column, gussets, head and foot plates with screws."""
     base, height = foot(points["tyre_patch"]), float(points["tyre_patch"][2]) - TABLE - BED_TOP
     turns = np.array([(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)])
     corners = [(0.11, 0.02), (0.22, 0.02), (0.11, 0.6 * height), (0.22, 0.05)]
@@ -118,7 +126,7 @@ def pedestal(points: Points, size: Sizes) -> list[Piece]:
 
 
 def rear_block(points: Points, size: Sizes) -> list[Piece]:
-    """Barrel-shaped rubber block under the body, its top at the support point, on a steel stand with four braces."""
+    """Draw the barrel-shaped rubber block with its top at the support point, on a steel stand with four braces."""
     support = points["support"]
     half = [(0.076, -0.8 * RUBBER), (0.080, -0.5 * RUBBER), (0.076, -0.2 * RUBBER)]
     rubber = lathe([(0, -RUBBER), (0.066, -RUBBER), *half, (0.066, 0), (0, 0)], sections=18)
@@ -136,14 +144,22 @@ def rear_block(points: Points, size: Sizes) -> list[Piece]:
 def _stand(
     base: Array, height: float, column: trimesh.Trimesh, plates: Sequence[float], sheets: Sequence[trimesh.Trimesh]
 ) -> trimesh.Trimesh:
-    """Column and sheets on a screwed foot plate: half widths of foot and head, thickness, half distance of screws."""
-    wide, head, thick, reach = plates
+    """Build column and sheets on a screwed foot plate.
+
+    Args:
+        base: foot of the column [m], shape (3,)
+        height: height of the stand [m]
+        column: mesh of the column
+        plates: half widths of foot and head plate, thickness of the head plate, half distance of the screws [m]
+        sheets: meshes of the sheets around the column
+    """
+    wide, head, thick, screw_half = plates
     feet = [square(base, wide, 0, 0.025, 0.005), square(base, head, height - thick, height, 0.004)]
-    return joined(column, feet, sheets, screws(shifted(base, 0, 0, 0.025), reach))
+    return joined(column, feet, sheets, screws(shifted(base, 0, 0, 0.025), screw_half))
 
 
 def bed_plate(points: Points, size: Sizes) -> list[Piece]:
-    """Machined bed plate with T-slots along the car: planks with gaps, wide enough for all that stands on it."""
+    """Draw the machined bed plate with T-slots along the car, as planks with gaps, around all points of the rig."""
     low, high = (pick(list(points.values()), axis=0) for pick in (np.min, np.max))
     x_low, x_high, y_low, y_high = low[0] - 0.75, high[0] + 0.75, low[1] - 0.60, high[1] + 0.60
     edges = np.linspace(y_low, y_high, PLANKS + 1)

@@ -1,4 +1,4 @@
-"""What a part is drawn as: each role with the points that it needs; a rod between its points for any other part."""
+"""Roles of parts: drawing function and required points of each role; other parts are drawn as rods between points."""
 
 from __future__ import annotations
 
@@ -50,22 +50,22 @@ ROLES: Final[dict[str, tuple[Callable[[Points, Sizes], list[Piece]], tuple[str, 
     "rear_block": (rig.rear_block, ("support",)),
     "bed_plate": (rig.bed_plate, ()),
 }
-"""role to what draws it on the right side of the car, and the names of the points that it must be given"""
+"""Role -> function that draws the part on the right side of the car, and the names of its required points."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Part:
-    """A part of a car or a rig that can be looked at.
+    """Visible part of a car or a rig.
 
     Attributes:
-        name: of the part without its suffix; shapes are called after it.
-        role: what it is drawn as: a name of `ROLES`, `none` for nothing, any other for rods between its points.
-        points: points that it hangs on, at the design position [m] in the vehicle frame, by their names.
-        around: further points that its role may ask for, by the names that the role gives them.
-        suffix: `_fr` and the like, behind the names of part and shapes; empty for what exists once.
-        carrier: the part that holds it: its bolts move with that.
-        left: drawn mirrored, as the roles draw the right side.
-        sizes: drawn sizes that replace those of `SIZES`.
+        name: name of the part without suffix; its shapes have this name.
+        role: key of `ROLES`; `none` for an invisible part; any other name for rods between the points.
+        points: attachment points of the part by name, at the design position [m] in the vehicle frame.
+        around: further points required by the role, by the names used in the role.
+        suffix: suffix of the names of part and shapes, as `_fr`; empty for a single part.
+        carrier: part to which this part is attached; the bolts move with the carrier.
+        left: true: drawn as the mirror image of the right side.
+        sizes: drawn sizes that replace entries of `SIZES`.
     """
 
     name: str
@@ -79,24 +79,24 @@ class Part:
 
 
 def pieces(part: Part) -> list[Piece]:
-    """Draw a part on the right side by its role; rods between its points where its role is unknown or lacks a point."""
+    """Draw a part on the right side by its role; as rods between its points if the role is unknown or lacks a point."""
     turn = (1.0, -1.0 if part.left else 1.0, 1.0)
-    own, known = ({name: point * turn for name, point in given.items()} for given in (part.points, part.around))
+    points, around = ({name: point * turn for name, point in group.items()} for group in (part.points, part.around))
     draw, needed = ROLES.get(part.role, (None, ()))
-    if part.role == "none" or not own:
+    if part.role == "none" or not points:
         return []
-    if draw is None or not set(needed) <= {*own, *known}:
-        return suspension.rods(list(own.values()))
-    return draw(known | own, {**SIZES, **part.sizes})
+    if draw is None or not set(needed) <= {*points, *around}:
+        return suspension.rods(list(points.values()))
+    return draw(around | points, {**SIZES, **part.sizes})
 
 
 def part_shapes(parts: Iterable[Part]) -> dict[str, Shape]:
-    """Visible shapes of parts, by name, in the order of the parts; the name is fit for a file."""
+    """Return the visible shapes of parts by name, in the order of the parts; names are valid as file names."""
     shapes: dict[str, Shape] = {}
     for part in parts:
         for piece in pieces(part):
             name = part.name + piece.name if piece.name[:1] in ("", "_") else piece.name
-            if name + part.suffix in shapes:  # a second part of the role on this corner
+            if name + part.suffix in shapes:  # another part of the same role on this corner
                 name = f"{part.name}_{piece.name}"
             shapes[name + part.suffix] = Shape(
                 mesh=mirrored(piece.mesh) if part.left else piece.mesh,

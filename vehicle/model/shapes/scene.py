@@ -1,4 +1,4 @@
-"""The car on its rig as parts with roles: wheels on plates, or the body on rubber blocks."""
+"""Car on its rig as parts with roles: wheels on plates, or the body on rubber blocks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vehicle.model.shapes.shape import Points, Shape
 SHELL: Final = tuple(
     f"body_{name}" for name in ("shell", "painted", "trim", "rails", "lamps_front", "lamps_rear", "plates", "glass")
 )
-"""shapes that hide the chassis: make them translucent together, and leave `body_lining` out then"""
+"""Names of the shapes that hide the chassis: make all of them translucent, and omit `body_lining`."""
 
 BODY: Final = (
     "floor",
@@ -24,40 +24,38 @@ BODY: Final = (
     "estate_body",
 )
 RIG: Final = {True: ("shaker_table", "shaker"), False: ("fixed_plate", "pedestal")}
-"""roles of what moves and of what stands under a wheel on the right, and under any other"""
+"""Roles of the plate and of the stand under a wheel: True on the right side (shaker), False elsewhere (pedestal)."""
 
 
 def car_shapes(
     points: Points, corners: Mapping[str, Points], supports: Points, composed: Iterable[Part], *, rig: bool = True
 ) -> dict[str, Shape]:
-    """Every visible shape of car and rig at the design position; arguments as of `car_parts`.
-
-    Returns:
-        shapes by name, in a fixed order; the name is fit for a file
-    """
+    """Return all visible shapes of car and rig at the design position, by name; see `car_parts` for the arguments."""
     return part_shapes(car_parts(points, corners, supports, composed, rig=rig))
 
 
 def car_parts(
     points: Points, corners: Mapping[str, Points], supports: Points, composed: Iterable[Part], *, rig: bool = True
 ) -> Iterator[Part]:
-    """The body where the car has its points, its other parts, and the rig: a shaker under each wheel on the right.
+    """Yield the parts of the body for which the car has points, its other parts, and the rig.
+
+    The rig has a shaker under each wheel on the right, a pedestal under each other wheel, a stand at each support.
 
     Args:
-        points: of the car by name [m], in the vehicle frame
-        corners: wheel to the points of its corner, "wheel_center" and "tyre_patch" among them
-        supports: where the car stands on blocks, by side
-        composed: parts of the car beside its body
+        points: points of the car by name [m], in the vehicle frame
+        corners: wheel name -> points of its corner, including "wheel_center" and "tyre_patch"
+        supports: support points of the car on rubber blocks, by side
+        composed: parts of the car other than its body
         rig: draw shakers, pedestals and their bed plate
     """
     middle = {**points, **next(iter(corners.values()), {})}
     if "roof_left_rear" in points:
         behind = [*supports.values(), *(corner["wheel_center"] for corner in corners.values())]
-        middle |= {"roof": points["roof_left_rear"], "rear_axle": max(behind, key=lambda place: place[0])}
+        middle |= {"roof": points["roof_left_rear"], "rear_axle": max(behind, key=lambda point: point[0])}
     for role in BODY:
-        own = supports if role == "support_shoes" else middle
-        if set(ROLES[role][1]) <= set(own):
-            yield Part(name="body", role=role, points=own)
+        role_points = supports if role == "support_shoes" else middle
+        if set(ROLES[role][1]) <= set(role_points):
+            yield Part(name="body", role=role, points=role_points)
     yield from composed
     stands = {wheel: RIG[bool(corner["wheel_center"][1] > 0.0)] for wheel, corner in corners.items() if rig}
     for wheel, (plate, _) in stands.items():

@@ -1,4 +1,4 @@
-"""What is drawn of a part: its pieces as its role draws them, its sizes, and the shapes that come of them."""
+"""Drawn pieces of a part, default drawn sizes, and visible shapes."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ SIZES: Final[dict[str, float]] = {
     "spring_turns": 5.5,  # assumed
     "rear_overhang": 0.985,  # 4.45 m of the estate minus the rear axle at 3.465 m
 }
-"""drawn sizes [m] (turns: number) that points do not give; the pictures' own, no physics reads them"""
+"""Drawn sizes [m] (turns: number) that do not follow from points; used in pictures only, not in the simulation."""
 
 
 class Piece(NamedTuple):
-    """One mesh of a part."""
+    """Mesh of a part."""
 
     name: str
-    """empty or with a leading underscore: goes behind the part's name; else it stands alone"""
+    """empty or with a leading underscore: appended to the name of the part; else the complete name"""
     mesh: trimesh.Trimesh
     """triangles with outward normals, vertices [m]"""
     rgba: Colour
     """colour and opacity, each between 0 and 1"""
     held: bool = False
-    """moves with what carries the part, not with the part"""
+    """true: moves with the carrier of the part, not with the part"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Shape:
-    """A mesh [m] in the vehicle frame (x rear, y driver's right, z up) at the design position."""
+    """Visible mesh [m] in the vehicle frame (x rear, y driver's right, z up) at the design position."""
 
     mesh: trimesh.Trimesh
     """triangles with outward normals, vertices [m]"""
     rgba: Colour
     """colour and opacity, each between 0 and 1"""
     part: str
-    """name of the rigid part that carries the shape; `world` for what stands still"""
+    """name of the rigid part with which the shape moves; `world` for a fixed shape"""

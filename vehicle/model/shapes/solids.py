@@ -1,4 +1,4 @@
-"""Closed solids: hulls, boxes, bodies of revolution, tubes and bars swept along a path; placing and joining them."""
+"""Closed solids (hulls, boxes, bodies of revolution, tubes and bars swept along a path), placed and joined."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from numpy.typing import ArrayLike
 
 from vehicle.model.shapes.shape import Array
 
-ON_AXIS = 1e-9  # [m] a smaller radius is a point on the axis
+ON_AXIS = 1e-9  # [m] minimum radius of a circle; smaller radii are points on the axis
 
 
 def hull(points: ArrayLike) -> trimesh.Trimesh:
-    """The convex hull of points [m], shape (n, 3)."""
+    """Build the convex hull of points [m], shape (n, 3)."""
     return outward(trimesh.convex.convex_hull(np.asarray(points, dtype=float)))
 
 
 def box(low: ArrayLike, high: ArrayLike, bevel: float = 0.0) -> trimesh.Trimesh:
-    """A box between two corners [m], all edges bevelled by `bevel` [m]."""
+    """Build a box between two corners [m], all edges bevelled by `bevel` [m]."""
     a, b = (np.asarray(corner, dtype=float) for corner in (low, high))
     centre, half = (a + b) / 2, np.abs(b - a) / 2
     signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
@@ -29,34 +29,34 @@ def box(low: ArrayLike, high: ArrayLike, bevel: float = 0.0) -> trimesh.Trimesh:
     return hull(np.vstack([centre + signs * (half - bevel * (1 - np.eye(3)[axis])) for axis in range(3)]))
 
 
-def block(place: ArrayLike, low: ArrayLike, high: ArrayLike, bevel: float = 0.0) -> trimesh.Trimesh:
-    """A box whose corners [m] are given relative to a place [m]."""
-    origin = np.asarray(place, dtype=float)
-    return box(origin + np.asarray(low), origin + np.asarray(high), bevel)
+def block(origin: ArrayLike, low: ArrayLike, high: ArrayLike, bevel: float = 0.0) -> trimesh.Trimesh:
+    """Build a box between two corners relative to an origin [m]."""
+    zero = np.asarray(origin, dtype=float)
+    return box(zero + np.asarray(low), zero + np.asarray(high), bevel)
 
 
-def plate(place: ArrayLike, axis: int, span: Sequence[float], corners: Sequence[Sequence[float]]) -> trimesh.Trimesh:
-    """A flat plate with parallel faces: the hull of a polygon at each end of a span.
+def plate(origin: ArrayLike, axis: int, span: Sequence[float], corners: Sequence[Sequence[float]]) -> trimesh.Trimesh:
+    """Build a flat plate with parallel faces: the hull of a polygon at each end of a span.
 
     Args:
-        place: what all coordinates are relative to, shape (3,) [m]
-        axis: 0, 1 or 2, the direction of the thickness
-        span: where its faces are along the axis [m]
-        corners: polygon in the two other axes, in their order [m]
+        origin: origin of all coordinates [m], shape (3,)
+        axis: direction of the thickness, 0, 1 or 2
+        span: positions of the faces along the axis [m]
+        corners: corners of the polygon along the two other axes, in ascending order of the axes [m]
     """
     offsets = [np.insert(np.asarray(corner, dtype=float), axis, at) for at in span for corner in corners]
-    return hull(np.asarray(place, dtype=float) + np.array(offsets))
+    return hull(np.asarray(origin, dtype=float) + np.array(offsets))
 
 
 def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> trimesh.Trimesh:
-    """Turn a profile about the z axis.
+    """Build the body of revolution of a profile about the z axis.
 
     x = r cos(phi), y = r sin(phi), phi = 2 pi k / sections
 
-    Its volume is that of the turned body times sin(a)/a with a = 2 pi / sections, the ratio of polygon to circle.
+    The volume is that of the exact body times sin(a)/a with a = 2 pi / sections, the ratio of polygon to circle.
 
     Args:
-        profile: points (r, z) [m], shape (n, 2); an open profile that begins and ends on the axis makes a closed body
+        profile: points (r, z) [m], shape (n, 2); an open profile that begins and ends on the axis gives a closed body
         sections: number of divisions of the full turn
         closed: join the last point to the first (a ring that does not touch the axis)
 
@@ -80,12 +80,12 @@ def lathe(profile: ArrayLike, *, sections: int = 24, closed: bool = False) -> tr
 
 
 def ring(inner: float, outer: float, low: float, high: float, *, sections: int = 20) -> trimesh.Trimesh:
-    """A plain ring about z between two radii [m] and two heights [m]."""
+    """Build a ring with rectangular section about z, between two radii [m] and two heights [m]."""
     return lathe([(inner, low), (outer, low), (outer, high), (inner, high)], sections=sections, closed=True)
 
 
 def drum(radius: float, low: float, high: float, *, bevel: float = 0.0, sections: int = 20) -> trimesh.Trimesh:
-    """A solid cylinder about z between two heights [m], its edges bevelled [m]."""
+    """Build a solid cylinder about z between two heights [m], with bevelled edges [m]."""
     if bevel == 0.0:
         return lathe([(0, low), (radius, low), (radius, high), (0, high)], sections=sections)
     rim = [(radius - bevel, low), (radius, low + bevel), (radius, high - bevel), (radius - bevel, high)]
@@ -93,7 +93,7 @@ def drum(radius: float, low: float, high: float, *, bevel: float = 0.0, sections
 
 
 def ball(radius: float, *, sections: int = 14) -> trimesh.Trimesh:
-    """A sphere [m] about the origin, as many divisions from pole to pole as half its sections."""
+    """Build a sphere [m] about the origin, with half as many divisions from pole to pole as sections."""
     theta = np.linspace(0, np.pi, sections // 2 + 1)
     profile = np.column_stack([radius * np.sin(theta), -radius * np.cos(theta)])
     profile[[0, -1], 0] = 0.0
@@ -101,14 +101,14 @@ def ball(radius: float, *, sections: int = 14) -> trimesh.Trimesh:
 
 
 def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, Array]:
-    """Two normals at each point of a path, carried along it without twist by double reflection.
+    """Return two normals at each point of a path, transported without twist by double reflection.
 
-    The frame is mirrored at the middle plane of each chord, then at the plane that brings its tangent to the next one.
+    The frame is mirrored at the middle plane of each chord, then at the plane that maps its tangent to the next.
 
     Args:
         path: points [m], shape (n, 3)
-        up: wished direction of the first normal; with it, EVERY normal is the projection of this direction
-        closed: the path returns to its first point (not repeated); it must lie in a plane, or the section will not meet
+        up: preferred direction of the first normal; if set, EVERY first normal is the projection of this direction
+        closed: the path returns to its first point (not repeated); it must be planar, or the end sections differ
 
     Returns:
         first and second normal, unit length, each shape (n, 3)
@@ -134,7 +134,7 @@ def frames(path: Array, up: ArrayLike | None, *, closed: bool) -> tuple[Array, A
 
 def _reflected(vector: Array, normal: Array) -> Array:
     square = float(normal @ normal)
-    if square < 1e-24:  # nothing to turn
+    if square < 1e-24:  # both tangents agree
         return vector
     return vector - (2 * float(normal @ vector) / square) * normal
 
@@ -151,15 +151,15 @@ def tube(
     """Sweep a polygon along a path: a closed body with flat ends, or a ring.
 
     For a straight path the volume is that of the prism, sides/2 sin(2 pi / sides) radius^2 length; for a closed
-    planar path it is the polygon's area times the length of the path (Pappus) as the steps get finer.
+    planar path it converges to the area of the polygon times the length of the path (Pappus).
 
     Args:
         path: points of the centre line [m], shape (n, 3), no two in a row equal
-        radius: half height of the section, along the first normal [m]; a number or shape (n,)
+        radius: distance of the corners from the centre line along the first normal [m]; a number or shape (n,)
         sides: corners of the polygon; 4 makes a bar with flat faces
         closed: the path returns to its first point (which is not repeated)
-        width: half width, along the second normal [m]; `radius` if not given
-        up: direction that the first normal follows, for flat bars; free of twist if not given
+        width: distance of the corners along the second normal [m]; `radius` by default
+        up: direction of the first normal, for flat bars; by default without twist
 
     Returns:
         mesh with outward normals
@@ -171,7 +171,7 @@ def tube(
         for half in (radius, radius if width is None else width)
     )
     phi = (2 * np.pi * (np.arange(sides) + 0.5) / sides)[None, :, None]
-    stretch = np.sqrt(2.0) if sides == 4 else 1.0  # for a bar, half height and width are those of its flat faces
+    stretch = np.sqrt(2.0) if sides == 4 else 1.0  # half height and width of a bar refer to its flat faces
     return swept(
         centre[:, None, :]
         + stretch * half_height * np.cos(phi) * first[:, None, :]
@@ -181,11 +181,11 @@ def tube(
 
 
 def swept(rings: Array, *, closed: bool = False) -> trimesh.Trimesh:
-    """The body whose sections are given one by one: with flat ends, or closed to a ring.
+    """Build a body from its sections: with flat ends, or closed to a ring.
 
     Args:
         rings: corners of each section [m], shape (n, sides, 3)
-        closed: the last section is joined to the first
+        closed: join the last section to the first
 
     Returns:
         mesh with outward normals
@@ -202,17 +202,17 @@ def swept(rings: Array, *, closed: bool = False) -> trimesh.Trimesh:
 
 
 def quads(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Two triangles for each quadrangle a b c d: vertex numbers of any one shape, the result has shape (2 n, 3)."""
+    """Return two triangles for each quadrangle a b c d, shape (2 n, 3), for vertex indices of a common shape."""
     return np.vstack([np.stack(corners, axis=-1).reshape(-1, 3) for corners in ((a, b, c), (a, c, d))])
 
 
 def rod(start: ArrayLike, end: ArrayLike, radius: float, *, sides: int = 8) -> trimesh.Trimesh:
-    """A straight round rod between two points [m]."""
+    """Build a straight round rod between two points [m]."""
     return tube(np.array([start, end], dtype=float), radius, sides=sides)
 
 
 def axis_rotation(direction: ArrayLike) -> Array:
-    """Rotation that takes z to a direction by the shortest turn.
+    """Return the rotation by the smallest angle that maps z to a direction.
 
     R = 1 + [v] + [v]^2 / (1 + c), v = z x d, c = z . d (Rodrigues)
 
@@ -224,7 +224,7 @@ def axis_rotation(direction: ArrayLike) -> Array:
     """
     d = np.asarray(direction, dtype=float)
     d = d / np.linalg.norm(d)
-    if d[2] < -1 + 1e-12:  # the shortest turn is not unique: turn about x
+    if d[2] < -1 + 1e-12:  # the smallest rotation is not unique: rotate about x
         return np.diag([1.0, -1.0, -1.0])
     v = np.array([-d[1], d[0], 0.0])
     cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
@@ -233,35 +233,35 @@ def axis_rotation(direction: ArrayLike) -> Array:
 
 
 def placed(mesh: trimesh.Trimesh, origin: ArrayLike, direction: ArrayLike = (0.0, 0.0, 1.0)) -> trimesh.Trimesh:
-    """A copy of a mesh made about z, its z axis turned to `direction`, its origin moved to `origin` [m]."""
+    """Copy a mesh with its z axis rotated to `direction` and its origin moved to `origin` [m]."""
     vertices = np.asarray(mesh.vertices) @ axis_rotation(direction).T + np.asarray(origin, dtype=float)
     return trimesh.Trimesh(vertices, mesh.faces, process=False)
 
 
 def shifted(points: ArrayLike, dx: float, dy: float, dz: float) -> Array:
-    """Points moved by (dx, dy, dz) [m], shape (..., 3)."""
+    """Return points moved by (dx, dy, dz) [m], shape (..., 3)."""
     moved: Array = np.asarray(points, dtype=float) + np.array([dx, dy, dz])
     return moved
 
 
 def mirrored(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The mesh mirrored at the middle plane y = 0; the faces are turned so that normals stay outward."""
+    """Mirror a mesh at the middle plane y = 0; faces are reversed so that normals stay outward."""
     vertices = np.asarray(mesh.vertices) * (1.0, -1.0, 1.0) + 0.0  # no -0.0: both halves share their middle vertices
     return trimesh.Trimesh(vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
 
 
 def inverted(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """The mesh with its normals turned round."""
+    """Return a mesh with reversed normals."""
     return trimesh.Trimesh(mesh.vertices, np.asarray(mesh.faces)[:, ::-1], process=False)
 
 
 def outward(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-    """A closed mesh with its faces turned, where needed, so that its volume is positive."""
+    """Return a closed mesh with positive volume; reverse its faces if necessary."""
     return inverted(mesh) if mesh.volume < 0 else mesh
 
 
 def joined(*meshes: trimesh.Trimesh | Sequence[trimesh.Trimesh]) -> trimesh.Trimesh:
-    """Several meshes as one; they may overlap, their surfaces are not cut."""
+    """Combine meshes to a single mesh without cutting overlapping surfaces."""
     flat: list[trimesh.Trimesh] = []
     for mesh in meshes:
         flat.extend([mesh] if isinstance(mesh, trimesh.Trimesh) else mesh)
@@ -272,5 +272,5 @@ def joined(*meshes: trimesh.Trimesh | Sequence[trimesh.Trimesh]) -> trimesh.Trim
 
 
 def both(*meshes: trimesh.Trimesh) -> trimesh.Trimesh:
-    """Right-hand meshes with their mirror images."""
+    """Combine meshes of the right side with their mirror images."""
     return joined([*meshes, *(mirrored(mesh) for mesh in meshes)])

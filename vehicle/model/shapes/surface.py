@@ -1,4 +1,4 @@
-"""Curves and the open surfaces between them: smooth curves, rounded corners, helices, grids, Coons patches."""
+"""Curves and open surfaces between curves: splines, rounded corners, helices, grids, Coons patches."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from vehicle.model.shapes.solids import quads
 
 
 def spline(points: ArrayLike, count: int) -> Array:
-    """Smooth curve through all points (centripetal Catmull-Rom), evenly spaced in its parameter.
+    """Interpolate points by a smooth curve (centripetal Catmull-Rom), evenly spaced in the curve parameter.
 
-    Cubic Hermite pieces whose tangent at a point is the slope of the parabola through it and its neighbours.
+    Cubic Hermite segments; the tangent at a point is the slope of the parabola through the point and its neighbours.
 
     Args:
-        points: points to pass through, shape (n, d), n >= 2
+        points: points on the curve, shape (n, d), n >= 2
         count: number of points of the result
 
     Returns:
@@ -45,7 +45,7 @@ def spline(points: ArrayLike, count: int) -> Array:
 
 
 def bezier(start: ArrayLike, corner: ArrayLike, end: ArrayLike, count: int) -> Array:
-    """Quadratic Bezier curve: (1-u)^2 start + 2 u (1-u) corner + u^2 end, shape (count, d)."""
+    """Return a quadratic Bezier curve: (1-u)^2 start + 2 u (1-u) corner + u^2 end, shape (count, d)."""
     u = np.linspace(0, 1, count)[:, None]
     a, b, c = (np.asarray(point, dtype=float) for point in (start, corner, end))
     curve: Array = (1 - u) ** 2 * a + 2 * u * (1 - u) * b + u**2 * c
@@ -53,7 +53,7 @@ def bezier(start: ArrayLike, corner: ArrayLike, end: ArrayLike, count: int) -> A
 
 
 def rounded(points: ArrayLike, radius: float, *, steps: int = 5) -> Array:
-    """Polyline with each inner corner replaced by a curve that begins `radius` [m] before it; ends are kept."""
+    """Round each inner corner of a polyline by a curve that begins `radius` [m] before the corner."""
     p = np.asarray(points, dtype=float)
     pieces = [p[:1]]
     for before, corner, after in zip(p[:-2], p[1:-1], p[2:], strict=True):
@@ -64,16 +64,16 @@ def rounded(points: ArrayLike, radius: float, *, steps: int = 5) -> Array:
 
 
 def helix(radius: float | Callable[[Array], Array], low: float, high: float, turns: float, *, steps: int = 20) -> Array:
-    """Helix about z: (r cos(phi), r sin(phi), z), phi from 0 to 2 pi turns, z linear from low to high.
+    """Return a helix about z: (r cos(phi), r sin(phi), z), phi from 0 to 2 pi turns, z linear from low to high.
 
-    With a constant radius its length is sqrt((2 pi r turns)^2 + (high - low)^2).
+    With a constant radius the length is sqrt((2 pi r turns)^2 + (high - low)^2).
 
     Args:
-        radius: [m], or a function of the share of the height, 0 to 1
+        radius: radius [m], a number or a function of the share of the height, 0 to 1
         low: height of the beginning [m]
         high: height of the end [m]
         turns: number of turns
-        steps: points for each turn
+        steps: number of points per turn
 
     Returns:
         points [m], shape (n, 3)
@@ -85,11 +85,11 @@ def helix(radius: float | Callable[[Array], Array], low: float, high: float, tur
 
 
 def grid(points: Array, *, flip: bool = False) -> trimesh.Trimesh:
-    """Triangles through a grid of points; the normal is (second index direction) x (first), turned by `flip`.
+    """Triangulate a grid of points; the normal is (second index direction) x (first), reversed by `flip`.
 
     Args:
-        points: shape (m, n, 3) [m]; rows or columns may shrink to a point, the empty triangles are left out
-        flip: turn the normals
+        points: grid of points [m], shape (m, n, 3); rows or columns may shrink to a point, empty triangles are omitted
+        flip: reverse the normals
 
     Returns:
         open mesh, equal vertices merged
@@ -105,7 +105,7 @@ def grid(points: Array, *, flip: bool = False) -> trimesh.Trimesh:
 
 
 def coons(bottom: Array, top: Array, left: Array, right: Array) -> Array:
-    """The bilinearly blended surface between four boundary curves.
+    """Return the bilinearly blended surface between four boundary curves.
 
     S(u, v) = (1-v) bottom(u) + v top(u) + (1-u) left(v) + u right(v) - bilinear blend of the four corners
 

@@ -16,9 +16,9 @@ from vehicle.model.shapes.surface import bezier, helix, rounded
 
 STRUT = ("damper_bottom", "spring_lower", "strut_top")
 SEATS, EYES = ("lower", "upper"), ("damper_lower", "damper_upper")
-SEAT_BELOW_TOP = 0.014  # [m] the upper spring seat lies this far below the strut top
-HOUSING_SHARE = 0.34  # the housing ends at this share of the way from the lower seat to the strut top
-LOWEST_TURN = 0.60  # radius of the lowest turn over that of the others: the tyre is close there
+SEAT_BELOW_TOP = 0.014  # [m] distance of the upper spring seat below the strut top
+HOUSING_SHARE = 0.34  # end of the housing as a share of the distance from the lower seat to the strut top
+LOWEST_TURN = 0.60  # radius of the lowest turn over that of the other turns: the tyre is close there
 FORE_AFT = (1.0, 0.0, 0.0)
 ACROSS = (0.0, 1.0, 0.0)
 UPRIGHT = (0.0, 0.0, 1.0)
@@ -30,7 +30,7 @@ BUSHINGS = (  # point, axis of the sleeve, inner radius, outer radius, half leng
 
 
 class StrutAxis(NamedTuple):
-    """Axis of the strut with the places along it."""
+    """Axis of the strut with positions along the axis."""
 
     origin: Array
     """damper bottom, shape (3,) [m]"""
@@ -42,16 +42,16 @@ class StrutAxis(NamedTuple):
     """distance of the strut top [m]"""
 
     def turned(self, profile: ArrayLike, sections: int, *, closed: bool = False) -> trimesh.Trimesh:
-        """A profile (r, distance along the axis) [m] turned about the axis."""
+        """Build the body of revolution of a profile (r, distance along the axis) [m] about the axis."""
         return self.place(lathe(profile, sections=sections, closed=closed))
 
     def place(self, mesh: trimesh.Trimesh) -> trimesh.Trimesh:
-        """A mesh made about z, put onto the axis."""
+        """Move a mesh built about z to the axis."""
         return placed(mesh, self.origin, self.axis)
 
 
 def strut_axis(points: Points) -> StrutAxis:
-    """The axis from the damper bottom to the strut top."""
+    """Return the axis from the damper bottom to the strut top."""
     origin = points["damper_bottom"]
     along = points["strut_top"] - origin
     top = float(np.linalg.norm(along))
@@ -59,7 +59,7 @@ def strut_axis(points: Points) -> StrutAxis:
 
 
 def damper_tube(points: Points, size: Sizes) -> list[Piece]:
-    """Housing tube closed by a rolled cap, and the dish on it that carries the spring: small, to clear the tyre."""
+    """Draw the housing tube with a rolled cap, and the spring dish on the tube, small enough to clear the tyre."""
     strut = strut_axis(points)
     r, end = size["damper_tube_radius"], strut.seat + HOUSING_SHARE * (strut.top - strut.seat)
     profile = [(0, -0.045), (r - 0.004, -0.045), (r, -0.040), (r, end - 0.008)]
@@ -74,7 +74,7 @@ def damper_tube(points: Points, size: Sizes) -> list[Piece]:
 
 
 def damper_rod(points: Points, size: Sizes) -> list[Piece]:
-    """Polished rod from inside the housing to the top mount; dish of the spring under the mount; rubber bellows."""
+    """Draw the polished rod from the housing to the top mount, the upper spring dish and the rubber bellows."""
     strut = strut_axis(points)
     top, travel = strut.top, strut.top - strut.seat
     low = strut.seat + 0.5 * HOUSING_SHARE * travel
@@ -95,7 +95,7 @@ def damper_rod(points: Points, size: Sizes) -> list[Piece]:
 
 
 def top_mount(points: Points, size: Sizes) -> list[Piece]:
-    """Rubber cone with its middle at the strut top; steel plate over it with three studs and the rod's nut."""
+    """Draw the rubber cone at the strut top, the steel plate above with three studs, and the nut of the rod."""
     strut = strut_axis(points)
     t = strut.top
     cone = [(0.0, t), (0.045, t), (0.054, t + 0.010), (0.036, t + 0.027), (0, t + 0.030)]
@@ -108,7 +108,7 @@ def top_mount(points: Points, size: Sizes) -> list[Piece]:
 
 
 def coil_spring(points: Points, size: Sizes) -> list[Piece]:
-    """Wire on a helix between the seats; the radius grows over the lowest quarter of the height like a pig's tail.
+    """Draw the spring wire as a helix between the seats with a pigtail end: the radius grows over the lowest quarter.
 
     r(s) = r_low + (r - r_low) (3 q^2 - 2 q^3), q = min(s / 0.28, 1), s the share of the height
     """
@@ -125,7 +125,7 @@ def coil_spring(points: Points, size: Sizes) -> list[Piece]:
 
 
 def coil(points: Points, size: Sizes) -> list[Piece]:
-    """Wire on a helix between two seats anywhere, of one radius."""
+    """Draw the spring wire as a helix of constant radius between two arbitrary seats."""
     lower, along, length = _between(points, SEATS)
     wire, r = size["spring_wire_radius"], size["spring_coil_radius"]
     path = helix(lambda share: r + 0.0 * share, wire, length - wire, size["spring_turns"], steps=13)
@@ -133,7 +133,7 @@ def coil(points: Points, size: Sizes) -> list[Piece]:
 
 
 def plain_tube(points: Points, size: Sizes) -> list[Piece]:
-    """Housing of a damper between two eyes: the lower part of the way."""
+    """Draw the housing of a damper between two eyes, 3 cm to 60 % of the length."""
     lower, along, length = _between(points, EYES)
     eye = placed(ball(0.022, sections=8), lower, along)
     housing = placed(drum(size["damper_tube_radius"], 0.03, 0.6 * length, bevel=0.004, sections=14), lower, along)
@@ -141,23 +141,23 @@ def plain_tube(points: Points, size: Sizes) -> list[Piece]:
 
 
 def piston(points: Points, size: Sizes) -> list[Piece]:
-    """Rod of a damper between two eyes: the upper part of the way."""
+    """Draw the rod of a damper between two eyes, the upper 60 % of the length."""
     lower, along, length = _between(points, EYES)
     shaft = rod(lower + 0.4 * length * along, lower + length * along, 0.009)
     return [Piece("", joined(shaft, placed(ball(0.018, sections=8), points[EYES[1]], along)), palette.ROD)]
 
 
 def _between(points: Points, ends: tuple[str, str]) -> tuple[Array, Array, float]:
-    """Lower end, direction and distance to the upper end."""
+    """Return the lower end [m], the unit vector and the distance [m] to the upper end."""
     lower, upper = (points[end] for end in ends)
     length = float(np.linalg.norm(upper - lower))
     return lower, (upper - lower) / length, length
 
 
 def lower_arm(points: Points, size: Sizes) -> list[Piece]:
-    """L-shaped forged arm: a cross leg to the stiff front bushing, a curved leg to the soft rear one, a web between.
+    """Draw the L-shaped forged arm: cross leg to the stiff front bushing, curved leg to the soft rear bushing, and web.
 
-    Rubber of both bushings and the bellows of the ball joint; bolts through the bushings, held by the subframe.
+    Rubber of both bushings and bellows of the ball joint; bolts through the bushings, fixed to the subframe.
     """
     ball_joint, front, rear = points["lower_ball"], points["arm_front"], points["arm_rear"]
     normal = np.cross(rear - front, ball_joint - front)
@@ -188,7 +188,7 @@ def lower_arm(points: Points, size: Sizes) -> list[Piece]:
 
 
 def knuckle(points: Points, size: Sizes) -> list[Piece]:
-    """Cast upright: hub bearing, leg to the ball joint, clamp around the damper, steering arm."""
+    """Draw the cast knuckle: hub bearing, leg to the ball joint, clamp around the damper, steering arm."""
     wheel, ball_joint, tie = points["wheel_center"], points["lower_ball"], points["tie_outer"]
     strut = strut_axis(points)
     origin, axis = strut.origin, strut.axis
@@ -224,41 +224,41 @@ def knuckle(points: Points, size: Sizes) -> list[Piece]:
     return [Piece("", mesh, palette.STEEL)]
 
 
-def rods(places: Sequence[Array], radius: float = 0.009, end: float = 0.015, nut: float | None = None) -> list[Piece]:
-    """What joins the points of a part: a rod between two, a star from the middle of more, a ball where there is one.
+def rods(points: Sequence[Array], radius: float = 0.009, end: float = 0.015, nut: float | None = None) -> list[Piece]:
+    """Draw a part as a rod between two points, rods from the mean of more points, or a ball at a single point.
 
     Args:
-        places: points, at least one, each shape (3,) [m]
-        radius: of the rods [m]
+        points: points of the part, at least one, each of shape (3,) [m]
+        radius: radius of the rods [m]
         end: radius of the balls at the points [m]
-        nut: share of the length at which a rod between two points carries a hexagonal nut
+        nut: position of a hexagonal nut on a rod between two points, as a share of the length
 
     Returns:
-        one piece
+        list of a single piece
     """
-    middle = [places[0]] if len(places) == 2 else [np.mean(places, axis=0)]
-    far = [place for place in places if np.linalg.norm(place - middle[0]) > 1e-6]
-    parts = [rod(middle[0], place, radius, sides=6) for place in far]
-    along = places[-1] - places[0] if far else np.array(UPRIGHT)
-    parts += [placed(ball(end, sections=8), place, along) for place in places]
+    middle = [points[0]] if len(points) == 2 else [np.mean(points, axis=0)]
+    far = [point for point in points if np.linalg.norm(point - middle[0]) > 1e-6]
+    parts = [rod(middle[0], point, radius, sides=6) for point in far]
+    along = points[-1] - points[0] if far else np.array(UPRIGHT)
+    parts += [placed(ball(end, sections=8), point, along) for point in points]
     if nut is not None:
-        a, b = places
+        a, b = points
         parts.append(placed(drum(1.7 * radius, -0.016, 0.016, sections=6), a + nut * (b - a), b - a))
     return [Piece("", joined(parts), palette.LINK)]
 
 
 def steering_rod(points: Points, size: Sizes) -> list[Piece]:
-    """Tube with a ball at each end, the adjusting nut near the outer one."""
+    """Draw a tube with a ball at each end and the adjusting nut near the outer end."""
     return rods([points["tie_inner"], points["tie_outer"]], 0.0085, 0.0165, nut=0.74)
 
 
 def stabilizer_rod(points: Points, size: Sizes) -> list[Piece]:
-    """Slim rod with a ball joint at each end."""
+    """Draw a slim rod with a ball joint at each end."""
     return rods([points["stab_end"], points["stab_rod_top"]], 0.0060, 0.0135)
 
 
 def stabilizer_half(points: Points, size: Sizes) -> list[Piece]:
-    """Bent bar from its end to the middle plane, with an eye at the end; rubber block, held by the subframe."""
+    """Draw the bent bar from its end to the middle plane, an eye at the end, and the rubber block on the subframe."""
     end, bushing = points["stab_end"], points["stab_body"]
     middle = np.array([bushing[0], 0.0, bushing[2]])
     # the arm bends forward just outside the bushing, so the straight part passes through the point
@@ -275,7 +275,7 @@ def stabilizer_half(points: Points, size: Sizes) -> list[Piece]:
 
 
 def stabilizer_clamp(points: Points) -> trimesh.Trimesh:
-    """Steel strap over the rubber block."""
+    """Build the steel strap over the rubber block."""
     phi = np.linspace(-0.25 * np.pi, 1.25 * np.pi, 6)
     arc = np.column_stack([0.026 * np.cos(phi), np.zeros(6), 0.026 * np.sin(phi)])
     foot: Array = np.array([[0.046, 0, -0.022]])

@@ -10,13 +10,13 @@ from vehicle.model.shapes.shape import Array, Piece, Points, Sizes
 from vehicle.model.shapes.solids import box, drum, hull, joined, lathe, placed
 
 OUTWARD = np.array([0.0, 1.0, 0.0])  # spin axis of the right wheel, to the outside
-DISC_OFFSET = 0.018  # [m] middle of the disc, outside the wheel centre
+DISC_OFFSET = 0.018  # [m] distance of the middle of the disc outward from the wheel centre
 SPOKES = 7
 BOLTS = 4
 
 
 def wheel(points: Points, size: Sizes) -> list[Piece]:
-    """Tyre, rim and bolts."""
+    """Draw tyre, rim and wheel bolts."""
     face = 0.62 * 0.92 * size["tyre_section_width"] / 2  # [m] of the rim, outside the wheel centre
     phi = 2 * np.pi * (np.arange(BOLTS) + 0.5) / BOLTS
     bolt = drum(0.0085, face, face + 0.017, sections=6)
@@ -29,9 +29,9 @@ def wheel(points: Points, size: Sizes) -> list[Piece]:
 
 
 def tyre(points: Points, size: Sizes) -> trimesh.Trimesh:
-    """Turned tyre section with rounded shoulders, flattened where it stands on the plate.
+    """Draw the tyre with rounded shoulders, flattened on the plate.
 
-    Vertices below the plate are lifted onto it; near the patch the side walls bulge by up to 5 %.
+    Vertices below the plate are lifted onto the plate; near the patch the side walls bulge by up to 5 %.
     """
     centre, patch = points["wheel_center"], points["tyre_patch"]
     loaded = float(centre[2] - patch[2])
@@ -51,7 +51,7 @@ def tyre(points: Points, size: Sizes) -> trimesh.Trimesh:
 
 
 def rim(points: Points, size: Sizes) -> trimesh.Trimesh:
-    """Well-base rim with tapered spokes that bow outward from the hub, and a hub cap."""
+    """Draw the well-base rim with tapered spokes that bow outward from the hub, and a hub cap."""
     bead, half = size["rim_diameter"] / 2, 0.92 * size["tyre_section_width"] / 2
     section = [(0.006, 1.0), (-0.026, 0.35), (-0.026, -0.25), (0.006, -0.98), (-0.032, -0.27), (-0.032, 0.33)]
     section.append((-0.003, 1.02))
@@ -74,7 +74,7 @@ def rim(points: Points, size: Sizes) -> trimesh.Trimesh:
 
 
 def brake_disc(points: Points, size: Sizes) -> list[Piece]:
-    """Vented disc: two friction rings with the vent's gap as a groove at the rim, and the hat."""
+    """Draw the vented disc: two friction rings with the vent gap as a groove at the rim, and the hat."""
     r, y = size["brake_disc_radius"], DISC_OFFSET
     profile = [(0.030, y + 0.030), (0.071, y + 0.030), (0.074, y + 0.011), (r, y + 0.011), (r, y + 0.004)]
     profile += [(r - 0.012, y + 0.003), (r - 0.012, y - 0.003), (r, y - 0.004), (r, y - 0.011), (0.030, y - 0.011)]
@@ -82,7 +82,7 @@ def brake_disc(points: Points, size: Sizes) -> list[Piece]:
 
 
 def caliper(points: Points, size: Sizes) -> list[Piece]:
-    """Floating caliper ahead of the axle: piston housing inside, bridge over the disc, finger outside, guide pins."""
+    """Draw the floating caliper ahead of the axle: inner piston housing, bridge over the disc, outer finger, pins."""
     r = size["brake_disc_radius"]
     inside, outside = DISC_OFFSET - 0.013, DISC_OFFSET + 0.013
     # local axes: x to the disc's rim, y along the rim, z along the spin axis

@@ -28,7 +28,7 @@ from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.library import body_model
+from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import assignments

@@ -73,7 +73,7 @@ class Road:
         return RoadDrive(
             road=road,
             speed=self.speed,
-            wheels=_places(vehicle),
+            wheels=_wheel_positions(vehicle),
             track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
             driving=driving,
             **self._given("duration", "rate", "seed", "coherence", "patch"),
@@ -90,7 +90,7 @@ class Road:
         return RecordedDrive(
             road=road,
             channel=str(self.speed).removeprefix(PREFIX),
-            wheels=_places(vehicle),
+            wheels=_wheel_positions(vehicle),
             choice=self.choice,
             driving=driving,
             **self._given("duration", "rate"),
@@ -119,7 +119,7 @@ class Road:
         return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
 
 
-def _places(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:
+def _wheel_positions(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:
     """Return name, distance behind the foremost wheel [m] and side of each wheel."""
     wheels = vehicle.composition.wheels
     foremost = min(wheel.center[0] for wheel in wheels)

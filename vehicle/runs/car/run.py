@@ -135,25 +135,25 @@ class Run:
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
         return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
 
-    def comfort(self, place: str = "seat_rail") -> ComfortValue:
-        """Return the unweighted RMS acceleration of a place in 2 to 50 Hz, per axis and overall [m/s2].
+    def comfort(self, point: str = "seat_rail") -> ComfortValue:
+        """Return the unweighted RMS acceleration of an output point in 2 to 50 Hz, per axis and overall [m/s2].
 
         Only the evaluated span is used. The band ends at the end of the band of the signal; see `ComfortValue.band`.
         For weighted values see `weighted_comfort`.
         """
-        return comfort_value(self.recording.timestep, self.at(place), self.signal.band(COMFORT_BAND))
+        return comfort_value(self.recording.timestep, self.at(point), self.signal.band(COMFORT_BAND))
 
-    def at(self, place: str) -> list[npt.NDArray[np.float64]]:
+    def at(self, point: str) -> list[npt.NDArray[np.float64]]:
         """Return the accelerations of an output point in x, y, z [m/s2] over the evaluated span."""
-        return [self.recording[f"{place}_acc_{axis}"][self.evaluated] for axis in AXES]
+        return [self.recording[f"{point}_acc_{axis}"][self.evaluated] for axis in AXES]
 
-    def weighted_comfort(self, place: str = "seat_rail") -> dict[str, float]:
+    def weighted_comfort(self, point: str = "seat_rail") -> dict[str, float]:
         """Return the weighted RMS acceleration [m/s2] of an output point, as on a seat (ISO 2631-1: Wk, Wd).
 
         Returns:
             By axis, and "overall", their vector sum: the value of the report and of `summary.json`.
         """
-        axes = [self.recording[f"{place}_acc_{axis}"] for axis in AXES]
+        axes = [self.recording[f"{point}_acc_{axis}"] for axis in AXES]
         weighted = weighted_rms_of(self.recording.timestep, axes, skip=self.skip)
         return dict(zip((*AXES, "overall"), weighted, strict=True))
 

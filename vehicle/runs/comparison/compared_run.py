@@ -30,7 +30,7 @@ def compare_run(
     channels: Mapping[str, str] | None = None,
     *,
     choice: Choice | None = None,
-    turned: Collection[str] = (),
+    inverted: Collection[str] = (),
     delay: float = 0.0,
     drift: float = 0.0,
     window: float | None = None,
@@ -44,7 +44,7 @@ def compare_run(
         channels: channel of the model to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}: number, exact name,
             pattern with *, or place and direction; by default equal names.
         choice: units, rate and excerpt of the file.
-        turned: channels that were measured in the opposite direction.
+        inverted: channels measured with the opposite sign.
         delay: the measurement began this long after the run [s].
         drift: the clock of the measurement is slow by this share [-].
         window: length of the Hann windows that the measured responses were averaged over [s]; by default the local
@@ -68,7 +68,7 @@ def compare_run(
         asked = choice or Choice()
         asked = replace(asked, channels={**asked.channels, **(channels or {})})
         names = tuple(simulated.record.channels)
-        measured = read_measured(Path(measured), names, asked, inverted=turned, window=window)
+        measured = read_measured(Path(measured), names, asked, inverted=inverted, window=window)
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
 
 

@@ -60,7 +60,7 @@ class ModeComparison:
     """All modes.
 
     Attributes:
-        points: place of the car to node of the file.
+        points: output point of the car to node of the file.
         measured, simulated: the modes.
         mac: (measured, simulated).
         measured_auto, simulated_auto: AutoMAC; values near 1 off the diagonal: indistinguishable modes.
@@ -107,11 +107,11 @@ class ModeComparison:
             f"modes of {file} at {len(self.points)} points: {', '.join(self.points)}",
             f"{'measured':>10}{'[Hz]':>9}{'simulated':>11}{'[Hz]':>9}{'deviation':>11}{'MAC':>7}{'damping':>9}{'':>9}",
         ]
-        for one in sorted(self.pairs, key=lambda pair: pair.mac):
+        for pair in sorted(self.pairs, key=lambda pair: pair.mac):
             lines.append(
-                f"{one.measured:>10}{one.measured_hz:>9.3f}{one.simulated:>11}{one.simulated_hz:>9.3f}"
-                f"{100 * one.deviation:>+9.2f} %{one.mac:>7.3f}{100 * one.measured_damping:>7.2f} %"
-                f"{100 * one.simulated_damping:>7.2f} %  {self.simulated[one.simulated - 1].description}"
+                f"{pair.measured:>10}{pair.measured_hz:>9.3f}{pair.simulated:>11}{pair.simulated_hz:>9.3f}"
+                f"{100 * pair.deviation:>+9.2f} %{pair.mac:>7.3f}{100 * pair.measured_damping:>7.2f} %"
+                f"{100 * pair.simulated_damping:>7.2f} %  {self.simulated[pair.simulated - 1].description}"
             )
         unpaired = sorted(set(range(1, len(self.measured) + 1)) - {pair.measured for pair in self.pairs})
         if unpaired:
@@ -119,7 +119,7 @@ class ModeComparison:
             lines.append(f"no simulated mode with a MAC of {LEAST_MAC:g} or more: {shown}")
         alike = np.argwhere(np.triu(self.measured_auto, 1) > 0.9)
         if alike.size:
-            shown = ", ".join(f"{one + 1} and {other + 1}" for one, other in alike[:6])
+            shown = ", ".join(f"{first + 1} and {second + 1}" for first, second in alike[:6])
             lines.append(f"measured modes that are alike at these points (AutoMAC above 0.9): {shown}")
         return "\n".join(lines)
 
@@ -162,7 +162,7 @@ def compare_modes(
     Args:
         car: the car.
         measurement: file with mode shapes (UFF 55), or what `read_record` read of it.
-        mapping: place of the car to node of the file; by default the nodes that lie at places of the car, within
+        mapping: output point of the car to node of the file; by default the nodes at output points of the car, within
             `NEAR`, in its axes (x to the rear, y to the driver's right, z up).
         damper: state of the dampers, stuck or sliding.
 

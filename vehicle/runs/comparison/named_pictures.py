@@ -15,11 +15,11 @@ def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
     """Return the name of each picture, as "compare_frf_seat_rail", and what writes it as PNG at a path."""
     caption = f"measured: {comparison.measured}; simulated: {comparison.run}"
     drawings: dict[str, Callable[[Path], None]] = {}
-    for point in dict.fromkeys(_place(item.channel) for item in comparison.responses):
-        responses = [item for item in comparison.responses if _place(item.channel) == point]
+    for point in dict.fromkeys(_point_of(item.channel) for item in comparison.responses):
+        responses = [item for item in comparison.responses if _point_of(item.channel) == point]
         drawings[f"compare_frf_{point}"] = partial(plot_responses, point=point, responses=responses, caption=caption)
-    for point in dict.fromkeys(_place(item.channel) for item in comparison.records):
-        rows = [item for item in comparison.records if _place(item.channel) == point]
+    for point in dict.fromkeys(_point_of(item.channel) for item in comparison.records):
+        rows = [item for item in comparison.records if _point_of(item.channel) == point]
         drawings[f"compare_time_{point}"] = partial(plot_histories, point=point, histories=rows, caption=caption)
     agreement = comparison.signatures
     if agreement is not None:
@@ -28,6 +28,6 @@ def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
     return drawings
 
 
-def _place(channel: str) -> str:
+def _point_of(channel: str) -> str:
     """Return the output point of a channel: knuckle_fr of knuckle_fr_acc_z, damper_fr of damper_fr_velocity."""
     return re.sub(r"_(acc_[xyz]|velocity|force(_[xyz])?|displacement|torque)$", "", channel)

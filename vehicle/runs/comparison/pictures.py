@@ -118,7 +118,7 @@ def plot_signatures(path: Path, signatures: Signatures, caption: str) -> None:
     frequency = signatures.frequency
     with saved_figure(path, (9.0, 4.6), "Agreement of all responses together", caption) as figure:
         axis = figure.subplots()
-        axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: shape over the places")
+        axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: shape over the points")
         axis.plot(frequency, signatures.csf, color=COLOURS[3], linestyle="--", label="CSF: shape and amplitude")
         axis.set(xscale="log", ylim=(0.0, 1.03), xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]",
                  ylabel="1 is equal [-]")  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from vehicle.model.flexbody.library import own_body_file
+from vehicle.model.flexbody.body_model import own_body_file
 from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.template import own_templates
 from vehicle.model.parameters.toml_file import write_text as vehicle_text

@@ -11,7 +11,7 @@ import numpy as np
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.errors import DataError, SimulationError
-from vehicle.model.flexbody.loads import body_loads
+from vehicle.model.flexbody.body_loads import body_loads
 from vehicle.model.flexbody.mass_difference import mass_difference
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.parameters.idle import idle_parameters
@@ -120,19 +120,20 @@ def write_run(
     write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
     if responses:
         first, *others = responses
-        further, motions = {one.first: one.response for one in others}, what_moves([one.motion for one in responses])
+        further = {other.first: other.response for other in others}
+        motions = what_moves([response.motion for response in responses])
         write_whole(
             folder / "frf.csv",
             lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=motions),
         )
         caption = _caption(run, first.response)
         write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
-    for one in dict.fromkeys(formats):
-        if one != time_format:
+    for file_format in dict.fromkeys(formats):
+        if file_format != time_format:
             from vehicle.runs.output.run_formats import writer
 
-            files[f"time_{one}"] = f"time.{one}"
-            write_whole(folder / f"time.{one}", writer(one, run, responses, channels, FRAME))
+            files[f"time_{file_format}"] = f"time.{file_format}"
+            write_whole(folder / f"time.{file_format}", writer(file_format, run, responses, channels, FRAME))
     write_whole(folder / "time.png", lambda path: plot_time(path, run))
     if video is not None:
         name, make = video

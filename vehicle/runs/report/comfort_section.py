@@ -56,7 +56,7 @@ def comfort(run: FinishedRun) -> Markup:
         )
         span = f", {run.span} of the run" if run.span else ""
         caption = f"{PLACES.get(point, point).capitalize()}, {iso['standard']}{span}"
-        parts.append(table(heads, rows, caption=caption, words=2))
+        parts.append(table(heads, rows, caption=caption, text_columns=2))
         parts += [tag("p", text) for text in iso["reasons"]]
     matches = {word: [point for point, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}
     body = [

@@ -38,16 +38,16 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
         for run in runs
     ]
     parts = [
-        table(("run", "car", "signal", "RMS [mm]", "length [s]", "engine"), inputs, words=3),
+        table(("run", "car", "signal", "RMS [mm]", "length [s]", "engine"), inputs, text_columns=3),
         tag("h3", f"Differences from {runs[0].name}"),
-        table(heads, rows, words=2),
+        table(heads, rows, text_columns=2),
     ]
     changed = changed_parameters([run.car.vehicle for run in runs])
     parts.append(tag("h3", "Parameters that differ"))
     if changed:
         content = [(path, unit, *values) for path, unit, values in changed]
         heads = ["parameter", "unit", *(run.name for run in runs)]
-        parts.append(shortened(f"{len(changed)} parameters", heads, content, words=2))
+        parts.append(shortened(f"{len(changed)} parameters", heads, content, text_columns=2))
     else:
         parts.append(tag("p", "None: the cars have equal parameters."))
     if len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1:

@@ -69,7 +69,7 @@ def _dampers(summary: RunSummary) -> list[str]:
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[str]:
     sentences = []
-    for channel, point in main_places(run).items():
+    for channel, point in main_points(run).items():
         peaks = run.summary["peaks"].get(channel)
         if peaks:
             top = max(peaks, key=lambda peak: peak["magnitude"])
@@ -86,7 +86,7 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
     return sentences or ["No resonance was identified: the input excites none, or there are no FRFs."]
 
 
-def main_places(run: FinishedRun) -> dict[str, str]:
+def main_points(run: FinishedRun) -> dict[str, str]:
     """Return the channels with the most important resonances, and their names in sentences."""
     return {f"knuckle_{run.wheel}_acc_z": "knuckle", "seat_rail_acc_z": "seat rail"}
 

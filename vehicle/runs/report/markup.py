@@ -41,18 +41,22 @@ def joined(parts: Iterable[object]) -> Markup:
     return Markup("".join(escaped(part) for part in parts))
 
 
-def table(heads: Sequence[object], rows: Iterable[Sequence[object]], *, caption: str = "", words: int = 1) -> Markup:
+def table(
+    heads: Sequence[object], rows: Iterable[Sequence[object]], *, caption: str = "", text_columns: int = 1
+) -> Markup:
     """Return an HTML table.
 
     Args:
         heads: heads of the columns.
         rows: cells; numbers as texts.
         caption: caption above the table.
-        words: number of first columns with words, aligned left; the others contain numbers.
+        text_columns: number of first columns with texts, aligned left; the others contain numbers.
     """
 
     def cells(name: str, row: Sequence[object]) -> Markup:
-        return tag("tr", *(tag(name, cell, class_=None if i < words else "number") for i, cell in enumerate(row)))
+        return tag(
+            "tr", *(tag(name, cell, class_=None if i < text_columns else "number") for i, cell in enumerate(row))
+        )
 
     body = list(rows)
     return tag(
@@ -72,9 +76,11 @@ def folded(title: str, *content: object) -> Markup:
     return tag("details", tag("summary", title), *content)
 
 
-def shortened(title: str, heads: Sequence[object], rows: Sequence[Sequence[object]], *, words: int = 1) -> Markup:
+def shortened(
+    title: str, heads: Sequence[object], rows: Sequence[Sequence[object]], *, text_columns: int = 1
+) -> Markup:
     """Return a table, folded under its title if it has more than `MANY` rows."""
-    whole = table(heads, rows, words=words)
+    whole = table(heads, rows, text_columns=text_columns)
     return whole if len(rows) <= MANY else folded(title, whole)
 
 

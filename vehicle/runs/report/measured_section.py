@@ -39,8 +39,8 @@ def measured(run: FinishedRun) -> Markup | None:
     titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
     parts = [
         tag("p", f"Measured: {comparison['file']}. The table is sorted by type of data, largest error first; {ERROR}"),
-        *([table(titles, rows[:WORST], words=2)] if len(rows) > MANY else []),
-        shortened(f"All {len(rows)} rows", titles, rows, words=2),
+        *([table(titles, rows[:WORST], text_columns=2)] if len(rows) > MANY else []),
+        shortened(f"All {len(rows)} rows", titles, rows, text_columns=2),
     ]
     for purpose, name in run.summary["files"].items():
         path = run.folder / name

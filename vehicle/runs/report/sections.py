@@ -98,7 +98,7 @@ def what_was_run(run: FinishedRun) -> Markup:
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
     tables = (("Car", car), ("Signal", signal), ("Engine", engine))
-    parts = [tag("div", *(table((title, ""), rows, words=2) for title, rows in tables), class_="columns")]
+    parts = [tag("div", *(table((title, ""), rows, text_columns=2) for title, rows in tables), class_="columns")]
     default = shipped_origin(vehicle)
     if default is None:
         parts.append(tag("p", "The car is not derived from a shipped car."))
@@ -107,7 +107,7 @@ def what_was_run(run: FinishedRun) -> Markup:
     if rows:
         heads = ("parameter", "unit", f"shipped car {default.name}", "this run")
         parts.append(tag("h3", f"Differences from the shipped car {default.name}"))
-        parts.append(shortened(f"{len(rows)} parameters", heads, rows, words=2))
+        parts.append(shortened(f"{len(rows)} parameters", heads, rows, text_columns=2))
     else:
         parts.append(tag("p", f"All parameters are equal to those of the shipped car {default.name}."))
     return joined(parts)
@@ -122,7 +122,7 @@ def _origin(run: FinishedRun) -> str:
 
 
 def time_figure(run: FinishedRun) -> Markup:
-    """Return the plot of the main time histories."""
+    """Return the plot of plate, seat rail and dampers over time, as in time.png."""
     return drawing(lambda path: plot_time(path, run), f"Time histories of {run.name}")
 
 
@@ -191,10 +191,10 @@ def tables(run: FinishedRun) -> Markup:
     loads = [(f"tyre {wheel}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
     loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static["rear_support_load_n"].items()]
     heads = ("channel", "unit", "RMS", "minimum", "maximum")
-    parts = [folded(f"Levels of all {len(levels)} channels", table(heads, levels, words=2))]
+    parts = [folded(f"Levels of all {len(levels)} channels", table(heads, levels, text_columns=2))]
     if peaks:
         columns = ("channel", "frequency [Hz] (magnitude [m/s² per m])")
-        parts.append(folded("Resonances of all channels", table(columns, peaks, words=2)))
+        parts.append(folded("Resonances of all channels", table(columns, peaks, text_columns=2)))
     parts.append(folded("Static loads", table(("support", "load [N]"), loads)))
     return joined(parts)
 

@@ -1,4 +1,4 @@
-"""The comfort value of Bommer 2006, its statistical error, and whether the vibration had settled."""
+"""Comfort value of Bommer 2006, its statistical error, and a check that the vibration is stationary."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from vehicle.signals.analysis.samples import checked_rows
 from vehicle.signals.analysis.spectra import band_periodogram, band_rms, rms_of
 
 COMFORT_BAND = (2.0, 50.0)
-"""band of the comfort value [Hz] (Bommer 2006, chapter 4)"""
+"""Band of the comfort value [Hz] (Bommer 2006, chapter 4)"""
 DRIFT_LIMIT = 0.01
-"""drift of the RMS above which a comfort value is refused (bad-inputs item 43) [-]"""
+"""Maximum drift of the RMS; above it a comfort value is rejected (bad-inputs item 43) [-]"""
 SIGNIFICANCE = 3.0
-"""standard errors by which a drift must exceed the scatter of a random record to count as a drift [-]"""
+"""Minimum drift over the standard error of a random record; a smaller drift counts as scatter [-]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,21 +36,21 @@ class ComfortValue:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Settling:
-    """How much the RMS changes from the first to the second half of a record."""
+    """Change of the RMS from the first to the second half of a record."""
 
     halves: tuple[float, float]
     """RMS of each half [unit of the signal]"""
     drift: float
     """(second - first) / mean of both [-]"""
     standard_error: float
-    """standard deviation that a stationary Gaussian record of this spectrum would give to the drift [-]"""
+    """standard deviation of the drift of a stationary Gaussian record with this spectrum [-]"""
     settled: bool
-    """whether |drift| is within 1 % or within three standard errors"""
+    """True if |drift| is within 1 % or within three standard errors"""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ComfortValues:
-    """Comfort values of several records of one length, of one spectrum each."""
+    """Comfort values of r records of equal length."""
 
     axes: NDArray[np.float64]
     """RMS in x, y, z [m/s2], shape (r, 3)"""
@@ -65,19 +65,19 @@ class ComfortValues:
 def comfort_values(
     time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND
 ) -> ComfortValues:
-    """Comfort values of several records; the numbers of one do not depend on the others.
+    """Return the comfort values of several records; each value is independent of the other records.
 
     Args:
-        time_step: [s].
-        acceleration: in x, y, z [m/s2], shape (r, 3, n).
+        time_step: sampling interval [s].
+        acceleration: accelerations in x, y, z [m/s2], shape (r, 3, n).
         band: (low, high) [Hz], both edges included.
 
     Raises:
-        DataError: not three axes, or `band_rms` refuses a record.
+        DataError: not three axes, or a record that `band_rms` rejects.
     """
     array = np.asarray(acceleration, dtype=np.float64)
     if array.ndim != 3 or array.shape[1] != 3:
-        raise DataError(f"acceleration: found shape {array.shape}, needed is (r, 3, n) with the three axes x, y, z")
+        raise DataError(f"acceleration: found shape {array.shape}, must be (r, 3, n) with the three axes x, y, z")
     spectrum = band_periodogram(time_step, array.reshape(-1, array.shape[2]), band)
     axes = rms_of(spectrum).reshape(-1, 3)
     x, y, z = axes.T
@@ -97,18 +97,18 @@ def comfort_value(
     """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unweighted acceleration in a band.
 
     Args:
-        time_step: [s].
-        acceleration: of one point in x, y, z [m/s2], shape (3, n), or one by one.
+        time_step: sampling interval [s].
+        acceleration: acceleration of an output point in x, y, z [m/s2], shape (3, n) or a sequence of three (n,).
         band: (low, high) [Hz], both edges included.
 
     Raises:
-        DataError: not three axes, or `band_rms` refuses the record.
+        DataError: not three axes, or a record that `band_rms` rejects.
 
     Source: Bommer 2006, chapter 4.
     """
     rows = checked_rows("acceleration", acceleration)
     if len(rows) != 3:
-        raise DataError(f"acceleration: found {len(rows)} signals, needed are the three axes x, y, z")
+        raise DataError(f"acceleration: found {len(rows)} signals, must be the three axes x, y, z")
     x, y, z = (float(band_rms(time_step, row, band)[0]) for row in rows)
     return ComfortValue(x=x, y=y, z=z, overall=float(np.sqrt(x * x + y * y + z * z)), band=band)
 
@@ -120,14 +120,14 @@ def rms_standard_error(
 
     Var[ms] = (1/T) int S^2 df  and  rms = sqrt(ms), so  error = sqrt(int S^2 df / T) / (2 int S df)
 
-    For white noise of bandwidth B that is 1 / (2 sqrt(B T)). A periodogram line is S times a chi-square variable with
-    two degrees of freedom over two, hence E[P^2] = 2 S^2, and int S^2 df is estimated without bias by sum(P^2 df) / 2.
-    Meaningless for a deterministic signal (a sine or a bump has no such error). A signal with no power in the band has
-    an error of 0.
+    For white noise of bandwidth B the error is 1 / (2 sqrt(B T)). A periodogram line is S times a chi-square variable
+    with two degrees of freedom over two, hence E[P^2] = 2 S^2, and sum(P^2 df) / 2 estimates int S^2 df without bias.
+    Meaningless for a deterministic signal such as a sine or a bump. The error is 0 for a signal without power in the
+    band.
 
     Args:
-        time_step: [s].
-        signals: shape (n,) or (k, n).
+        time_step: sampling interval [s].
+        signals: stationary Gaussian records, shape (n,) or (k, n).
         band: (low, high) [Hz].
 
     Source: Bendat and Piersol, Random Data, 4th ed., chapter 8 (bandwidth-time product).
@@ -144,15 +144,15 @@ def rms_standard_error(
 def settling(
     time_step: float, signals: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
 ) -> tuple[Settling, ...]:
-    """Compare the band RMS of the two halves of each signal: a transient still decaying shows as a drift.
+    """Compare the band RMS of the two halves of each signal; a decaying transient causes a drift.
 
-    drift = (second - first) / mean. The halves of a stationary random record differ by chance as well: each half has
-    sqrt(2) times the standard error of the whole record, their difference twice. A drift counts only above both 1 %
-    and three of these.
+    drift = (second - first) / mean. The halves of a stationary random record differ by chance as well: the standard
+    error of the RMS is sqrt(2) times larger for a half, and 2 times larger for the difference, than for the whole
+    record. A drift counts only above both 1 % and three standard errors of the difference.
 
     Args:
-        time_step: [s].
-        signals: shape (n,) or (k, n), or one by one.
+        time_step: sampling interval [s].
+        signals: records, shape (n,) or (k, n), or a sequence of (n,).
         band: (low, high) [Hz].
 
     Source: bad-inputs item 43.
@@ -160,13 +160,13 @@ def settling(
     rows = checked_rows("signals", signals)
     middle = rows[0].size // 2
     if middle < 2:
-        raise DataError(f"signals: found {rows[0].size} samples, two halves of at least 2 are needed")
-    found = []
+        raise DataError(f"signals: found {rows[0].size} samples, must be at least 4 (two halves of 2)")
+    results = []
     for row in rows:
         a, b = (band_rms(time_step, half, band)[0] for half in (row[:middle], row[-middle:]))
         e = 2.0 * rms_standard_error(time_step, row, band)[0]
         drift = float(2.0 * (b - a) / (a + b)) if a + b > 0.0 else 0.0
-        found.append(
+        results.append(
             Settling(
                 halves=(float(a), float(b)),
                 drift=drift,
@@ -174,4 +174,4 @@ def settling(
                 settled=abs(drift) <= max(DRIFT_LIMIT, SIGNIFICANCE * float(e)),
             )
         )
-    return tuple(found)
+    return tuple(results)

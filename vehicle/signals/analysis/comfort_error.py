@@ -1,4 +1,4 @@
-"""Standard error of an overall RMS over roads of one class, and of the difference of two cars on one road.
+"""Standard error of an overall RMS over roads of one class, and of the difference of two cars on the same road.
 
 On the lines of the periodogram of the evaluated record, X_k (axes), |X_k|^2 = S_k df, the mean square over all axes is
 W = sum X_k^H X_k. For a stationary Gaussian vibration the lines are independent complex Gaussian vectors, so that
@@ -7,17 +7,17 @@ W = sum X_k^H X_k. For a stationary Gaussian vibration the lines are independent
 
 with the cross spectra S_ij of the axes: correlated axes count with their coherence. Neighbouring lines are independent
 and have the same S, so E |X_k^H X_(k+1)|^2 = tr(S_k S_k) df^2, and the sum of |X_k^H X_(k+1)|^2 estimates Var W. This
-holds for a record of a Gaussian road, and for one whose lines have fixed amplitudes and random phases, for which the
-squares |X_k|^4 would have half the expectation. With rms = sqrt(W), the normalised standard error is
+holds for a Gaussian road, and for a road whose lines have fixed amplitudes and random phases; for the latter the
+squares |X_k|^4 have half the expectation. With rms = sqrt(W), the normalised standard error is
 sqrt(Var W) / (2 W).
 
-For two cars on one road, Z = [X_a; X_b] and J = diag(1, -1) give Var(W_a - W_b) = tr(J S J S) df^2 in the same way: the
+For two cars on the same road, Z = [X_a; X_b] and J = diag(1, -1) give Var(W_a - W_b) = tr(J S J S) df^2 likewise: the
 products of neighbours are subtracted before they are squared. A sum of products at the distance m,
 
     C_m = sum X_k^H X_(k+m) / (2 sqrt(W)),  m = 1, 2, ...,
 
 is the Fourier line at m/T of the instantaneous mean square over 2 rms. Its spectrum is flat near 0 Hz, so each C_m has
-the variance of the mean itself. A few of them are stored with each run, and mean |C_m,a - C_m,b|^2 is the variance of
+the variance of the mean. The first `WAVES` are stored with each run, and mean |C_m,a - C_m,b|^2 is the variance of
 rms_a - rms_b with two degrees of freedom for each m.
 
 Sources: Bendat and Piersol, Random Data, 4th ed., chapter 8; Heidelberger and Welch, Communications of the ACM 24
@@ -41,7 +41,7 @@ def overall_error(lines: Complex) -> Vector:
     """Return the normalised standard error of an overall RMS for a stationary Gaussian vibration.
 
     Args:
-        lines: of the periodogram, |line|^2 = S df; (r, axes, m).
+        lines: complex lines of the periodogram, |line|^2 = S df; (r, axes, m).
 
     Returns:
         sqrt(Var W) / (2 W) [-], 0 without vibration; (r,).
@@ -57,7 +57,7 @@ def overall_waves(lines: Complex) -> Complex:
     """Return the slow variations C_m of an overall RMS, m = 1 to `WAVES`.
 
     Args:
-        lines: as in `overall_error`.
+        lines: complex lines of the periodogram, |line|^2 = S df; (r, axes, m).
 
     Returns:
         C_m [unit of the lines], 0 where the record has too few lines; (r, WAVES).
@@ -67,8 +67,8 @@ def overall_waves(lines: Complex) -> Complex:
     for number in range(min(WAVES, lines.shape[2] - 1)):
         shift = number + 1
         waves[:, number] = np.sum(lines[:, :, :-shift].conj() * lines[:, :, shift:], axis=(1, 2))
-    found: Complex = np.divide(waves, 2.0 * rms[:, None], out=np.zeros_like(waves), where=rms[:, None] > 0.0)
-    return found
+    normalised: Complex = np.divide(waves, 2.0 * rms[:, None], out=np.zeros_like(waves), where=rms[:, None] > 0.0)
+    return normalised
 
 
 def difference_error(first: Complex, second: Complex) -> Vector:
@@ -78,6 +78,6 @@ def difference_error(first: Complex, second: Complex) -> Vector:
         first, second: C_m of both runs, see `overall_waves`; (..., WAVES).
 
     Returns:
-        In the unit of the C_m, with 2 `WAVES` degrees of freedom; (...).
+        Standard error with 2 `WAVES` degrees of freedom, in the unit of the C_m; (...).
     """
     return np.asarray(np.sqrt(np.mean(np.abs(first - second) ** 2, axis=-1)))

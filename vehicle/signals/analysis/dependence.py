@@ -1,4 +1,4 @@
-"""Inputs of which one follows from another: equal, scaled, inverted or delayed copies."""
+"""Detect inputs that are copies of other inputs: equal, scaled, inverted, delayed or filtered."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from vehicle.errors import DataError
 Real = NDArray[np.float64]
 
 DEPENDENT = 0.98
-"""Coherence of two inputs, one shifted onto the other, from which they are one: their responses would be separated with
-more than seven times the error of a single input."""
+"""Minimum coherence of two time-aligned inputs that count as copies: separated responses would have more than seven
+times the error of a single input."""
 
 ALIKE = 0.02
-"""Difference of the factor from 1 up to which two inputs move alike."""
+"""Maximum difference of the factor from 1 for which two inputs count as equal."""
 
 DRIVEN = 1e-6
-"""Power of a line over the strongest from which it counts in the comparison."""
+"""Minimum power of a line over the strongest line; weaker lines are ignored in the comparison."""
 
 SIDE_LINES = 8
 """Lines on each side over which the coherence is averaged."""
@@ -32,8 +32,8 @@ class DependentInputsError(DataError):
     """Two inputs are copies of each other, so their responses cannot be separated.
 
     Attributes:
-        delay: of the second behind the first [s].
-        factor: second over first; NaN where it is a filter.
+        delay: delay of the second input against the first [s].
+        factor: ratio of the second input to the first; NaN if they are related by a filter.
     """
 
     def __init__(self, message: str, delay: float, factor: float) -> None:
@@ -44,97 +44,97 @@ class DependentInputsError(DataError):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Copy:
-    """How an input follows from another."""
+    """Relation of a second input to a first: coherence, delay and factor."""
 
     coherence: float
-    """of the two, one shifted onto the other [-]"""
+    """coherence of the time-aligned inputs [-]"""
     delay: float
-    """of the second behind the first [s]"""
+    """delay of the second input against the first [s]"""
     factor: float
-    """second over first [-]; NaN where it is a filter"""
+    """ratio of the second input to the first [-]; NaN if they are related by a filter"""
 
 
 def copy_of(time_step: float, first: Real, second: Real, band: tuple[float, float]) -> Copy:
-    """The delay [s] and factor that make a second input most like a first one, and how like it then is.
+    """Estimate delay, factor and coherence of a second input against a first.
 
-    The delay is the maximum of the correlation of the whitened signals; both are then cut to the time that they share,
-    windowed, and their coherence averaged over 17 lines; its median over the driven lines of the band counts.
+    The delay is the maximum of the correlation of the whitened signals. Both signals are then cut to their common time
+    and windowed. The coherence is averaged over 17 lines; the result is its median over the driven lines of the band.
 
     Args:
-        time_step: [s].
-        first: samples, shape (n,).
-        second: samples, shape (n,).
-        band: frequencies that count [Hz].
+        time_step: sampling interval [s].
+        first: samples of the first input, shape (n,).
+        second: samples of the second input, shape (n,).
+        band: evaluated frequencies (low, high) [Hz].
 
     Source: Knapp and Carter, IEEE Trans. ASSP 24 (1976) 320 (phase transform).
     """
     count = first.size
     line = 1.0 / (2 * count * time_step)
     window = slice(int(band[0] / line), int(band[1] / line) + 1)
-    one, two = (np.fft.rfft(signal - signal.mean(), 2 * count) for signal in (first, second))
-    cross = np.zeros_like(one)
-    size = np.abs(one * two)[window]
+    x, y = (np.fft.rfft(signal - signal.mean(), 2 * count) for signal in (first, second))
+    cross = np.zeros_like(x)
+    size = np.abs(x * y)[window]
     driven = size > DRIVEN * size.max()
-    cross[window][driven] = (two * one.conj())[window][driven] / size[driven]
+    cross[window][driven] = (y * x.conj())[window][driven] / size[driven]
     correlation = np.fft.irfft(cross)
     shift = int(np.argmax(np.abs(correlation)))
     shift -= 2 * count if shift > count else 0
     shift = shift if abs(shift) < count // 2 else 0
     early, late = (first[: count - shift], second[shift:]) if shift >= 0 else (first[-shift:], second[:shift])
     taper = np.hanning(early.size)
-    one, two = (np.fft.rfft((signal - signal.mean()) * taper) for signal in (early, late))
+    x, y = (np.fft.rfft((signal - signal.mean()) * taper) for signal in (early, late))
     line = 1.0 / (early.size * time_step)
     mean = np.ones(2 * SIDE_LINES + 1)
-    s11, s22, s12 = (np.convolve(p, mean, mode="same") for p in (abs(one) ** 2, abs(two) ** 2, one.conj() * two))
+    s11, s22, s12 = (np.convolve(p, mean, mode="same") for p in (abs(x) ** 2, abs(y) ** 2, x.conj() * y))
     inside = np.zeros(s11.size, dtype=bool)
     inside[int(band[0] / line) : int(band[1] / line) + 1] = True
     for power in (s11, s22):
         inside &= power > DRIVEN * power[inside].max()
     coherence = np.abs(s12[inside]) ** 2 / (s11[inside] * s22[inside])
-    one_power, two_power, both = (np.sum(s[inside].real) for s in (s11, s22, s12))
-    factor = both / one_power if both**2 > DEPENDENT * one_power * two_power else np.nan
+    first_power, second_power, cross_power = (np.sum(s[inside].real) for s in (s11, s22, s12))
+    factor = cross_power / first_power if cross_power**2 > DEPENDENT * first_power * second_power else np.nan
     return Copy(coherence=float(np.median(coherence)), delay=shift * time_step, factor=float(factor))
 
 
 def refuse_copies(time_step: float, inputs: Real, names: Sequence[str], band: tuple[float, float]) -> None:
-    """Refuse inputs of which one is a copy of another, with its delay and factor.
+    """Raise an error if an input is a copy of another.
 
     Raises:
-        DependentInputsError: with delay and factor.
+        DependentInputsError: copies, with delay and factor.
     """
     for i, j in combinations(range(len(names)), 2):
-        found = copy_of(time_step, inputs[i], inputs[j], band)
-        if found.coherence >= DEPENDENT:
-            raise _refusal(names[i], names[j], found)
+        relation = copy_of(time_step, inputs[i], inputs[j], band)
+        if relation.coherence >= DEPENDENT:
+            raise _refusal(names[i], names[j], relation)
 
 
 def common_motions(
     time_step: float, inputs: Real, names: Sequence[str], band: tuple[float, float]
 ) -> list[dict[int, float]]:
-    """Inputs that move together without a delay, in groups; the groups are independent of each other.
+    """Group the inputs that are scaled copies without a delay; the groups are independent motions.
 
     Args:
-        time_step: [s].
+        time_step: sampling interval [s].
         inputs: samples, shape (p, n).
-        names: of the inputs, for messages.
-        band: frequencies that count [Hz].
+        names: names of the inputs, for messages.
+        band: evaluated frequencies (low, high) [Hz].
 
     Returns:
-        Groups in the order of their first inputs: index of each input to its factor, 1 of the first.
+        Groups in the order of their first inputs: index of each input to its factor; 1 for the first input.
 
     Raises:
-        DependentInputsError: one is a delayed or filtered copy, so there is no common motion either.
+        DependentInputsError: an input is a delayed or filtered copy, so no common motion exists.
     """
     groups: list[dict[int, float]] = []
     for j in range(len(names)):
         for group in groups:
             first = next(iter(group))
-            found = copy_of(time_step, inputs[first], inputs[j], band)
-            if found.coherence < DEPENDENT:
+            relation = copy_of(time_step, inputs[first], inputs[j], band)
+            if relation.coherence < DEPENDENT:
                 continue
-            if found.delay != 0.0 or np.isnan(found.factor):
-                raise _refusal(names[first], names[j], found)
-            group[j] = found.factor
+            if relation.delay != 0.0 or np.isnan(relation.factor):
+                raise _refusal(names[first], names[j], relation)
+            group[j] = relation.factor
             break
         else:
             groups.append({j: 1.0})
@@ -142,7 +142,7 @@ def common_motions(
 
 
 def motion_words(motion: Mapping[Any, float]) -> str:
-    """How the inputs of a motion move: alike, or together with their factors."""
+    """Describe how the inputs of a motion move: "alike", or "together" with their factors."""
     factors = list(motion.values())[1:]
     if all(abs(factor - 1.0) < ALIKE for factor in factors):
         return "alike"
@@ -152,11 +152,11 @@ def motion_words(motion: Mapping[Any, float]) -> str:
 
 
 def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None) -> str:
-    """A sentence on plates that move at once, and what FRFs are to; empty of one plate alone.
+    """Describe which plates move and which plate motion the FRFs refer to; empty for a single plate.
 
     Args:
-        motions: that are independent of each other: wheel to its factor, 1 of the first.
-        chosen: number of the motion that the FRFs are to; None of FRFs to each.
+        motions: independent motions: wheel to its factor; 1 for the first wheel.
+        chosen: index of the motion that the FRFs refer to; None for FRFs to each motion.
     """
     wheels = [wheel for motion in motions for wheel in motion]
     if len(wheels) == 1:
@@ -165,8 +165,8 @@ def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None
     if len(motions) > 1 and chosen is None:
         subject += " independently of each other" if len(motions) == len(wheels) else ""
         shared = [f"; {', '.join(motion)} move {motion_words(motion)}" for motion in motions if len(motion) > 1]
-        said = f"{subject}{''.join(shared)}: the FRFs are separated, to {', '.join(next(iter(m)) for m in motions)}"
-        return f"{said}; the coherence is that with {every}"
+        message = f"{subject}{''.join(shared)}: the FRFs are separated, to {', '.join(next(iter(m)) for m in motions)}"
+        return f"{message}; the coherence is that with {every}"
     motion = motions[chosen or 0]
     first = f"plate_{next(iter(motion))}_displacement"
     if len(motion) == 1:
@@ -174,20 +174,21 @@ def what_moves(motions: Sequence[Mapping[str, float]], chosen: int | None = None
     if len(motions) > 1:
         plates = ", ".join(f"plate_{wheel}_displacement" for wheel in motion)
         subject, every = f"{subject}, of them {plates}", "these"
-    together = motion_words(motion)
-    return f"{subject} {together}: the FRFs are those to " + (
-        "their common motion" if together == "alike" else f"{first} while {every} do"
+    manner = motion_words(motion)
+    return f"{subject} {manner}: the FRFs are those to " + (
+        "their common motion" if manner == "alike" else f"{first} while {every} do"
     )
 
 
-def _refusal(first: str, second: str, found: Copy) -> DependentInputsError:
-    late = f", delayed by {found.delay:.4g} s" if found.delay > 0.0 else ""
-    early = f", ahead by {-found.delay:.4g} s" if found.delay < 0.0 else ""
-    how = "a filtered" if np.isnan(found.factor) else f"{found.factor:.4g} times"
+def _refusal(first: str, second: str, relation: Copy) -> DependentInputsError:
+    """Build the error for two dependent inputs."""
+    late = f", delayed by {relation.delay:.4g} s" if relation.delay > 0.0 else ""
+    early = f", ahead by {-relation.delay:.4g} s" if relation.delay < 0.0 else ""
+    scaling = "a filtered" if np.isnan(relation.factor) else f"{relation.factor:.4g} times"
     return DependentInputsError(
-        f"excitations: fully correlated inputs: {second} is {how} {first}{late}{early} "
-        f"(coherence {found.coherence:.4f}, allowed is below {DEPENDENT:g}), so their responses cannot be "
-        "separated; drive them with independent signals, or one of them alone",
-        found.delay,
-        found.factor,
+        f"excitations: fully correlated inputs: {second} is {scaling} {first}{late}{early} "
+        f"(coherence {relation.coherence:.4f}, must be below {DEPENDENT:g}), so their responses cannot be "
+        "separated; drive them with independent signals, or drive a single input",
+        relation.delay,
+        relation.factor,
     )

@@ -1,4 +1,4 @@
-"""Vibration exposure of a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV and vector sums."""
+"""Measures of the vibration exposure to a weighted acceleration: RMS, MTVV, crest factor, VDV, MSDV and vector sums."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ RunningAverage = Literal["linear", "exponential"]
 
 
 def _one(weighted: ArrayLike) -> NDArray[np.float64]:
-    """Return one weighted record as floats, shape (n,)."""
+    """Return a single weighted record as floats, shape (n,)."""
     array = checked_signals("weighted acceleration", weighted)
     if array.shape[0] != 1:
-        raise DataError(f"weighted acceleration: found {array.shape[0]} signals, needed is one axis, shape (n,)")
+        raise DataError(f"weighted acceleration: found {array.shape[0]} signals, must be one axis, shape (n,)")
     return np.asarray(array[0])
 
 
@@ -36,13 +36,13 @@ def mtvv(
     linear:       a(t)^2 = 1/tau int_(t-tau)^t a_w^2 dt'
     exponential:  a(t)^2 = 1/tau int_(-inf)^t a_w^2 exp((t' - t)/tau) dt'
 
-    The signal is zero before the record, so one shorter than tau still has a value.
+    The signal is zero before the record, so a record shorter than tau has a value, too.
 
     Args:
-        time_step: [s].
+        time_step: sampling interval [s].
         weighted: weighted acceleration [m/s2], shape (n,).
         average: "linear" or "exponential".
-        integration_s: tau, 1 s by the standard [s].
+        integration_s: integration time tau [s]; 1 s in the standard.
 
     Source: ISO 2631-1:1997, 6.3.1, equations 2 to 4.
     """
@@ -50,25 +50,25 @@ def mtvv(
     square = _one(weighted) ** 2
     length = round(integration_s / step)
     if length < 1:
-        raise ConfigurationError(f"integration_s: found {integration_s:g} s, allowed is at least one time step")
+        raise ConfigurationError(f"integration_s: found {integration_s:g} s, must be at least one time step")
     if average == "linear":
         total = np.cumsum(square, out=square)
-        late = total[length:] - total[: max(square.size - length, 0)]
-        running = np.max(late, initial=total[:length].max()) / length
+        window_sums = total[length:] - total[: max(square.size - length, 0)]
+        running = np.max(window_sums, initial=total[:length].max()) / length
     elif average == "exponential":
         decay = float(np.exp(-step / integration_s))
         running = scipy.signal.lfilter([1.0 - decay], [1.0, -decay], square).max()
     else:
-        raise ConfigurationError(f"running average: found {average!r}, allowed are 'linear' and 'exponential'")
+        raise ConfigurationError(f"running average: found {average!r}, must be 'linear' or 'exponential'")
     return float(np.sqrt(max(float(running), 0.0)))
 
 
 def crest_factor(weighted: ArrayLike, rms: float | None = None) -> float | None:
-    """Return max|a_w| / RMS [-]; None for a record that is zero throughout. Source: ISO 2631-1:1997, 6.2.1.
+    """Return the crest factor max|a_w| / RMS [-]; None for a record of zeros. Source: ISO 2631-1:1997, 6.2.1.
 
     Args:
-        weighted: the part of the record whose maximum counts [m/s2], shape (n,).
-        rms: of the whole measurement [m/s2]; that of the part by default.
+        weighted: evaluated part of the weighted record [m/s2], shape (n,).
+        rms: RMS of the whole measurement [m/s2]; RMS of `weighted` by default.
     """
     record = _one(weighted)
     rms = weighted_rms(record) if rms is None else rms
@@ -92,7 +92,7 @@ def estimated_vibration_dose_value(rms: float, duration_s: float) -> float:
     Valid for crest factors below about 6. Source: ISO 2631-1:1997, annex B; BS 6841:1987.
     """
     if not (np.isfinite([rms, duration_s]).all() and rms >= 0.0 and duration_s > 0.0):
-        raise ConfigurationError(f"eVDV: found RMS {rms!r} and duration {duration_s!r}; allowed are >= 0 and > 0")
+        raise ConfigurationError(f"eVDV: found RMS {rms!r} and duration {duration_s!r}; must be >= 0 and > 0")
     return float(1.4 * rms * duration_s**0.25)
 
 
@@ -102,14 +102,15 @@ def motion_sickness_dose_value(time_step: float, weighted: ArrayLike) -> float:
 
 
 def vector_sum(values: Sequence[float], factors: Sequence[float], *, power: float = 2.0) -> float:
-    """Return (sum (k_i a_i)^power)^(1/power): power 2 for RMS values, 4 for dose values (BS 6841).
+    """Return the vector sum (sum (k_i a_i)^power)^(1/power): power 2 for RMS values, 4 for dose values (BS 6841).
 
-    Over the axes of a point this is the point vibration total value; over points, with factors 1, the overall one.
+    Over the axes of a point this is the point vibration total value; over points, with factors 1, the overall
+    vibration total value.
 
     Args:
-        values: one measure for each axis or point.
-        factors: multiplying factor k of each [-].
-        power: 2 or 4.
+        values: measures a_i of the axes or points.
+        factors: multiplying factors k_i [-].
+        power: exponent, 2 or 4.
 
     Source: ISO 2631-1:1997, 6.5 and 8.2.3; BS 6841:1987.
     """

@@ -1,4 +1,4 @@
-"""Frequency responses and coherence of one or several excitations and any number of responses (H1 estimator)."""
+"""Estimate FRFs and coherence from one or several excitations to any number of responses (H1 estimator)."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from vehicle.signals.analysis.segments import MINIMUM_AVERAGES, cut_into_segment
 from vehicle.threads import one_blas_thread
 
 EXCITED = 1e-24
-"""Least share of the largest excitation power that a line must hold: an amplitude ratio of 1e-12, below which rounding
-of the transform leaves fewer than three correct digits."""
+"""Minimum power of an excited line over the strongest line: amplitude ratio 1e-12, below which rounding of the
+transform leaves fewer than three correct digits."""
 
 INDEPENDENCE = 1e-2
-"""Least eigenvalue of the excitation matrix scaled to unit diagonal [-]: for two inputs 1 minus the modulus of their
+"""Minimum eigenvalue of the excitation matrix scaled to unit diagonal [-]: for two inputs 1 minus the modulus of their
 coherence. Below it the error of the separated responses is more than seven times that of a single input."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FrequencyResponse:
-    """Response over excitation, with the coherence that tells how far to trust it."""
+    """FRF, response over excitation, with coherence and standard error."""
 
     frequency: NDArray[np.float64]
-    """lines [Hz], shape (m,)"""
+    """frequency lines [Hz], shape (m,)"""
     response: NDArray[np.complex128]
     """H(f) [unit of response / unit of excitation], shape (k, m); NaN where undefined"""
     coherence: NDArray[np.float64]
@@ -46,7 +46,7 @@ class FrequencyResponse:
     """standard error of |H| [unit of H], shape (k, m): 95 % of all estimates lie within 1.96 of it in magnitude, within
     2.45 in the complex plane; NaN where undefined"""
     averages: NDArray[np.float64]
-    """averages of independent spectra that give this error by H1, shape (k, m): its true degrees of freedom [-]"""
+    """number of independent averages with which H1 has this error [-], shape (k, m)"""
     segments: int
     """overlapping segments averaged [-]"""
     window: str
@@ -54,9 +54,9 @@ class FrequencyResponse:
     estimator: str
     """name of the estimator"""
     resolution_hz: float
-    """least half-power width of a resonance whose height can be told; of H1 the distance of the lines [Hz]"""
+    """minimum half-power width of a resolved resonance [Hz]; for H1 the line spacing"""
     reasons: tuple[str, ...]
-    """one sentence for each cause of NaN; empty when all is defined"""
+    """one message per cause of NaN; empty if all values are defined"""
 
 
 def frequency_response(
@@ -70,7 +70,7 @@ def frequency_response(
     names: Sequence[str] | None = None,
     minimum_averages: float = MINIMUM_AVERAGES,
 ) -> FrequencyResponse:
-    """Estimate the response to one excitation (n,); the other arguments are those of `frequency_responses`."""
+    """Estimate the FRFs to one excitation (n,); for the other arguments see `frequency_responses`."""
     return frequency_responses(
         time_step,
         np.asarray(excitation, dtype=np.float64)[None],
@@ -99,40 +99,40 @@ def frequency_responses(
 ) -> tuple[FrequencyResponse, ...]:
     """Estimate H1 = Gxx^-1 Gxy and gamma^2 = Gxy^H Gxx^-1 Gxy / Gyy by Welch's method (Hann window, constant removed).
 
-    H1 is unbiased by noise on the response. What biases it is leakage: a window must be long against the ringing of
-    the resonance, for part of a segment's response was excited before the segment began. With a flat excitation the
+    Noise on the response does not bias H1; leakage does: a window must be long against the ringing of the resonance,
+    because part of the response in a segment was excited before the segment began. With a flat excitation the
     expected estimate is the transform of h(tau) rho(tau): the impulse response times the autocorrelation of the
     window, rho = 1 - (2 pi^2/3) (tau/window_s)^2 + ... for Hann. So a peak with the time constant
     tau0 = 1/(2 pi zeta f) is low by about (4 pi^2/3) (tau0/window_s)^2 while that is small: 1.0 % at 28 Hz with 5 %
-    damping and 4 s; at 20 Hz with 1 % it is 25 %, and 3 % with 16 s. The coherence drops there although nothing is
-    noisy. Use a longer window.
+    damping and 4 s; at 20 Hz with 1 % it is 25 %, and 3 % with 16 s. The coherence drops there even without noise. Use
+    a longer window.
 
     The standard error of |H_i| is sqrt((1 - gamma^2) Gyy (Gxx^-1)_ii / (2 (n - p + 1))) with n averages; for one input
-    that is |H| sqrt((1 - gamma^2) / (2 n gamma^2)).
+    it is |H| sqrt((1 - gamma^2) / (2 n gamma^2)).
 
-    A line that the excitation does not reach (a band-limited input below its lower edge) shows the leak of its
-    neighbours only; choose the band within the band of the input.
+    A line without excitation (a band-limited input below its lower edge) contains only leakage of its neighbours;
+    choose a band within the band of the input.
 
     Args:
-        time_step: [s].
-        excitations: p that act at once, shape (p, n).
-        responses: shape (n,) or (k, n).
-        window_s: segment length [s]; the lines are 1 / window_s apart.
-        overlap: share of a segment repeated by the next [-].
-        band: lines returned, both edges included [Hz].
-        input_names: of the excitations, for messages.
-        names: of the responses, for `reasons`.
-        minimum_averages: effective averages asked for. Of one input, below 2 the coherence is NaN (one average gives 1
-            always); several always need p + 1.
+        time_step: sampling interval [s].
+        excitations: p simultaneous inputs, shape (p, n).
+        responses: outputs, shape (n,) or (k, n).
+        window_s: segment length [s]; the line spacing is 1 / window_s.
+        overlap: overlap of successive segments over their length [-].
+        band: lowest and highest returned line [Hz], both included.
+        input_names: names of the excitations, for messages.
+        names: names of the responses, for `reasons`.
+        minimum_averages: required effective averages. For one input with fewer than 2, the coherence is NaN (a single
+            average always gives 1); several inputs need at least p + 1.
 
     Returns:
-        One FRF for each excitation, NaN where the inputs or the response do not move; their coherence is the multiple
-        one, with all excitations together.
+        One FRF for each excitation, NaN where inputs or response are constant; the coherence is the multiple coherence
+        with all excitations.
 
     Raises:
-        DataError: too few averages (says how long the record must be), an excitation is constant, fully correlated
-            excitations (equal, scaled or delayed copies: the message names them), lengths differ, sampled too slowly,
-            values not finite.
+        DataError: too few averages (the message contains the required length), a constant excitation, fully correlated
+            excitations (equal, scaled or delayed copies, named in the message), different lengths, sampling rate too
+            low, values not finite.
         ConfigurationError: window, overlap or band out of range.
 
     Source: Bendat and Piersol, Random Data, 4th ed., chapters 6, 7 and 9; bad-inputs item 15.
@@ -145,55 +145,55 @@ def frequency_responses(
     checked_same_length("responses", y, "the excitation", x.shape[1])
     labels = checked_names("input", input_names, inputs)
     outputs = checked_names("response", names, y.shape[0])
-    least = minimum_averages if inputs == 1 else max(minimum_averages, inputs + 1.0)
-    cut = cut_into_segments(x.shape[1], step, window_s=window_s, overlap=overlap, minimum_averages=least)
+    minimum = minimum_averages if inputs == 1 else max(minimum_averages, inputs + 1.0)
+    cut = cut_into_segments(x.shape[1], step, window_s=window_s, overlap=overlap, minimum_averages=minimum)
     for i in np.flatnonzero(is_constant(x)):
         others = " or ".join(name for name in labels if name != labels[i])
         raise DataError(
-            f"{labels[i]}: constant at {x[i, 0]:g} over all {x.shape[1]} samples, so no frequency response to it "
-            f"exists; give {f'{others} alone' if others else 'the channel that moves'}"
+            f"{labels[i]}: constant at {x[i, 0]:g} over all {x.shape[1]} samples, so there is no frequency "
+            f"response to it; use {f'only {others}' if others else 'a channel that moves'}"
         )
 
     options = {"window": cut.window, "nperseg": cut.length, "noverlap": cut.overlap, "detrend": "constant"}
     lines, syy = scipy.signal.welch(y, 1.0 / step, **options)
     inside = lines_in_band(lines, edges)
     csd = partial(scipy.signal.csd, fs=1.0 / step, **options)
-    whole = np.moveaxis(csd(x[:, None], x[None, :])[1], -1, 0)  # conj(X) X, (lines, p, p)
-    gxx = whole[inside]  # (m, p, p)
+    gxx_all = np.moveaxis(csd(x[:, None], x[None, :])[1], -1, 0)  # conj(X) X, (lines, p, p)
+    gxx = gxx_all[inside]  # (m, p, p)
     gxy = np.moveaxis(csd(x[:, None], y[None, :])[1][..., inside], -1, 0)  # (m, p, k)
     syy = syy[:, inside]
     power = np.real(np.einsum("mii->mi", gxx))  # (m, p)
-    reached = (power > EXCITED * np.real(np.einsum("mii->mi", whole)).max(axis=0)).all(axis=1)
+    reached = (power > EXCITED * np.real(np.einsum("mii->mi", gxx_all)).max(axis=0)).all(axis=1)
     size = np.sqrt(np.where(reached[:, None], power, 1.0))
     scaled = gxx / (size[:, :, None] * size[:, None, :])  # unit diagonal, (m, p, p)
     independence = np.where(reached, np.linalg.eigvalsh(scaled)[:, 0].clip(0.0), 0.0)
     if inputs > 1:
         _refuse_dependent(scaled, independence, labels)
 
-    good = independence >= INDEPENDENCE
+    separable = independence >= INDEPENDENCE
     still = is_constant(y)
-    response = np.full((inputs, y.shape[0], good.size), complex(np.nan, np.nan))
-    coherence = np.full((y.shape[0], good.size), np.nan)
+    response = np.full((inputs, y.shape[0], separable.size), complex(np.nan, np.nan))
+    coherence = np.full((y.shape[0], separable.size), np.nan)
     inflation = np.full(
-        (inputs, good.size), np.nan
+        (inputs, separable.size), np.nan
     )  # what inputs have in common raises the error: (Gxx^-1)_ii (Gxx)_ii
-    cross = gxy[good] / size[good][:, :, None]
-    solution = np.linalg.solve(scaled[good], cross)  # (m, p, k)
-    response[:, :, good] = np.moveaxis(solution / size[good][:, :, None], (0, 1, 2), (2, 0, 1))
+    cross = gxy[separable] / size[separable][:, :, None]
+    solution = np.linalg.solve(scaled[separable], cross)  # (m, p, k)
+    response[:, :, separable] = np.moveaxis(solution / size[separable][:, :, None], (0, 1, 2), (2, 0, 1))
     response[:, still] = complex(np.nan, np.nan)
-    inflation[:, good] = np.real(np.einsum("mii->im", np.linalg.inv(scaled[good])))
+    inflation[:, separable] = np.real(np.einsum("mii->im", np.linalg.inv(scaled[separable])))
     reasons = [f"{outputs[i]}: constant, so its FRF and its coherence are undefined" for i in np.flatnonzero(still)]
     if cut.averages < 2.0:
-        reasons.append(f"coherence: undefined with {cut.averages:.3g} averages (a single one gives 1 whatever happens)")
+        reasons.append(f"coherence: undefined with {cut.averages:.3g} averages (a single average always gives 1)")
     else:
         explained = np.real(np.einsum("mpk,mpk->km", cross.conj(), solution))
         share = np.full(explained.shape, np.nan)
-        np.divide(explained, syy[:, good], out=share, where=(syy[:, good] > 0.0) & ~still[:, None])
-        coherence[:, good] = share
+        np.divide(explained, syy[:, separable], out=share, where=(syy[:, separable] > 0.0) & ~still[:, None])
+        coherence[:, separable] = share
     for lost, cause in (
         (~reached, "not excited, so the FRF is undefined"),
         (
-            reached & ~good,
+            reached & ~separable,
             "the inputs are fully correlated there, so their responses cannot be separated; use the single-input "
             "frequency_response",
         ),
@@ -224,7 +224,7 @@ def frequency_responses(
 def _refuse_dependent(
     scaled: NDArray[np.complex128], independence: NDArray[np.float64], labels: tuple[str, ...]
 ) -> None:
-    """Refuse inputs of which one follows from the others over most of the band; name them."""
+    """Raise an error if an input depends linearly on the others over most of the band."""
     if np.median(independence) >= INDEPENDENCE:
         return
     coherence = np.median(np.abs(scaled) ** 2, axis=0)  # (p, p)
@@ -235,10 +235,10 @@ def _refuse_dependent(
         for j in range(i + 1, len(labels))
         if coherence[i, j] > limit
     ]
-    which = "coinciding are " + ", ".join(pairs) if pairs else f"one of {', '.join(labels)} follows from the others"
+    which = "copies: " + ", ".join(pairs) if pairs else f"one of {', '.join(labels)} depends linearly on the others"
     raise DataError(
-        f"excitations: fully correlated inputs, the matrix Gxx is rank-deficient (median least eigenvalue "
-        f"{np.median(independence):.3g}, needed is {INDEPENDENCE:g}): {which}; their responses cannot be separated. "
-        "Use the single-input frequency_response with one of them (it gives the response to the common motion), "
-        "or drive them with independent signals"
+        f"excitations: fully correlated inputs, the matrix Gxx is rank-deficient (median minimum eigenvalue "
+        f"{np.median(independence):.3g}, must be at least {INDEPENDENCE:g}): {which}; their responses cannot be "
+        "separated. Use the single-input frequency_response with one input (it returns the response to the common "
+        "motion), or drive them with independent signals"
     )

@@ -1,4 +1,4 @@
-"""What is said of a load: its level, its cycles, and their spectrum."""
+"""Level, cycles and spectrum of a load."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LoadSpectrum:
-    """One load over a record, in its own unit.
+    """Level and cycles of a load, in the unit of its channel.
 
     Attributes:
-        name, unit: of the channel.
-        minimum, maximum, mean, rms: of its values, the static part among them.
-        counted: its cycles.
-        equivalent_amplitude: of one cycle a second that does the same damage, as of `Cycles`.
+        name, unit: name and unit of the channel.
+        minimum, maximum, mean, rms: statistics of the values, static load included.
+        counted: counted cycles.
+        equivalent_amplitude: amplitude of one cycle per second with equal damage; see `Cycles`.
     """
 
     name: str
@@ -34,39 +34,39 @@ class LoadSpectrum:
 
     @property
     def cycles(self) -> float:
-        """Number of cycles, halves included."""
+        """Number of cycles, half cycles included."""
         return self.counted.total
 
     @property
     def largest_range(self) -> float:
-        """Range of the largest cycle; 0 without any."""
+        """Range of the largest cycle; 0 without cycles."""
         return float(self.counted.ranges[-1]) if self.counted.ranges.size else 0.0
 
     def classes(self, count: int) -> tuple[Vector, Vector]:
-        """Cycles in classes of equal width from zero to the largest range.
+        """Count the cycles in classes of equal width from zero to the largest range.
 
         Args:
             count: number of classes.
 
         Returns:
-            Their edges, (count + 1,), and the cycles in each, (count,); the upper edge belongs to a class.
+            Edges of the classes, (count + 1,), and cycles in each class, (count,); a class includes its upper edge.
         """
         edges = np.linspace(0.0, max(self.largest_range, np.finfo(float).tiny), count + 1)
-        place = np.clip(np.searchsorted(edges, self.counted.ranges, side="left") - 1, 0, count - 1)
-        return edges, np.bincount(place, weights=self.counted.counts, minlength=count).astype(float)
+        index = np.clip(np.searchsorted(edges, self.counted.ranges, side="left") - 1, 0, count - 1)
+        return edges, np.bincount(index, weights=self.counted.counts, minlength=count).astype(float)
 
 
 def load_spectrum(name: str, unit: str, load: Vector, *, slope: float, duration: float) -> LoadSpectrum:
-    """Level and cycles of a load.
+    """Return level and cycles of a load.
 
     Args:
-        name, unit: of the channel.
-        load: its record; (n,).
-        slope: k of the line of Woehler [-].
-        duration: of the record [s].
+        name, unit: name and unit of the channel.
+        load: samples; (n,).
+        slope: slope k of the Woehler curve [-].
+        duration: length of the record [s].
 
     Raises:
-        ConfigurationError: as of `Cycles.equivalent_amplitude`.
+        ConfigurationError: slope or duration out of range; see `Cycles.equivalent_amplitude`.
         MissingPartError: the package `rainflow` is not installed.
     """
     counted = count_cycles(load)

@@ -1,12 +1,13 @@
-"""FRF of a whole random record without leakage, and without the bias that noise gives to peaks: local rational models.
+"""FRF of a whole random record by local rational models: no leakage, and no bias of the peaks by noise.
 
 A lightly damped car leaks in every windowed average: a body mode at 3.6 Hz with 3 % damping rings for longer than the
 usual window of 4 s, and the coherence falls although nothing is nonlinear. On the spectrum of the whole record the
-leakage is a smooth function of frequency and is estimated beside the FRF, in a stretch of lines around every frequency
-of the result; `output_error` says how, `input_floor` where the input tells nothing.
+leakage is a smooth function of frequency and is estimated together with the FRF, in a window of lines around every
+frequency of the result (see `output_error`). `input_floor` excludes lines at which the input does not excite the car.
 
-What a resonance needs is lines within its half-power width, B = 2 zeta f T. At a coherence of 0.9 its peak is low by
-less than 4 % from B = 16 on, and by 15 % at B = 4, below which it is not resolved (`tests.benchmarks.frf_accuracy`).
+The number of lines within the half-power width of a resonance, B = 2 zeta f T, limits the accuracy. At a coherence of
+0.9 the peak is low by less than 4 % for B >= 16, and by 15 % at B = 4, below which the resonance is not resolved
+ (`tests.benchmarks.frf_accuracy`).
 
 Source: McKelvey and Guerin, Non-parametric frequency response estimation using a local rational model, IFAC SYSID 2012;
 Pintelon and Schoukens, System Identification: A Frequency Domain Approach, 2nd ed. 2012, section 7.2.
@@ -22,8 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 from vehicle.errors import DataError
 from vehicle.signals.analysis.dependence import refuse_copies
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.analysis.input_floor import CAUSES, sentences, silent_lines
-from vehicle.signals.analysis.output_error import StretchFit, fit_stretches
+from vehicle.signals.analysis.input_floor import CAUSES, cause_messages, silent_lines
+from vehicle.signals.analysis.output_error import WindowFit, fit_windows
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
 from vehicle.signals.analysis.samples import (
     checked_names,
@@ -33,34 +34,35 @@ from vehicle.signals.analysis.samples import (
     checked_time_step,
     is_constant,
 )
-from vehicle.signals.analysis.segments import stretches_of_one_length
+from vehicle.signals.analysis.segments import windows_of_equal_length
 from vehicle.threads import one_blas_thread
 
 LEAST_HALF_WIDTH, LINES_OF_AN_INPUT = 8, 5
-"""Lines n on each side at least: 17 lines, 6 unknowns; and as many more for every further input."""
+"""Minimum half width n of a window [lines], 17 lines for 6 unknowns, and its increase for every further input."""
 
 RELATIVE_WIDTH = 0.02
-"""Lines on each side over the number of the line: modes as close as those of a body are one pole each."""
+"""Half width of a window over the index of its centre line: each window then holds about one mode of a body."""
 
 MOST_HALF_WIDTH = 300
-"""Lines n on each side at most, which bounds the work on long records."""
+"""Maximum half width n of a window [lines]; it limits the computing time of long records."""
 
 RESOLVED = 4.0
-"""Lines within the half-power width of a resonance from which its height can be told."""
+"""Minimum lines within the half-power width of a resolved resonance."""
 
 BODY_MODES = 5.0
-"""Frequency [Hz] below which modes are so narrow that the result has two values for every `resolution`."""
+"""Frequency [Hz] below which modes are narrow, so that the result has two lines in every `resolution`."""
 
 COARSE_HZ = 0.06
-"""Half-power width [Hz] of a lightly damped body mode: 1 % at 3 Hz. A record that does not resolve it says so."""
+"""Half-power width [Hz] of a lightly damped body mode: 1 % at 3 Hz. A shorter record causes a notice."""
 
 INDEPENDENT = 1e-2
-"""Least eigenvalue of the matrix of the inputs, scaled to unit diagonal, over a stretch."""
+"""Minimum eigenvalue of the input matrix of a window, scaled to unit diagonal, for separable responses."""
 
 OUTPUTS_OF_A_LONG_RECORD = 12
-"""Responses of a long record whose lines are in memory at once."""
+"""Responses of a long record processed in a batch, to limit the memory."""
 
 SAME = "the inputs are fully correlated there, so that their responses cannot be separated"
+"""Cause of an undefined FRF at lines with dependent inputs."""
 
 
 def local_rational_response(
@@ -73,8 +75,8 @@ def local_rational_response(
     names: Sequence[str] | None = None,
     rounding: float = 0.0,
 ) -> FrequencyResponse:
-    """Estimate the FRF of a whole random record to one input; the arguments are those of `local_rational_responses`."""
-    found = local_rational_responses(
+    """Estimate the FRFs of a whole random record to one input; for the arguments see `local_rational_responses`."""
+    estimates = local_rational_responses(
         time_step,
         checked_signals("excitation", excitation)[:1],
         responses,
@@ -84,7 +86,7 @@ def local_rational_response(
         input_names=("excitation",),
         rounding=(rounding,),
     )
-    return found[0]
+    return estimates[0]
 
 
 @one_blas_thread()
@@ -99,24 +101,25 @@ def local_rational_responses(
     input_names: Sequence[str] | None = None,
     rounding: Sequence[float] | None = None,
 ) -> tuple[FrequencyResponse, ...]:
-    """Estimate the FRFs of a whole random record to each of p inputs that act at once.
+    """Estimate the FRFs of a whole random record to each of p simultaneous inputs.
 
     Args:
         time_step: sampling interval [s].
-        excitations: inputs, shape (p, n); they begin and end at rest or not, both are allowed.
-        responses: outputs, shape (n,) or (k, n), or k of them one by one.
+        excitations: inputs, shape (p, n); they may begin and end in motion.
+        responses: outputs, shape (n,) or (k, n), or a sequence of k outputs (n,).
         band: lowest and highest frequency [Hz].
-        resolution: distance of the frequencies of the result [Hz]; half of it below `BODY_MODES`.
-        names: names of the responses for the reasons.
-        input_names: names of the inputs for messages.
-        rounding: step to which each input was rounded; found from the samples where 0 or not given.
+        resolution: spacing of the frequencies of the result [Hz]; half of it below `BODY_MODES`.
+        names: names of the responses in `reasons`.
+        input_names: names of the inputs in messages.
+        rounding: rounding step of each input; estimated from the samples if 0 or missing.
 
     Returns:
-        One FRF for each input, on the record's own lines nearest to the wanted frequencies; NaN where an input says
-        nothing or a response does not move. The coherence is that with all inputs together.
+        One FRF for each input, on the spectral lines of the record nearest to the requested frequencies; NaN where an
+        input does not excite the line or a response is constant. The coherence is the multiple coherence with all
+        inputs.
 
     Raises:
-        DataError: the record holds too few lines below the upper frequency, an input does not move.
+        DataError: too few lines below the upper frequency, or a constant input.
         DependentInputsError: an input is a copy of another.
     """
     step = checked_time_step(time_step)
@@ -125,29 +128,29 @@ def local_rational_responses(
     for row in outputs:
         checked_same_length("responses", row, "the excitations", inputs.shape[1])
     labels = checked_names("input", input_names, len(inputs))
-    answering = checked_names("response", names, len(outputs))
+    output_names = checked_names("response", names, len(outputs))
     samples = inputs.shape[1]
     line = 1.0 / (samples * step)
-    least = LEAST_HALF_WIDTH + LINES_OF_AN_INPUT * (len(inputs) - 1)
-    if band[1] < 8 * least * line:
+    least_half = LEAST_HALF_WIDTH + LINES_OF_AN_INPUT * (len(inputs) - 1)
+    if band[1] < 8 * least_half * line:
         raise DataError(
             f"record: {samples * step:g} s is too short for an FRF up to {band[1]:g} Hz; record at least "
-            f"{8 * least / band[1]:.3g} s"
+            f"{8 * least_half / band[1]:.3g} s"
         )
     for number in np.flatnonzero(is_constant(inputs)):
         raise DataError(
-            f"{labels[number]}: is constant, at {inputs[number, 0]:g}; an FRF needs an input that moves; drive it, or "
-            "ask for the FRF to one that moves"
+            f"{labels[number]}: is constant, at {inputs[number, 0]:g}; an FRF needs a moving input; drive it, or "
+            "select a moving input"
         )
     if len(inputs) > 1:
         refuse_copies(step, inputs, labels, band)
     last = samples // 2
-    wanted = np.arange(band[0], band[1] + resolution / 2, max(resolution, line))
+    requested = np.arange(band[0], band[1] + resolution / 2, max(resolution, line))
     low = np.arange(band[0], min(band[1], BODY_MODES), max(resolution / 2, line))
-    wanted = np.union1d(wanted, low)
-    centres = np.unique(np.round(wanted / line).astype(int))
-    centres = centres[(centres > least) & (centres < last - least)]
-    halves = np.clip(np.round(RELATIVE_WIDTH * centres), least, MOST_HALF_WIDTH).astype(int)
+    requested = np.union1d(requested, low)
+    centres = np.unique(np.round(requested / line).astype(int))
+    centres = centres[(centres > least_half) & (centres < last - least_half)]
+    halves = np.clip(np.round(RELATIVE_WIDTH * centres), least_half, MOST_HALF_WIDTH).astype(int)
     halves = np.minimum(halves, np.minimum(centres - 1, last - centres))
     lines_of = RecordLines(samples, 0, int(np.max(centres + halves, initial=0)) + 1)
     spectra = np.array([_without_mean(row, lines_of) for row in inputs])
@@ -156,34 +159,39 @@ def local_rational_responses(
     shape = (len(inputs), len(outputs), centres.size)
     response, coherence = np.full(shape, complex(np.nan, np.nan)), np.full(shape[1:], np.nan)
     deviation, averages = np.full((2, *shape), np.nan)
-    driven, answering_rows = np.flatnonzero(silent == 0), np.flatnonzero(moving)
-    at_once = max(OUTPUTS_OF_A_LONG_RECORD if is_long(samples) else len(outputs), 1)
-    for begin in range(0, max(answering_rows.size, 1), at_once):
-        group = answering_rows[begin : begin + at_once]
-        answers = np.array([_without_mean(outputs[row], lines_of) for row in group]).reshape(-1, spectra.shape[1])
-        for some, lines in stretches_of_one_length(centres[driven], halves[driven]):
-            which = driven[some]
-            drives, drive_level = _scaled(spectra[:, lines])  # (s, p, N), (s, p)
-            gram = drives @ drives.conj().swapaxes(1, 2) / lines.shape[1]
-            apart = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
-            silent[which[~apart]] = len(CAUSES) + 1
-            if not apart.any():
+    driven_centres, moving_rows = np.flatnonzero(silent == 0), np.flatnonzero(moving)
+    group_size = max(OUTPUTS_OF_A_LONG_RECORD if is_long(samples) else len(outputs), 1)
+    for begin in range(0, max(moving_rows.size, 1), group_size):
+        group = moving_rows[begin : begin + group_size]
+        output_spectra = np.array([_without_mean(outputs[row], lines_of) for row in group]).reshape(
+            -1, spectra.shape[1]
+        )
+        for members, lines in windows_of_equal_length(centres[driven_centres], halves[driven_centres]):
+            selected = driven_centres[members]
+            input_windows, input_level = _scaled(spectra[:, lines])  # (s, p, N), (s, p)
+            gram = input_windows @ input_windows.conj().swapaxes(1, 2) / lines.shape[1]
+            separable = np.linalg.eigvalsh(gram)[:, 0] >= INDEPENDENT
+            silent[selected[~separable]] = len(CAUSES) + 1
+            if not separable.any():
                 continue
-            which, gram = which[apart], gram[apart]
-            scaled, level = _scaled(answers[:, lines[apart]])
-            fit = fit_stretches(drives[apart], scaled, wide=lines.shape[1] // 2 > least)
+            selected, gram = selected[separable], gram[separable]
+            output_windows, output_level = _scaled(output_spectra[:, lines[separable]])
+            fit = fit_windows(input_windows[separable], output_windows, wide=lines.shape[1] // 2 > least_half)
             variance = np.real(np.einsum("skii->isk", fit.covariance))
-            ratio = level / drive_level[apart].T[:, :, None]  # (p, s, k)
-            rows = np.ix_(np.arange(len(inputs)), group, which)
+            ratio = output_level / input_level[separable].T[:, :, None]  # (p, s, k)
+            rows = np.ix_(np.arange(len(inputs)), group, selected)
             response[rows] = (fit.response.transpose(2, 0, 1) * ratio).swapaxes(1, 2)
             deviation[rows] = (np.sqrt(variance / 2.0) * ratio).swapaxes(1, 2)
             averages[rows] = (fit.noise / variance).swapaxes(1, 2)
-            coherence[rows[1][0], which] = _coherence(fit, gram).T
+            coherence[rows[1][0], selected] = _coherence(fit, gram).T
     frequency = centres * line
     reasons = (
         *_coarse(line),
-        *sentences(frequency, silent, (*CAUSES, SAME)),
-        *(f"{answering[row]}: constant, so its FRF and its coherence are undefined" for row in np.flatnonzero(~moving)),
+        *cause_messages(frequency, silent, (*CAUSES, SAME)),
+        *(
+            f"{output_names[row]}: constant, so its FRF and its coherence are undefined"
+            for row in np.flatnonzero(~moving)
+        ),
     )
     return tuple(
         FrequencyResponse(
@@ -203,22 +211,22 @@ def local_rational_responses(
 
 
 def _without_mean(record: NDArray[np.float64], lines: RecordLines) -> NDArray[np.complex128]:
-    """Lines of the spectrum of a record about its mean."""
+    """Return lines of the spectrum of a record without its mean."""
     mean = record.mean()
     return lines.of(lambda part: record[part] - mean)
 
 
 def _scaled(spectra: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Stretches (r, s, N) of r rows as (s, r, N), scaled to unit mean power, and their levels (s, r); zeros stay."""
+    """Return windows (r, s, N) as (s, r, N), scaled to unit mean power, and their levels (s, r); keep zeros."""
     rows = spectra.swapaxes(0, 1)
     level = np.sqrt(np.mean(np.abs(rows) ** 2, axis=2))
     return rows / np.where(level > 0.0, level, 1.0)[:, :, None], level
 
 
-def _coherence(fit: StretchFit, gram: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Share of a response that the inputs explain, shape (s, k).
+def _coherence(fit: WindowFit, gram: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Return the share of the response power that the inputs explain, shape (s, k).
 
-    The power H' S H of the estimate is too large by what its own noise adds, trace(S C), on average.
+    Noise of the estimate increases the power H' S H by trace(S C) on average; this is subtracted.
     """
     power = np.einsum("ski,skj,sij->sk", fit.response, fit.response.conj(), gram).real
     power = np.maximum(power - np.einsum("skij,sij->sk", fit.covariance, gram).real, 0.0)
@@ -226,12 +234,12 @@ def _coherence(fit: StretchFit, gram: NDArray[np.complex128]) -> NDArray[np.floa
 
 
 def _coarse(line: float) -> tuple[str, ...]:
-    """A sentence where the record is too short for lightly damped modes of a body."""
+    """Return a notice if the record is too short for lightly damped modes of a body."""
     resolution = RESOLVED * line
     if resolution <= COARSE_HZ:
         return ()
     return (
         f"resonances narrower than {resolution:.2g} Hz between the half-power points (damping ratio below "
         f"{100 * resolution / 6.0:.2g} % at 3 Hz, {100 * resolution / 60.0:.2g} % at 30 Hz) are not resolved by a "
-        f"record of {1.0 / line:.3g} s: their peaks come out too low; record longer",
+        f"record of {1.0 / line:.3g} s: their peaks are too low; use a longer record",
     )

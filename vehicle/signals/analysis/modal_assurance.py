@@ -1,4 +1,4 @@
-"""Modal assurance criterion: how alike two mode shapes are."""
+"""Modal assurance criterion (MAC): correlation of two mode shapes."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import numpy.typing as npt
 
 
 def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Modal assurance criterion |a^H b|^2 / ((a^H a) (b^H b)) of every pair of shapes.
+    """Return the modal assurance criterion |a^H b|^2 / ((a^H a) (b^H b)) of every pair of shapes.
 
     Args:
-        first: shapes, real or complex, one behind the other; (m, n), or (m, nodes, 3).
-        second: at the same coordinates, (k, ...).
+        first: m real or complex shapes; (m, n), or (m, nodes, 3).
+        second: k shapes at the coordinates of `first`, (k, ...).
 
     Returns:
-        (m, k) [-]; 0 for a shape that is zero.
+        MAC [-], (m, k); 0 for a zero shape.
 
     Source: R. J. Allemang, The modal assurance criterion - twenty years of use and abuse, Sound and Vibration 37
         (2003), 14-23.
@@ -22,6 +22,6 @@ def mac(first: npt.ArrayLike, second: npt.ArrayLike) -> npt.NDArray[np.float64]:
     a, b = (np.asarray(shapes, dtype=complex) for shapes in (first, second))
     a, b = a.reshape(len(a), -1), b.reshape(len(b), -1)
     power = np.outer(np.sum(np.abs(a) ** 2, axis=1), np.sum(np.abs(b) ** 2, axis=1))
-    found = np.zeros(power.shape)
-    np.divide(np.abs(a.conj() @ b.T) ** 2, power, out=found, where=power > 0.0)
-    return found
+    criterion = np.zeros(power.shape)
+    np.divide(np.abs(a.conj() @ b.T) ** 2, power, out=criterion, where=power > 0.0)
+    return criterion

@@ -1,4 +1,4 @@
-"""FRFs to each of several inputs that act at once; inputs that move together without a delay count as one motion."""
+"""FRFs to several simultaneous inputs; inputs that are scaled copies without a delay count as a single motion."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MotionResponse:
-    """FRFs to one independent motion.
+    """FRFs to an independent motion of the inputs.
 
     Attributes:
-        motion: inputs that make it to their factors, 1 of the first: the FRFs are those to the first while the others
-            move by their factors.
-        response: the FRFs; the coherence is that with all motions together.
+        motion: inputs of the motion to their factors; 1 for the first input. The FRFs refer to the first input, while
+            the others move by their factors.
+        response: FRFs; the coherence is the multiple coherence with all motions.
     """
 
     motion: Mapping[str, float]
@@ -30,7 +30,7 @@ class MotionResponse:
 
     @property
     def first(self) -> str:
-        """The input that the FRFs are referred to."""
+        """Input to which the FRFs refer."""
         return next(iter(self.motion))
 
 
@@ -48,17 +48,17 @@ def motion_responses(
     """Estimate the FRFs to every independent motion of the inputs.
 
     Args:
-        time_step: [s].
-        inputs: that move, name to samples (n,).
-        responses: k of shape (n,), or (k, n).
-        labels: of the inputs, for messages.
-        names: of the responses, for messages.
+        time_step: sampling interval [s].
+        inputs: moving inputs, name to samples (n,).
+        responses: k outputs, a sequence of (n,) or an array (k, n).
+        labels: names of the inputs in messages.
+        names: names of the responses in messages.
         band: lowest and highest frequency [Hz].
-        rounding: step to which each input was rounded.
-        window: None for local rational models on the whole record; length [s] of the Hann windows of H1.
+        rounding: rounding step of each input.
+        window: length [s] of the Hann windows of H1; None for local rational models on the whole record.
 
     Returns:
-        One for each motion, in the order of their first inputs.
+        FRFs of each motion, in the order of the first inputs.
 
     Raises:
         DataError: the record is too short.
@@ -69,17 +69,17 @@ def motion_responses(
     if len(keys) > 1:
         groups = common_motions(time_step, np.array([inputs[key] for key in keys]), [labels[k] for k in keys], band)
     first = [keys[next(iter(group))] for group in groups]
-    driven, called = np.array([inputs[key] for key in first]), [labels[key] for key in first]
+    driven, driven_labels = np.array([inputs[key] for key in first]), [labels[key] for key in first]
     if window is not None:
-        found = frequency_responses(
-            time_step, driven, np.array(responses), window_s=window, band=band, input_names=called, names=names
+        responses_to = frequency_responses(
+            time_step, driven, np.array(responses), window_s=window, band=band, input_names=driven_labels, names=names
         )
     else:
         steps = [rounding[key] for key in first]
-        found = local_rational_responses(
-            time_step, driven, responses, band=band, names=names, input_names=called, rounding=steps
+        responses_to = local_rational_responses(
+            time_step, driven, responses, band=band, names=names, input_names=driven_labels, rounding=steps
         )
     return tuple(
         MotionResponse(motion={keys[index]: factor for index, factor in group.items()}, response=response)
-        for group, response in zip(groups, found, strict=True)
+        for group, response in zip(groups, responses_to, strict=True)
     )

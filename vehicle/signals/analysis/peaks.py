@@ -12,38 +12,38 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
 
 PROMINENCE_DB = 1.0
-"""A peak must rise 1 dB (a factor 1.12) above the higher of its two feet."""
+"""Minimum prominence of a peak above the higher of its two feet: 1 dB, a factor 1.12."""
 
 STANDARD_ERRORS = 3.5
-"""And by 3.5 standard errors of the difference of top and foot. Both are extremes: the range of a hundred independent
-estimates, as many as a list has, is 5 standard errors of one on average, which is 3.5 of a difference."""
+"""Minimum prominence in standard errors of the difference of top and foot. Both are extremes: the range of a hundred
+independent estimates is 5 standard errors of an estimate on average, which is 3.5 of a difference."""
 
 LEAST_COHERENCE = 0.3
-"""Coherence below which a maximum is no resonance: two thirds of the motion there have another cause."""
+"""Minimum coherence at a resonance: below it, more than two thirds of the power have another cause."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Peak:
-    """One local maximum of a magnitude."""
+    """Local maximum of an FRF magnitude."""
 
     frequency_hz: float
     """frequency of the maximum, between the lines [Hz]"""
     magnitude: float
     """interpolated maximum [unit of the FRF]"""
     coherence: float | None
-    """coherence of the nearest line [-]; None where none was given"""
+    """coherence of the nearest line [-]; None if unknown"""
     prominence_db: float
     """height above the higher foot [dB]"""
     random_error: float | None = None
-    """standard error of the nearest line [unit of the FRF]; None where none was given"""
+    """standard error of the nearest line [unit of the FRF]; None if unknown"""
 
 
 def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
-    """Return position and height of the parabola through three points around a maximum; any spacing."""
+    """Return position and height of the parabola through three points around a maximum, not necessarily equidistant."""
     left = (y[1] - y[0]) / (x[1] - x[0])
     right = (y[2] - y[1]) / (x[2] - x[1])
     curvature = (right - left) / (x[2] - x[0])
-    if curvature >= 0.0:  # a flat top of equal values: the middle one is as good as any
+    if curvature >= 0.0:  # flat top of equal values: use the middle point
         return float(x[1]), float(y[1])
     position = 0.5 * (x[0] + x[1]) - 0.5 * left / curvature
     height = y[0] + left * (position - x[0]) + curvature * (position - x[0]) * (position - x[1])
@@ -58,19 +58,19 @@ def resonance_peaks(
     *,
     prominence_db: float = PROMINENCE_DB,
 ) -> tuple[Peak, ...]:
-    """Find the resonance peaks of one FRF magnitude, sorted by frequency.
+    """Find the resonance peaks of an FRF magnitude, sorted by frequency.
 
     A peak is a line above both neighbours whose prominence reaches the limit in dB and `STANDARD_ERRORS`, and whose
     coherence reaches `LEAST_COHERENCE`; its frequency and height come from the parabola through log(magnitude) at the
-    line and its two neighbours. Lines with a NaN magnitude separate the stretches that are searched. A maximum at the
-    edge of a stretch is no peak.
+    line and its two neighbours. Lines with a NaN magnitude separate the searched ranges. A maximum at the edge of a
+    range is no peak.
 
     Args:
         frequency: increasing lines [Hz], shape (m,).
         magnitude: |H| > 0 [unit of the FRF], shape (m,), NaN where undefined.
-        coherence: [-], shape (m,).
-        random_error: standard error of the magnitude [unit of the FRF], shape (m,); taken as 0 where not given.
-        prominence_db: limit [dB].
+        coherence: coherence of the lines [-], shape (m,).
+        random_error: standard error of the magnitude [unit of the FRF], shape (m,); 0 by default.
+        prominence_db: minimum prominence [dB].
 
     Raises:
         DataError: shapes differ, frequency not increasing, magnitude zero, negative or infinite.
@@ -87,61 +87,63 @@ def resonance_peaks(
         )
     if not np.isfinite(lines).all() or np.any(np.diff(lines) <= 0.0):
         raise DataError("peaks: frequency must be finite and increase from line to line")
-    known = ~np.isnan(values)
-    if np.any(values[known] <= 0.0) or np.any(np.isinf(values)):
+    defined = ~np.isnan(values)
+    if np.any(values[defined] <= 0.0) or np.any(np.isinf(values)):
         raise DataError("peaks: a magnitude must be above 0 and finite (or NaN where undefined)")
     if not (np.isfinite(prominence_db) and prominence_db > 0.0):
-        raise ConfigurationError(f"prominence: found {prominence_db!r} dB, allowed is a finite number above 0 dB")
+        raise ConfigurationError(f"prominence: found {prominence_db!r} dB, must be a finite number above 0 dB")
 
-    found: list[Peak] = []
-    for stretch in np.split(np.arange(lines.size), np.flatnonzero(np.diff(known.astype(np.int8))) + 1):
-        if stretch.size < 3 or not known[stretch[0]]:
+    peaks: list[Peak] = []
+    for span in np.split(np.arange(lines.size), np.flatnonzero(np.diff(defined.astype(np.int8))) + 1):
+        if span.size < 3 or not defined[span[0]]:
             continue
-        decibel = 20.0 * np.log10(values[stretch])
-        height, ripple = values[stretch], np.zeros(stretch.size) if error is None else error[stretch]
-        tops, found_at = scipy.signal.find_peaks(decibel, prominence=prominence_db)
+        decibel = 20.0 * np.log10(values[span])
+        height, ripple = values[span], np.zeros(span.size) if error is None else error[span]
+        tops, properties = scipy.signal.find_peaks(decibel, prominence=prominence_db)
         for top, rise, *bases in zip(
-            tops, found_at["prominences"], found_at["left_bases"], found_at["right_bases"], strict=True
+            tops, properties["prominences"], properties["left_bases"], properties["right_bases"], strict=True
         ):
             foot = max(bases, key=lambda base: float(decibel[base]))
-            noisy = quality is not None and quality[stretch[top]] < LEAST_COHERENCE
+            noisy = quality is not None and quality[span[top]] < LEAST_COHERENCE
             if noisy or height[top] - height[foot] < STANDARD_ERRORS * np.hypot(ripple[top], ripple[foot]):
                 continue
             around = slice(top - 1, top + 2)
-            position, level = _vertex(lines[stretch][around], decibel[around])
-            found.append(
+            position, level = _vertex(lines[span][around], decibel[around])
+            peaks.append(
                 Peak(
                     frequency_hz=position,
                     magnitude=float(10.0 ** (level / 20.0)),
-                    coherence=None if quality is None else float(quality[stretch[top]]),
+                    coherence=None if quality is None else float(quality[span[top]]),
                     prominence_db=float(rise),
-                    random_error=None if error is None else float(error[stretch[top]]),
+                    random_error=None if error is None else float(error[span[top]]),
                 )
             )
-    return tuple(found)
+    return tuple(peaks)
 
 
 def resonances(response: FrequencyResponse, row: int) -> tuple[Peak, ...]:
-    """Resonance peaks of one row of an FRF, where the input excites, by its own random error."""
+    """Find the resonance peaks of a row of an FRF with its coherence and random error."""
     return resonance_peaks(
         response.frequency, np.abs(response.response[row]), response.coherence[row], response.random_error[row]
     )
 
 
 def phase_resonance(frequency: NDArray[np.float64], response: NDArray[np.complex128]) -> float:
-    """Frequency where the phase falls through 90 deg, nearest to the largest line: the resonance, whatever its damping.
+    """Return the resonance frequency: the phase crossing of 90 deg nearest to the largest line, at any damping.
 
     Args:
         frequency: lines of the band [Hz], (m,).
-        response: acceleration over displacement, (m,); it turns from 180 to 0 deg through a resonance.
+        response: acceleration over displacement, (m,); its phase falls from 180 to 0 deg through a resonance.
 
     Returns:
-        Interpolated frequency [Hz]; NaN where the phase passes 90 deg nowhere.
+        Interpolated frequency [Hz]; NaN if the phase does not cross 90 deg.
     """
     # Through 90 deg from above, the real part changes from negative to positive while the imaginary part is positive.
-    real, upper = response.real, response.imag > 0.0
-    at = np.flatnonzero((real[:-1] < 0.0) & (real[1:] >= 0.0) & upper[:-1] & upper[1:])
-    if not at.size:
+    real, positive_imaginary = response.real, response.imag > 0.0
+    crossing = np.flatnonzero((real[:-1] < 0.0) & (real[1:] >= 0.0) & positive_imaginary[:-1] & positive_imaginary[1:])
+    if not crossing.size:
         return float("nan")
-    crossings = frequency[at] - real[at] * (frequency[at + 1] - frequency[at]) / (real[at + 1] - real[at])
+    crossings = frequency[crossing] - real[crossing] * (frequency[crossing + 1] - frequency[crossing]) / (
+        real[crossing + 1] - real[crossing]
+    )
     return float(crossings[np.argmin(np.abs(crossings - frequency[np.nanargmax(np.abs(response))]))])

@@ -1,11 +1,11 @@
-"""Cycles of a load, counted by rainflow (ASTM E1049-85, 5.4.4), and the amplitude that does the same damage.
+"""Rainflow cycles of a load (ASTM E1049-85, 5.4.4), and the amplitude of equal damage.
 
-Each closed hysteresis loop is a cycle of its range; what is left open counts by halves. n cycles of amplitude A do the
-damage n A^k (Miner's rule on a line of Woehler with slope k); the equivalent amplitude is that of one cycle a second,
+Each closed hysteresis loop is a cycle of its range; open loops count as half cycles. n cycles of amplitude A cause the
+damage n A^k (Miner's rule, Woehler curve of slope k). One cycle per second at the equivalent amplitude,
 
     A_eq = (sum n_i A_i^k / T)^(1/k),
 
-over the time T [s] of the record. The counting is that of the package `rainflow`.
+over the time T [s] of the record causes the same damage. The package `rainflow` counts the cycles.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Cycles:
-    """Cycles of one load.
+    """Rainflow cycles of a load.
 
     Attributes:
-        ranges: different ranges, rising, in the unit of the load; (m,).
-        counts: number of cycles of each, halves included; (m,).
+        ranges: distinct ranges, increasing, in the unit of the load; (m,).
+        counts: number of cycles of each range, half cycles included; (m,).
     """
 
     ranges: Vector
@@ -39,40 +39,40 @@ class Cycles:
         return float(self.counts.sum())
 
     def exceeded(self) -> Vector:
-        """Number of cycles with at least each range; (m,)."""
+        """Return the number of cycles at or above each range; (m,)."""
         return np.asarray(np.cumsum(self.counts[::-1])[::-1])
 
     def equivalent_amplitude(self, slope: float, duration: float) -> float:
-        """Amplitude of one cycle a second that does the same damage.
+        """Return the amplitude of one cycle per second with equal damage, in the unit of the load.
 
         Args:
-            slope: k [-], of the line of Woehler.
-            duration: T of the record [s].
+            slope: slope k of the Woehler curve [-].
+            duration: length T of the record [s].
 
         Raises:
-            ConfigurationError: the slope is no number of at least 1, or the duration not above 0.
+            ConfigurationError: a slope below 1 or not finite, or a duration that is not above 0.
         """
         if not (1.0 <= slope < np.inf and duration > 0.0):
             raise ConfigurationError(
-                f"equivalent amplitude: found slope {slope:g} and duration {duration:g} s; allowed are a slope of at "
+                f"equivalent amplitude: found slope {slope:g} and duration {duration:g} s; must be a slope of at "
                 "least 1 and a duration above 0"
             )
         if not self.ranges.size or self.ranges[-1] == 0.0:
             return 0.0
-        # In parts of the largest, so that a high slope does not overflow.
+        # Relative to the largest range, so that a high slope does not overflow.
         largest = float(self.ranges[-1]) / 2.0
         damage = float(np.sum(self.counts * (self.ranges / self.ranges[-1]) ** slope)) / duration
         return largest * float(damage ** (1.0 / slope))
 
 
 def count_cycles(load: npt.ArrayLike) -> Cycles:
-    """Count the cycles of a load.
+    """Count the rainflow cycles of a load.
 
     Args:
-        load: its record; (n,).
+        load: samples; (n,).
 
     Returns:
-        The cycles; none of a load that does not change.
+        Ranges and counts; empty for a constant load.
 
     Raises:
         MissingPartError: the package `rainflow` is not installed.

@@ -1,8 +1,8 @@
-"""Rating of long records after ISO/TS 18571, window by window.
+"""Rating of long records after ISO/TS 18571 in windows.
 
-The standard rates single events: curves of a few periods, shifted by a fifth and warped by a tenth of their length. Of
-a record of minutes these would be seconds, and any two records of one level would agree. So a record is cut into
-windows of one period of the lowest frequency of a comparison, and each of them is rated as a curve.
+The standard rates single events: curves of a few periods, shifted by a fifth and warped by a tenth of their length. In
+a record of minutes these would be seconds, and any two records of equal level would agree. So a record is cut into
+windows of one period of the lowest compared frequency, and each window is rated as a curve.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from vehicle.signals.analysis.curve_rating import Ratings, rate_curves
 Vector = npt.NDArray[np.float64]
 
 WINDOW = 1.0
-"""Length of a window [s]: a period of 1 Hz, the lowest frequency of comparisons and of the comfort of a body."""
+"""Length of a window [s]: one period of 1 Hz, the lowest frequency of comparisons."""
 LEAST, MOST = 100, 4000
-"""Samples of a window at least, so that the running mean of the slope stays below a tenth of it, and at most."""
+"""Minimum and maximum length of a window [samples]; the running mean of the slope is shorter than a tenth of it."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RecordRating(Ratings):
-    """Ratings of the windows of a record, means weighted by the RMS of both records in the window.
+    """Mean ratings over the windows of a record, weighted by the RMS of both records in the window.
 
     Attributes:
         window: length of the windows [s].
-        windows: their number.
+        windows: number of windows.
     """
 
     window: float
@@ -36,18 +36,18 @@ class RecordRating(Ratings):
 
 
 def rate_record(measured: Vector, simulated: Vector, step: float) -> RecordRating:
-    """Rate a record in windows of equal length.
+    """Rate a simulated record against a measured record in windows of equal length.
 
-    round(n step / `WINDOW`) windows of equal length from the first sample on; fewer samples than windows are left at
-    the end. A window in which neither record moves has no weight, one in which a record moves that should not has.
+    About n step / `WINDOW` windows start at the first sample; the remaining samples at the end, fewer than the number
+    of windows, are ignored. A window without motion in both records has no weight.
 
     Args:
-        measured: T, (n,), of a uniform rate.
-        simulated: C, (n,), at the same times.
+        measured: measured record T, (n,), uniformly sampled.
+        simulated: simulated record C, (n,), at the times of T.
         step: sampling interval [s].
     """
-    wanted = int(np.clip(round(WINDOW / step), LEAST, MOST))
-    windows = max(1, round(measured.size / wanted))
+    target = int(np.clip(round(WINDOW / step), LEAST, MOST))
+    windows = max(1, round(measured.size / target))
     length = measured.size // windows
     truth, curve = (values[: windows * length].reshape(windows, length) for values in (measured, simulated))
     ratings = rate_curves(truth, curve, step)
@@ -55,6 +55,7 @@ def rate_record(measured: Vector, simulated: Vector, step: float) -> RecordRatin
     weight = level if level.any() else np.ones(windows)
 
     def mean(name: str) -> float:
+        """Return the weighted mean of a rating over the windows."""
         return float(np.average([getattr(rating, name) for rating in ratings], weights=weight))
 
     return RecordRating(

@@ -1,4 +1,4 @@
-"""What a seat does to the vibration of its rail: weighted accelerations of both and their ratio, the SEAT value."""
+"""SEAT value: ratio of the weighted vibration on a seat to that of its rail; weighted RMS by axis."""
 
 from __future__ import annotations
 
@@ -15,54 +15,54 @@ from vehicle.signals.analysis.weighting import weighted_record
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SeatValue:
-    """Seat effective amplitude transmissibility along z: below 1 the seat isolates."""
+    """Seat effective amplitude transmissibility along z: a seat with a value below 1 isolates."""
 
     rms: float
     """weighted RMS on the seat over that of the rail [-]"""
     vdv: float
-    """the same of the vibration dose value, for shocks [-]"""
+    """vibration dose value on the seat over that of the rail, for shocks [-]"""
     weighting: str
-    """of both"""
+    """weighting of both accelerations"""
 
 
 def seat_value(
-    time_step: float, seat: ArrayLike, rail: ArrayLike, *, place: str = "seat", skip: float = 0.0
+    time_step: float, seat: ArrayLike, rail: ArrayLike, *, contact: str = "seat", skip: float = 0.0
 ) -> SeatValue:
-    """SEAT = a_w(seat) / a_w(rail), vertical accelerations that are weighted alike: as on a seat, by Wk.
+    """Return the SEAT value a_w(seat) / a_w(rail) of vertical accelerations, both weighted by Wk (or Wb).
 
     Args:
-        time_step: [s].
-        seat, rail: acceleration along z on the cushion and below it [m/s2], shape (n,).
-        place: "seat", or "seat_bs6841" with Wb.
-        skip: seconds left out at the beginning; the filters run through them.
+        time_step: sampling interval [s].
+        seat, rail: acceleration along z on the cushion and on the rail [m/s2], shape (n,).
+        contact: point of contact, "seat", or "seat_bs6841" with Wb.
+        skip: time skipped at the beginning [s]; the filters process it.
 
     Raises:
-        ConfigurationError: a place that is no seat.
-        DataError: the rail is at rest, or as of `weighted_record`.
+        ConfigurationError: a point of contact other than a seat.
+        DataError: the acceleration of the rail is zero, or `weighted_record` rejects a record.
 
     Source: ISO 10326-1; Griffin, Handbook of Human Vibration (1990), chapter 9.
     """
-    if place not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(f"SEAT value: found place {place!r}, allowed are seat and seat_bs6841")
-    name = application(place).weightings[2]
-    above, below = (weighted_record(time_step, one, name)[round(skip / time_step) :] for one in (seat, rail))
+    if contact not in ("seat", "seat_bs6841"):
+        raise ConfigurationError(f"SEAT value: found point of contact {contact!r}, must be seat or seat_bs6841")
+    name = application(contact).weightings[2]
+    above, below = (weighted_record(time_step, record, name)[round(skip / time_step) :] for record in (seat, rail))
     base = weighted_rms(below)
     if base == 0.0:
-        raise DataError("SEAT value: the rail is at rest, so there is nothing that the seat could transmit")
-    doses = [vibration_dose_value(time_step, one) for one in (above, below)]
+        raise DataError("SEAT value: the acceleration of the rail is zero; check the channel of the rail")
+    doses = [vibration_dose_value(time_step, record) for record in (above, below)]
     return SeatValue(rms=weighted_rms(above) / base, vdv=doses[0] / doses[1], weighting=name)
 
 
 def weighted_rms_of(
-    time_step: float, xyz: ArrayLike, *, place: str = "seat", skip: float = 0.0
+    time_step: float, xyz: ArrayLike, *, contact: str = "seat", skip: float = 0.0
 ) -> tuple[float, float, float, float]:
-    """Weighted RMS of each axis and their vector sum [m/s2]; arguments as of `evaluate`.
+    """Return the weighted RMS of x, y and z and their vector sum [m/s2]; for the arguments see `evaluate`.
 
     Source: ISO 2631-1:1997, 6.1 and 6.5.
     """
-    one, records = application(place), np.asarray(xyz, dtype=np.float64)
+    contact_point, records = application(contact), np.asarray(xyz, dtype=np.float64)
     x, y, z = (
         weighted_rms(weighted_record(time_step, record, name)[round(skip / time_step) :])
-        for record, name in zip(records, one.weightings, strict=True)
+        for record, name in zip(records, contact_point.weightings, strict=True)
     )
-    return x, y, z, vector_sum((x, y, z), one.comfort_factors)
+    return x, y, z, vector_sum((x, y, z), contact_point.comfort_factors)

@@ -1,5 +1,4 @@
-"""How a record is cut: overlapping segments and the averages they are worth; the largest magnitude in every window;
-stretches of its spectrum."""
+"""Segments of a record and their effective averages; largest magnitude in every window; windows of its spectrum."""
 
 from __future__ import annotations
 
@@ -14,16 +13,16 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import checked_signals, checked_time_step
 
 MINIMUM_AVERAGES = 8.0
-"""Below this the coherence of unrelated signals is already 1/8 and the random error of an FRF above 25 % at 0.5."""
+"""Minimum effective averages: with 8, the coherence of unrelated signals is 1/8, and the random error of an FRF at a
+coherence of 0.5 is 25 %."""
 
-
-STRETCHES = 12
-"""Stretches of a spectrum that are worked on at once: what they need stays in the nearest caches."""
+BATCH = 12
+"""Frequency windows processed in a batch: their data fit in the processor caches."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Segments:
-    """Welch's segments of one record."""
+    """Segments of a record for Welch's method."""
 
     length: int
     """samples in a segment [-]"""
@@ -32,23 +31,23 @@ class Segments:
     count: int
     """number of whole segments [-]"""
     averages: float
-    """independent averages that the overlapping segments are worth [-]"""
+    """effective number of independent averages of the overlapping segments [-]"""
     window: NDArray[np.float64]
     """Hann window, shape (length,) [-]"""
 
     @property
     def overlap(self) -> int:
-        """Samples shared by two neighbours [-]."""
+        """Overlap of successive segments [samples]."""
         return self.length - self.step
 
 
 def effective_averages(window: NDArray[np.float64], step: int, count: int) -> float:
-    """Count the independent averages that `count` overlapping segments of a white record are worth.
+    """Return the effective number of independent averages of `count` overlapping segments of a white record.
 
     K_eff = K / (1 + 2 sum_j (1 - j/K) rho_j),  rho_j = (sum w(i) w(i + j step))^2 / (sum w^2)^2
 
     Args:
-        window: shape (length,).
+        window: samples of the window, shape (length,).
         step: samples from one segment to the next.
         count: number of segments K.
 
@@ -70,21 +69,21 @@ def cut_into_segments(
 
     Args:
         samples: length of the record [-].
-        time_step: [s].
-        window_s: length of a segment [s]; the lines are 1 / window_s apart.
-        overlap: share of a segment that the next one repeats, 0 <= overlap < 1 [-].
-        minimum_averages: effective averages that the caller asks for [-].
+        time_step: sampling interval [s].
+        window_s: length of a segment [s]; the line spacing is 1 / window_s.
+        overlap: overlap of successive segments over their length, 0 <= overlap < 1 [-].
+        minimum_averages: required effective averages [-].
 
     Raises:
         ConfigurationError: window or overlap out of range.
-        DataError: the record is too short; the message says how long it must be.
+        DataError: the record is too short; the message contains the required length.
     """
     if not (np.isfinite(window_s) and window_s >= 8.0 * time_step):
         raise ConfigurationError(
-            f"window_s: found {window_s:g} s, allowed is at least 8 time steps ({8.0 * time_step:g} s)"
+            f"window_s: found {window_s:g} s, must be at least 8 time steps ({8.0 * time_step:g} s)"
         )
     if not 0.0 <= overlap < 1.0:
-        raise ConfigurationError(f"overlap: found {overlap:g}, allowed is 0 <= overlap < 1")
+        raise ConfigurationError(f"overlap: found {overlap:g}, must be 0 <= overlap < 1")
     length = round(window_s / time_step)
     step = max(1, length - round(overlap * length))
     window = np.asarray(scipy.signal.get_window("hann", length), dtype=np.float64)
@@ -96,40 +95,40 @@ def cut_into_segments(
             needed += 1
         raise DataError(
             f"record too short: {samples * time_step:g} s hold {averages:.3g} effective averages of {window_s:g} s "
-            f"windows with {100 * overlap:g} % overlap; needed are {minimum_averages:g}, so at least "
+            f"windows with {100 * overlap:g} % overlap; must be at least {minimum_averages:g}; use at least "
             f"{(length + (needed - 1) * step) * time_step:g} s, or a shorter window (coarser lines)"
         )
     return Segments(length=length, step=step, count=count, averages=averages, window=window)
 
 
-def stretches_of_one_length(
+def windows_of_equal_length(
     centres: NDArray[np.int_], halves: NDArray[np.int_]
 ) -> Iterator[tuple[NDArray[np.intp], NDArray[np.int_]]]:
-    """Stretches of spectral lines by their length, some at once.
+    """Group windows of spectral lines by their length, at most `BATCH` in a batch.
 
     Args:
-        centres: line in the middle of each stretch, shape (m,).
-        halves: lines n on each side of it, shape (m,).
+        centres: centre line of each window, shape (m,).
+        halves: half width n of each window [lines], shape (m,).
 
     Yields:
-        Which stretches, shape (s,), and their lines, shape (s, 2 n + 1).
+        Indices of the windows of a batch, shape (s,), and their lines, shape (s, 2 n + 1).
     """
     for half in np.unique(halves):
-        alike = np.flatnonzero(halves == half)
-        for first in range(0, alike.size, STRETCHES):
-            some = alike[first : first + STRETCHES]
-            yield some, centres[some, None] + np.arange(-half, half + 1)
+        group = np.flatnonzero(halves == half)
+        for first in range(0, group.size, BATCH):
+            members = group[first : first + BATCH]
+            yield members, centres[members, None] + np.arange(-half, half + 1)
 
 
 def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) -> NDArray[np.float64]:
-    """Return max |x| of each of the windows that follow one another; an unfinished one at the end is left out.
+    """Return max |x| of successive windows; an incomplete window at the end is ignored.
 
-    The extreme of one short window of a random signal is itself random. A single published one is compared with the
+    The extreme of a short window of a random signal is random. A single published extreme is compared with the
     percentiles of all windows.
 
     Args:
-        time_step: [s].
-        signal: one record, shape (n,).
+        time_step: sampling interval [s].
+        signal: record, shape (n,).
         window_s: length of a window [s].
 
     Returns:
@@ -142,15 +141,15 @@ def window_extremes(time_step: float, signal: ArrayLike, window_s: float = 0.5) 
     step = checked_time_step(time_step)
     values = checked_signals("signal", signal)
     if values.shape[0] != 1:
-        raise DataError(f"signal: found {values.shape[0]} signals, needed is one at a time, shape (n,)")
+        raise DataError(f"signal: found {values.shape[0]} signals, must be one signal, shape (n,)")
     length = float(window_s)
     if not (np.isfinite(length) and length >= step):
-        raise ConfigurationError(f"window: found {window_s!r} s, allowed is at least one time step, {step:g} s")
+        raise ConfigurationError(f"window: found {window_s!r} s, must be at least one time step, {step:g} s")
     samples = round(length / step)
     count = values.shape[1] // samples
     if count == 0:
         raise DataError(
             f"signal: found {step * values.shape[1]:g} s, shorter than a window of {length:g} s; "
-            "give a longer record or a shorter window"
+            "use a longer record or a shorter window"
         )
     return np.asarray(np.abs(values[0, : count * samples]).reshape(count, samples).max(axis=1))

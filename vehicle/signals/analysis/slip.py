@@ -1,8 +1,8 @@
-"""How long a damper slips: share of the time, first instant, intervals; peaks after it has begun to.
+"""Slip of dampers: share of the time, first slip, intervals, and acceleration peaks after break-away.
 
 A damper slips while |v| > v_slip, with v_slip = `damper.slip_velocity` of the parameters. Slip shares, first slips,
-sweeps, tables, figures and the lamps of the films all use that velocity. Where the friction alone is meant, which
-reaches its limit at 1 mm/s, the name says "saturated".
+sweeps, tables, figures and the lamps of the films all use this velocity. Names with "saturated" refer to the
+friction force, which reaches its limit at 1 mm/s.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from vehicle.signals.analysis.samples import checked_same_length, checked_signal
 Real = NDArray[np.float64]
 
 SHORTEST_SLIP = 0.020
-"""Shorter slips [s] have no room for a peak after the break-away."""
+"""Minimum length of a slip phase with peaks after the break-away [s]."""
 
 BREAK_AWAY = 0.005
-"""The jump of breaking away itself lies within this time of the end of stick [s]."""
+"""Maximum time between the end of stick and the break-away jump [s]."""
 
 SEARCHED = 0.060
-"""Peaks are looked for this long after the end of stick [s]: 'just after'."""
+"""Length of the search for peaks after the end of stick [s]."""
 
 STANDING_OUT = 0.5
-"""A peak counts when it stands out by at least this share of the largest break-away jump of the run."""
+"""Minimum prominence of a peak over the largest break-away jump of the run [-]."""
 
 
 def _slipping(velocity: ArrayLike, slip_velocity: ArrayLike) -> NDArray[np.bool_]:
-    """Tell in which samples |v| is above the slip velocity of its damper, shape (d, n)."""
+    """Return a mask of the samples with |v| above the slip velocity of the damper, shape (d, n)."""
     limits = np.asarray(slip_velocity, dtype=np.float64).reshape(-1)
     if not (np.isfinite(limits).all() and (limits >= 0.0).all()):
-        raise ConfigurationError(f"slip velocity: found {slip_velocity!r} m/s, allowed is a finite number >= 0 m/s")
+        raise ConfigurationError(f"slip velocity: found {slip_velocity!r} m/s, must be a finite number >= 0 m/s")
     return np.asarray(np.abs(checked_signals("damper velocity", velocity)) > limits[:, None])
 
 
@@ -43,17 +43,17 @@ def _one(velocity: ArrayLike) -> Real:
     """Return the velocity of a single damper, shape (1, n)."""
     signal = checked_signals("damper velocity", velocity)
     if signal.shape[0] != 1:
-        raise DataError(f"damper velocity: found {signal.shape[0]} signals, needed is one damper at a time, shape (n,)")
+        raise DataError(f"damper velocity: found {signal.shape[0]} signals, must be one damper, shape (n,)")
     return signal
 
 
 def _instants(time: ArrayLike, samples: int) -> Real:
-    """Return the time stamps [s], shape (n,), when they fit the velocity and increase."""
+    """Return the time stamps [s], shape (n,); check that their number fits the velocity and that they increase."""
     stamps = checked_signals("time", time)
     checked_same_length("time", stamps, "the damper velocity", samples)
     if np.any(np.diff(stamps[0]) <= 0.0):
         first = int(np.argmax(np.diff(stamps[0]) <= 0.0)) + 1
-        raise DataError(f"time: found {stamps[0][first]:g} s at sample {first}, not after its predecessor")
+        raise DataError(f"time: found {stamps[0][first]:g} s at sample {first}, must increase from sample to sample")
     return np.asarray(stamps[0])
 
 
@@ -61,23 +61,23 @@ def slip_share(velocity: ArrayLike, slip_velocity: float) -> float:
     """Return the share of the samples with |v| > slip velocity, between 0 and 1.
 
     Args:
-        velocity: of the damper [m/s], shape (n,), uniformly sampled.
+        velocity: velocity of the damper [m/s], shape (n,), uniformly sampled.
         slip_velocity: speed that counts as slip [m/s].
     """
     return float(slip_shares(_one(velocity), slip_velocity)[0])
 
 
 def slip_shares(velocity: ArrayLike, slip_velocity: ArrayLike) -> Real:
-    """Return the slip share of each of several dampers, shape (d,); velocities (d, n), slip velocities (d,)."""
+    """Return the slip share of each damper, shape (d,); velocities (d, n), slip velocities (d,)."""
     return np.asarray(np.mean(_slipping(velocity, slip_velocity), axis=1))
 
 
 def first_slip(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> float | None:
-    """Return the time [s] of the first sample with |v| > slip velocity, None when there is none.
+    """Return the time [s] of the first sample with |v| > slip velocity; None without slip.
 
     Args:
-        time: [s], shape (n,).
-        velocity: of the damper [m/s], shape (n,).
+        time: time stamps [s], shape (n,).
+        velocity: velocity of the damper [m/s], shape (n,).
         slip_velocity: speed that counts as slip [m/s].
     """
     first = float(first_slips(time, _one(velocity), slip_velocity)[0])
@@ -85,20 +85,20 @@ def first_slip(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> fl
 
 
 def first_slips(time: ArrayLike, velocity: ArrayLike, slip_velocity: ArrayLike) -> Real:
-    """Return the first slip [s] of each of several dampers, NaN where there is none, shape (d,); as `slip_shares`."""
+    """Return the first slip [s] of each damper, NaN without slip, shape (d,); arguments as for `slip_shares`."""
     slips = _slipping(velocity, slip_velocity)
     instants = _instants(time, slips.shape[1])
     return np.where(slips.any(axis=1), instants[np.argmax(slips, axis=1)], np.nan)
 
 
 def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -> Real:
-    """Return start and end [s] of every slip, shape (s, 2): first sample above the limit, first sample back below.
+    """Return start and end [s] of every slip, shape (s, 2): first sample above the limit, next sample below.
 
     A slip that lasts to the end of the record ends with its last time stamp.
 
     Args:
-        time: [s], shape (n,).
-        velocity: of the damper [m/s], shape (n,).
+        time: time stamps [s], shape (n,).
+        velocity: velocity of the damper [m/s], shape (n,).
         slip_velocity: speed that counts as slip [m/s].
     """
     slips = _slipping(_one(velocity), slip_velocity)[0]
@@ -111,13 +111,13 @@ def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SlipPeak:
-    """A local extremum of the relative acceleration after a break-away.
+    """Local extremum of the relative acceleration after a break-away.
 
     Attributes:
-        time: [s].
-        delay: after the end of stick [s].
+        time: time of the extremum [s].
+        delay: time since the end of stick [s].
         height: relative acceleration [m/s2].
-        prominence: how far it stands out from its surroundings [m/s2].
+        prominence: height above the higher of the adjacent feet [m/s2].
     """
 
     time: float
@@ -128,13 +128,13 @@ class SlipPeak:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class SlipPhase:
-    """A slip of a damper, from the end of stick on.
+    """Slip phase of a damper, from the end of stick on.
 
     Attributes:
-        start, end: [s].
-        jump: largest |relative acceleration| within `BREAK_AWAY` of its start [m/s2].
-        velocity: largest damper velocity [m/s].
-        peaks: every extremum between `BREAK_AWAY` and `SEARCHED` after its start.
+        start, end: begin and end of the slip [s].
+        jump: largest |relative acceleration| within `BREAK_AWAY` of the start [m/s2].
+        velocity: largest |damper velocity| [m/s].
+        peaks: extrema between `BREAK_AWAY` and `SEARCHED` after the start.
     """
 
     start: float
@@ -147,17 +147,17 @@ class SlipPhase:
 def slip_phases(
     time: Real, velocity: Real, relative: Real, *, saturated: float, begin: float, until: float
 ) -> list[SlipPhase]:
-    """Slips that begin in a stretch of a run, with the peaks that follow each break-away.
+    """Return the slip phases that begin in a time span of a run, with the peaks after each break-away.
 
     Args:
-        time: [s], (n,).
-        velocity: of the damper [m/s], (n,).
+        time: time stamps [s], (n,).
+        velocity: velocity of the damper [m/s], (n,).
         relative: acceleration of the damper top relative to the knuckle [m/s2], (n,).
         saturated: velocity above which the friction is saturated and stick has ended [m/s].
-        begin, until: stretch [s].
+        begin, until: time span [s].
 
     Returns:
-        Phases of at least `SHORTEST_SLIP`, in the order of time.
+        Phases of at least `SHORTEST_SLIP`, in order of time.
     """
     phases = []
     for start, end in slip_intervals(time, velocity, saturated):
@@ -165,13 +165,13 @@ def slip_phases(
             continue
         # The jump back to zero at the end of the slip is no peak: the window ends before it.
         window = np.flatnonzero((time >= start - BREAK_AWAY) & (time <= min(end - BREAK_AWAY, start + SEARCHED)))
-        found = []
+        peaks = []
         for sign in (1.0, -1.0):
             tops, properties = scipy.signal.find_peaks(sign * relative[window], prominence=0.0)
             for top, prominence in zip(window[tops], properties["prominences"], strict=True):
                 delay = float(time[top] - start)
                 if delay > BREAK_AWAY:
-                    found.append(
+                    peaks.append(
                         SlipPeak(
                             time=float(time[top]),
                             delay=delay,
@@ -179,26 +179,26 @@ def slip_phases(
                             prominence=float(prominence),
                         )
                     )
-        near = np.abs(time - start) <= BREAK_AWAY
+        at_start = np.abs(time - start) <= BREAK_AWAY
         during = (time >= start) & (time <= end)
         phases.append(
             SlipPhase(
                 start=float(start),
                 end=float(end),
-                jump=float(np.max(np.abs(relative[near]))),
+                jump=float(np.max(np.abs(relative[at_start]))),
                 velocity=float(np.max(np.abs(velocity[during]))),
-                peaks=tuple(sorted(found, key=lambda peak: peak.time)),
+                peaks=tuple(sorted(peaks, key=lambda peak: peak.time)),
             )
         )
     return phases
 
 
 def extra_peaks(phases: list[SlipPhase]) -> list[SlipPeak]:
-    """Peaks after break-away that stand out by half of the largest break-away jump of all phases."""
+    """Return the peaks whose prominence is at least half of the largest break-away jump of all phases."""
     limit = STANDING_OUT * max((phase.jump for phase in phases), default=float("inf"))
     return [peak for phase in phases for peak in phase.peaks if peak.prominence >= limit]
 
 
 def most_prominent(phases: list[SlipPhase]) -> SlipPeak | None:
-    """The peak after break-away that stands out most; None where there is none at all."""
+    """Return the peak of largest prominence after a break-away; None without peaks."""
     return max((peak for phase in phases for peak in phase.peaks), key=lambda peak: peak.prominence, default=None)

@@ -1,4 +1,4 @@
-"""One-sided power spectral densities and the RMS in a band, all with sum(S df) = mean square (Parseval)."""
+"""One-sided power spectral densities and the RMS in a band; sum(S df) equals the mean square (Parseval)."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from vehicle.signals.analysis.samples import checked_band, checked_signals, chec
 from vehicle.signals.analysis.segments import cut_into_segments
 
 SEGMENTS_AT_ONCE = 256
-"""Segments of a long record that are transformed at once."""
+"""Segments of a long record transformed in a batch."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PowerSpectralDensity:
-    """One-sided density S(f) with the integral over f equal to the mean square."""
+    """One-sided density S(f), whose integral over f is the mean square."""
 
     frequency: NDArray[np.float64]
-    """lines [Hz], shape (m,)"""
+    """frequency lines [Hz], shape (m,)"""
     density: NDArray[np.float64]
-    """[unit^2/Hz], shape (k, m)"""
+    """density [unit^2/Hz], shape (k, m)"""
     resolution_hz: float
-    """distance of the lines [Hz]"""
+    """line spacing [Hz]"""
     averages: float
     """effective independent averages [-]"""
     lines: NDArray[np.complex128] | None = None
@@ -45,11 +45,11 @@ def power_spectral_density(
     """Estimate one-sided densities by Welch's method: Hann window, mean of each segment removed.
 
     Args:
-        time_step: [s].
-        signals: shape (n,) or (k, n).
+        time_step: sampling interval [s].
+        signals: records, shape (n,) or (k, n).
         window_s: segment length [s].
-        overlap: share of a segment repeated by the next [-].
-        minimum_averages: effective averages asked for [-].
+        overlap: overlap of successive segments over their length [-].
+        minimum_averages: required effective averages [-].
 
     Raises:
         DataError: record too short or not finite.
@@ -62,31 +62,31 @@ def power_spectral_density(
     density: Any = 0.0
     for first in range(0, cut.count, SEGMENTS_AT_ONCE):
         count = min(SEGMENTS_AT_ONCE, cut.count - first)
-        piece = array[:, first * cut.step : (first + count - 1) * cut.step + cut.length]
-        frequency, found = scipy.signal.welch(
-            piece, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
+        group = array[:, first * cut.step : (first + count - 1) * cut.step + cut.length]
+        frequency, group_density = scipy.signal.welch(
+            group, 1.0 / step, window=cut.window, nperseg=cut.length, noverlap=cut.overlap, detrend="constant"
         )
-        density = density + count / cut.count * found
+        density = density + count / cut.count * group_density
     return PowerSpectralDensity(
         frequency=frequency, density=density, resolution_hz=float(frequency[1]), averages=cut.averages
     )
 
 
 def periodogram(time_step: float, signals: ArrayLike) -> PowerSpectralDensity:
-    """Return the raw periodogram of the whole record, mean included in the line at 0 Hz, no window.
+    """Return the periodogram of the whole record without a window; the line at 0 Hz contains the mean.
 
     S_k = c |X_k|^2 dt / n,  c = 2 except at 0 Hz and at Nyquist;  sum(S_k df) = mean(x^2) exactly
 
     Args:
-        time_step: [s].
-        signals: shape (n,) or (k, n).
+        time_step: sampling interval [s].
+        signals: records, shape (n,) or (k, n).
     """
     step = checked_time_step(time_step)
     return _periodogram(step, checked_signals("signals", signals), slice(None))
 
 
 def _periodogram(step: float, array: NDArray[np.float64], lines: slice) -> PowerSpectralDensity:
-    """Some lines of the periodogram of signals (k, n)."""
+    """Return the selected lines of the periodogram of signals (k, n)."""
     samples = array.shape[1]
     sides = np.full(samples // 2 + 1, 2.0)
     sides[0] = 1.0
@@ -105,18 +105,18 @@ def _periodogram(step: float, array: NDArray[np.float64], lines: slice) -> Power
 
 
 def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> PowerSpectralDensity:
-    """Return the periodogram of the whole record, cut to the lines in the closed band [Hz].
+    """Return the periodogram of the whole record, limited to the lines in the closed band [Hz].
 
     Raises:
-        DataError: sampled too slowly for the upper edge, or so short that no line falls in the band.
+        DataError: sampling rate too low for the upper edge, or no line in the band of a short record.
     """
     step = checked_time_step(time_step)
     edges, array = checked_band(band, step), checked_signals("signals", signals)
     inside = np.flatnonzero(lines_in_band(np.fft.rfftfreq(array.shape[1], step).astype(np.float64), edges))
     if not inside.size:
         raise DataError(
-            f"record too short: its lines are {1.0 / (array.shape[1] * step):g} Hz apart and none lies in "
-            f"{edges[0]:g} to {edges[1]:g} Hz; at least {1.0 / (edges[1] - edges[0]):g} s are needed"
+            f"record too short: the line spacing is {1.0 / (array.shape[1] * step):g} Hz, without a line in "
+            f"{edges[0]:g} to {edges[1]:g} Hz; use at least {1.0 / (edges[1] - edges[0]):g} s"
         )
     return _periodogram(step, array, slice(inside[0], inside[-1] + 1))
 
@@ -124,13 +124,13 @@ def band_periodogram(time_step: float, signals: ArrayLike, band: tuple[float, fl
 def band_rms(time_step: float, signals: ArrayLike, band: tuple[float, float]) -> NDArray[np.float64]:
     """Return the RMS of each signal in the closed band, sqrt(sum_band S_k df) of the periodogram, shape (k,).
 
-    Whole record, no window: a component with a whole number of periods in the record counts fully or not at all. One
-    with a broken number leaks; the leak is of the order of one line (1 / duration), so a record should be long against
+    Whole record, no window: a component with an integer number of periods in the record counts fully or not at all. A
+    component with another number of periods leaks by about one line (1 / duration), so a record should be long against
     1 / low edge, and a drift of the mean should be far smaller than the vibration.
 
     Args:
-        time_step: [s].
-        signals: shape (n,) or (k, n).
+        time_step: sampling interval [s].
+        signals: records, shape (n,) or (k, n).
         band: (low, high) [Hz].
     """
     return rms_of(band_periodogram(time_step, signals, band))

@@ -14,25 +14,25 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import checked_signals, checked_time_step
 
 LEAST_SAMPLING_RATE = 25.0
-"""Lowest sampling rate of a weighted record [Hz]: it holds vibration up to 10 Hz, the range in which Wk is highest."""
+"""Minimum sampling rate of a weighted record [Hz], for vibration up to 10 Hz, the range in which Wk is highest."""
 FULL_SAMPLING_RATE = 200.0
-"""From this sampling rate on a record holds vibration up to 80 Hz, the range of ISO 2631-1:1997, 1 [Hz]."""
+"""Minimum sampling rate of a record with vibration up to 80 Hz, the range of ISO 2631-1:1997, 1 [Hz]."""
 LINES_AT_ONCE = 2**18
-"""Lines of a long record that are weighted at once."""
+"""Lines of a long record weighted in a batch."""
 KEPT_LINES = 2**16
-"""Lines up to which the factors are kept for the next record: a megabyte."""
+"""Maximum number of lines with cached factors: a megabyte."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Weighting:
-    """One frequency weighting by the parameters of the standard; an infinite frequency leaves its factor out."""
+    """Frequency weighting with the parameters of the standard; an infinite frequency omits its factor."""
 
     name: str
-    """name of the standard"""
+    """name in the standard"""
     f1: float
-    """band limit below, second-order Butterworth [Hz]"""
+    """lower band limit, second-order Butterworth [Hz]"""
     f2: float
-    """band limit above, second-order Butterworth [Hz]"""
+    """upper band limit, second-order Butterworth [Hz]"""
     f3: float
     """acceleration-velocity transition, numerator [Hz]"""
     f4: float
@@ -52,7 +52,7 @@ class Weighting:
 
     @property
     def lowest_frequency(self) -> float:
-        """Lower end of the range the standard evaluates [Hz]: 0.5 (Wf: 0.1), which is f1 10^(1/10) rounded."""
+        """Lower end of the frequency range of the standard [Hz]: 0.5 (Wf: 0.1), which is f1 10^(1/10) rounded."""
         return 1.25 * self.f1
 
     @property
@@ -62,10 +62,10 @@ class Weighting:
 
     @property
     def shortest_record_s(self) -> float:
-        """Least length that resolves the one-third octave at the lowest frequency [s]: 8.6 s (Wf: 43.2 s).
+        """Minimum length that resolves the one-third octave at the lowest frequency [s]: 8.6 s (Wf: 43.2 s).
 
-        T B >= 1 with B = (2^(1/6) - 2^(-1/6)) f = 0.2316 f: 4.3 periods of f. Below, the band at the lower limit is not
-        told from its neighbours; for a good estimate ISO 2631-1:1997, 5.5, asks B T = 25 (108 s at 1 Hz).
+        T B >= 1 with B = (2^(1/6) - 2^(-1/6)) f = 0.2316 f: 4.3 periods of f. In a shorter record, the lowest band
+        is not resolved; for a good estimate ISO 2631-1:1997, 5.5, requires B T = 25 (108 s at 1 Hz).
         """
         return float(1.0 / ((2.0 ** (1 / 6) - 2.0 ** (-1 / 6)) * self.lowest_frequency))
 
@@ -96,7 +96,7 @@ class Weighting:
         return np.asarray(self.gain * factor, dtype=np.complex128)
 
     def spectrum_factor(self, frequency: ArrayLike) -> NDArray[np.float64]:
-        """Return |H| [-]: multiply a one-third octave RMS value with it, a density with its square."""
+        """Return |H| [-], the factor of a one-third octave RMS value; a density is multiplied by its square."""
         return np.asarray(np.abs(self.transfer_function(frequency)))
 
 
@@ -129,33 +129,33 @@ WEIGHTINGS: MappingProxyType[str, Weighting] = MappingProxyType(
 
 
 def weighting(name: str) -> Weighting:
-    """Return the weighting of that name; raise `ConfigurationError` with the names that exist."""
+    """Return the weighting of a name; raise `ConfigurationError` for an unknown name."""
     if name not in WEIGHTINGS:
-        raise ConfigurationError(f"weighting: found {name!r}, allowed are {', '.join(WEIGHTINGS)}")
+        raise ConfigurationError(f"weighting: found {name!r}, must be one of {', '.join(WEIGHTINGS)}")
     return WEIGHTINGS[name]
 
 
 def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return the records as the analogue weighting would have put them out, at rest before the first sample.
+    """Return records filtered by the analogue weighting, which is at rest before the first sample.
 
-    The record, extended by zeros until the filter has died away, is transformed, multiplied with the exact complex
-    H(f) of the standard and transformed back. A record sampled without aliasing IS its band-limited interpolation, and
-    for that the product is exact in magnitude and phase up to Nyquist, at any sampling rate. Recursive filters
+    The record, extended by zeros until the filter has decayed, is transformed, multiplied by the exact complex H(f) of
+    the standard and transformed back. For a record sampled without aliasing, which equals its band-limited
+    interpolation, the product is exact in magnitude and phase up to Nyquist, at any sampling rate. Recursive filters
     from the bilinear transform, band limits prewarped, are 1.4 % low at 80 Hz for Wk at 1 kHz and 5.9 % at 500 Hz:
-    the transform compresses the frequency axis, and the weighting falls along it.
+    the transform compresses the frequency axis, and the weighting decreases with frequency.
 
-    H is causal, so the output is zero before the input begins, but for content at Nyquist: the band-limited
-    interpolation of a lone sample rings before it, by 0.2 % of the peak of the response for Wk at 1 kHz, 0.5 % at
-    500 Hz (Wj, which falls least: 2.4 and 5.6 %), and 0.005 and 0.03 % a tenth of a second earlier.
-    The zeros keep the end of the record from wrapping round to its beginning.
+    H is causal, so the output is zero before the input begins, except for content at Nyquist: the band-limited
+    interpolation of a single sample rings before it, by 0.2 % of the peak of the response for Wk at 1 kHz, 0.5 % at
+    500 Hz (Wj, with the smallest decrease: 2.4 and 5.6 %), and 0.005 and 0.03 % a tenth of a second earlier.
+    The zeros prevent wrap-around from the end of the record to its beginning.
 
     Args:
-        time_step: [s].
+        time_step: sampling interval [s].
         signals: accelerations [m/s2] (or rad/s2), shape (n,) or (k, n).
-        name: of the weighting.
+        name: name of the weighting.
 
     Returns:
-        Weighted records, shape as given.
+        Weighted records, shape of `signals`.
 
     Raises:
         DataError: sampled below 25 Hz (Wf: 2.5 times 0.63 Hz is enough), not finite.
@@ -169,24 +169,24 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
     needed = min(LEAST_SAMPLING_RATE, 2.5 * curve.f2)
     if 1.0 / step < needed * (1.0 - 1e-9):
         raise DataError(
-            f"sampling rate: found {1.0 / step:g} Hz, weighting {name} needs at least {needed:g} Hz; sample faster"
+            f"sampling rate: found {1.0 / step:g} Hz, must be at least {needed:g} Hz for {name}; sample faster"
         )
     samples = array.shape[1]
     # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
     length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
-    # Those of numpy need no room of their own.
+    # numpy.fft allocates no extra work arrays.
     spectrum, frequency = np.fft.rfft(array, length, axis=1), np.fft.rfftfreq(length, step)
     if frequency.size <= KEPT_LINES:
         spectrum *= _factors(name, length, step)
     else:
         for first in range(0, frequency.size, LINES_AT_ONCE):
-            some = slice(first, first + LINES_AT_ONCE)
-            spectrum[:, some] *= curve.transfer_function(frequency[some])
+            block = slice(first, first + LINES_AT_ONCE)
+            spectrum[:, block] *= curve.transfer_function(frequency[block])
     weighted = np.fft.irfft(spectrum, length, axis=1)[:, :samples]
     return np.asarray(weighted.reshape(np.shape(signals)), dtype=np.float64)
 
 
 @lru_cache(maxsize=8)
 def _factors(name: str, length: int, step: float) -> NDArray[np.complex128]:
-    """Complex factors of a weighting at the lines of a record; the runs of a sweep have one length."""
+    """Return the complex factors of a weighting at the lines of a record, cached for the runs of a sweep."""
     return weighting(name).transfer_function(np.fft.rfftfreq(length, step))

@@ -91,5 +91,10 @@ def road(
 
 
 def velocity_density(rms: float, lower_band_edge: float = ROAD_EDGE_HZ) -> float:
-    """Return the one-sided velocity PSD of a road, G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) [(m/s)^2/Hz]."""
+    """Return the one-sided velocity PSD of a road, G_v = (2 pi RMS)^2 / (1/f1 - 1/f2) [(m/s)^2/Hz].
+
+    Args:
+        rms: RMS displacement between f1 and f2 [m].
+        lower_band_edge: f1 [Hz]; f2 is `UPPER_BAND_EDGE_HZ`.
+    """
     return float((2.0 * np.pi * rms) ** 2 / (1.0 / lower_band_edge - 1.0 / UPPER_BAND_EDGE_HZ))

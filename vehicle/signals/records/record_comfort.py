@@ -113,7 +113,7 @@ def evaluate_comfort(
     choice: Choice | None = None,
     rail: str | None = None,
     rail_choice: Choice | None = None,
-    place: str = "seat",
+    contact: str = "seat",
     offset: str = "refuse",
     average: RunningAverage = "linear",
     skip: float = 0.0,
@@ -126,7 +126,7 @@ def evaluate_comfort(
         choice: channels of a measurement file for x, y and z, units, rate and excerpt.
         rail: point below the seat, such as "seat_rail", for the SEAT value.
         rail_choice: channel of a measurement file for z below the seat, for the SEAT value.
-        place: point of contact, which selects weightings and factors: seat, backrest, feet, standing, ...
+        contact: point of contact, which selects weightings and factors: seat, backrest, feet, standing, ...
         offset: treatment of mean and drift: "refuse" (error if they change the result), "remove", or "keep" for a
             record that begins at rest.
         average: running average of the MTVV, "linear" or "exponential".
@@ -136,18 +136,18 @@ def evaluate_comfort(
         Comfort values; `print` shows a table.
 
     Raises:
-        ConfigurationError: unknown file or place, or a SEAT value of a place other than a seat.
+        ConfigurationError: unknown file or point of contact, or a SEAT value of a point other than a seat.
         DataError: bad data, or a mean or drift that changes the result.
 
     Source: ISO 2631-1:1997; BS 6841:1987; ISO 10326-1 (SEAT).
     """
-    application(place)
+    application(contact)
     if offset not in OFFSETS:
         raise ConfigurationError(f"offset: found {offset!r}, must be one of {', '.join(OFFSETS)}")
     seated = rail is not None or rail_choice is not None
-    if seated and place not in ("seat", "seat_bs6841"):
-        raise ConfigurationError(f"--place {place}: --rail is for the SEAT value of a seat; omit --place or --rail")
-    record = _read(file, point, choice, place, offset)
+    if seated and contact not in ("seat", "seat_bs6841"):
+        raise ConfigurationError(f"--place {contact}: --rail is for the SEAT value of a seat; omit --place or --rail")
+    record = _read(file, point, choice, contact, offset)
     axes, xyz = list(record.channels), np.array(list(record.channels.values()))
     copied = [
         f"{first} and {second} have identical samples, which the vector sum counts twice: was a channel copied, or "
@@ -158,7 +158,7 @@ def evaluate_comfort(
     result = evaluate(
         record.step,
         without_offset(xyz) if removed else xyz,
-        place=place,
+        contact=contact,
         average=average,
         skip=skip,
         from_rest=offset == "keep",
@@ -173,19 +173,19 @@ def evaluate_comfort(
     }
     summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*record.notices, *copied]}
     if seated:
-        below = _read(file, rail, rail_choice, place, offset, checked="z")
+        below = _read(file, rail, rail_choice, contact, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
             raise ConfigurationError("--rail: the SEAT value needs z at the seat and at the rail; z is missing")
         seat_and_rail = np.array([record.channels["z"], below.channels["z"]])
         seat_and_rail = without_offset(seat_and_rail) if removed else seat_and_rail
         summary["seat_value"] = asdict(
-            seat_value(record.step, seat_and_rail[0], seat_and_rail[1], place=place, skip=skip)
+            seat_value(record.step, seat_and_rail[0], seat_and_rail[1], contact=contact, skip=skip)
         )
     return RecordComfort(summary)
 
 
 def _read(
-    file: Path | str, point: str | None, choice: Choice | None, place: str, offset: str, checked: str = "xyz"
+    file: Path | str, point: str | None, choice: Choice | None, contact: str, offset: str, checked: str = "xyz"
 ) -> Record:
     """Read the acceleration of a point; reject mean and drift of the checked axes that change the comfort values."""
     record = read_acceleration(file, point, choice)
@@ -193,7 +193,7 @@ def _read(
         return record
     xyz = np.array(list(record.channels.values()))
     line = offset_line(xyz)
-    effects = offset_effect(record.step, xyz, place=place, axes=list(record.channels))
+    effects = offset_effect(record.step, xyz, contact=contact, axes=list(record.channels))
     for axis, effect, mean, drift in zip(
         record.channels, effects, xyz.mean(axis=1), line[:, -1] - line[:, 0], strict=True
     ):

@@ -90,7 +90,7 @@ def read(path: Path) -> Measurement:
 
 
 def _turned(channel: Channel, nodes: Nodes) -> Channel:
-    """Convert the direction of a channel to global axes; add a remark if it is not along a global axis."""
+    """Convert a direction in local axes of the node to a global axis; if it is oblique, remove it and add a remark."""
     if channel.direction[1:] not in ("X", "Y", "Z") or not channel.place.isdecimal():
         return channel
     axes = nodes.directions(int(channel.place))

@@ -70,7 +70,7 @@ class RoadMeasure:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Return the required channels."""
+        """Return the names of the channels of a run that the measure evaluates."""
         return (*SEAT_RAIL, *self._dampers, f"tyre_{self.wheel}_force_z")
 
     @property

@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from vehicle.model.flexbody.library import PACKAGE_FOLDER
+from vehicle.model.flexbody.body_model import PACKAGE_FOLDER
 from vehicle.model.parameters.driving import tyre_words
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.template import SHIPPED as TEMPLATES

@@ -47,7 +47,7 @@ def measured_responses(
     *,
     stuck: bool = False,
     choice: Choice | None = None,
-    turned: Collection[str] = (),
+    inverted: Collection[str] = (),
     fitted: Sequence[str] = (),
     band: tuple[float, float] = BAND,
     spacing: float = SPACING,
@@ -62,7 +62,7 @@ def measured_responses(
         channels: channel of the model to channel of the file; by default equal names.
         stuck: True if the dampers stick at this level: the FRFs of the linear car follow from its matrices.
         choice: units, rate and excerpt of the file.
-        turned: channels measured with the opposite sign.
+        inverted: channels measured with the opposite sign.
         fitted: channels to be fitted; by default all of `channels`.
         band: lowest and highest frequency [Hz].
         spacing: minimum distance of the frequencies [Hz].
@@ -76,7 +76,7 @@ def measured_responses(
         DataError: bad data, no FRF, or too few frequencies.
     """
     path = Path(file)
-    measured = _read(car, path, channels, choice, turned, window)
+    measured = _read(car, path, channels, choice, inverted, window)
     frf = measured.frf
     if frf is None:
         raise DataError(
@@ -100,7 +100,7 @@ def measured_histories(
     channels: Mapping[str, str] | None = None,
     *,
     choice: Choice | None = None,
-    turned: Collection[str] = (),
+    inverted: Collection[str] = (),
     fitted: Sequence[str] = (),
     delay: float = 0.0,
     drift: float = 0.0,
@@ -114,7 +114,7 @@ def measured_histories(
         car: car at the start of the fit; a run of this car shows wrong clocks, signs and units of the file.
         file: measurement file of any format with time histories.
         signal: plate displacement: a signal, a file, or the name of a shipped file.
-        channels, choice, turned: see `measured_responses`.
+        channels, choice, inverted: see `measured_responses`.
         fitted: channels to be fitted; by default all except plates.
         delay: start of the record after the start of the signal [s].
         drift: relative lag of the clock of the record [-].
@@ -130,7 +130,7 @@ def measured_histories(
         DataError: bad data, no time history, or no overlap with the signal.
     """
     path, source = Path(file), signal
-    measured, signal = _read(car, path, channels, choice, turned, window), _signal(source, car)
+    measured, signal = _read(car, path, channels, choice, inverted, window), _signal(source, car)
     held = None if measured.record is None else measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
@@ -176,14 +176,14 @@ def _read(
     file: Path,
     channels: Mapping[str, str] | None,
     choice: Choice | None,
-    turned: Collection[str],
+    inverted: Collection[str],
     window: float | None,
 ) -> Measured:
     """Return the chosen channels of a file under the names of the model."""
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
     asked = choice or Choice()
     asked = replace(asked, channels={**asked.channels, **(channels or {})})
-    return read_measured(file, model_channels, asked, inverted=turned, window=window)
+    return read_measured(file, model_channels, asked, inverted=inverted, window=window)
 
 
 def _signal(source: Signal | Path | str, car: Car) -> Signal:
@@ -194,5 +194,5 @@ def _signal(source: Signal | Path | str, car: Car) -> Signal:
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:
-    """Return the notices on a file, each with the file name."""
+    """Return the notices of reading a file and further ones, each with the file name in front."""
     return tuple(f"{file.name}: {text}" for text in (*measured.notices, *more))

@@ -1,9 +1,9 @@
-"""Modes that the attachments of a body add to its free-free modes: residual flexibility with its inertia.
+"""Attachment modes, added to the free-free modes of a body: residual flexibility including its inertia (Rubin).
 
-What the modes that are left out give way to a force F at the attachments is psi = P' K^-1 P F, statically. Taken as
-shapes of their own, on top of the modes that are kept and orthogonal to them by P, they carry the mass that moves with
-them: (psi'K psi - w^2 psi'M psi) q = 0 makes modes of them, mass-normalised, of positive frequency. A force at an
-attachment meets the static flexibility exactly and its change with frequency to the order of w^2.
+The static deflection of the truncated modes under a force F at the attachments is psi = P' K^-1 P F. As additional
+shapes, orthogonal to the free-free modes by the projection P, these deflections include the inertia of the moving mass:
+(psi'K psi - w^2 psi'M psi) q = 0 yields mass-normalised modes of positive frequency. The flexibility at an attachment
+is then statically exact, and its change with frequency correct to the order of w^2.
 
 Source: S. Rubin, Improved component-mode representation for structural dynamic analysis, AIAA Journal 13 (1975),
 995-1006; R. R. Craig and C.-J. Chang, On the use of attachment modes in substructure coupling, AIAA 77-405 (1977).
@@ -19,21 +19,21 @@ import numpy as np
 import scipy
 
 from vehicle.model.flexbody.beam import FloatArray
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
-from vehicle.model.flexbody.sources.reduction import FreeModes, residual_vectors
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
+from vehicle.model.flexbody.sources.free_body_modes import FreeModes, residual_vectors
 
 DEPENDENT = 1e-10
-"""Flexibility over the largest, below which a combination of attachments is another one's: two at one node."""
+"""Flexibility over the largest [1] below which attachments are linearly dependent, as two attachments at a node."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ReducedModes:
-    """Modes of a reduced body that are kept, and what the others give way to.
+    """Modes of a reduced body up to a frequency, and the static flexibility of the modes above.
 
     Attributes:
-        frequencies: [Hz], ascending, shape (modes,).
-        vectors: with modal mass 1 [kg^-1/2], shape (dofs, modes).
-        residual: static flexibility of the modes above, at each place [m/N], (3, 3).
+        frequencies: natural frequencies [Hz], ascending, shape (modes,).
+        vectors: shapes with modal mass 1 [kg^-1/2], shape (dofs, modes).
+        residual: static flexibility of the modes above at each attachment [m/N], shape (3, 3).
     """
 
     frequencies: FloatArray
@@ -41,38 +41,39 @@ class ReducedModes:
     residual: list[FloatArray]
 
 
-def attachment_modes(body: BodyMatrices, modes: FreeModes, places: Sequence[Any], up_to: float) -> ReducedModes:
-    """The modes of the residual flexibility.
+def attachment_modes(body: BodyMatrices, modes: FreeModes, attachments: Sequence[Any], up_to: float) -> ReducedModes:
+    """Compute the attachment modes of a body from its residual flexibility.
 
     Args:
         body: K and M.
-        modes: of it, which are kept.
-        places: how the degrees of freedom move each place, u = N' x; sparse, shape (dofs, 3).
-        up_to: those above stay residual flexibility [Hz].
+        modes: free-free modes of the body, which the attachment modes complement.
+        attachments: N of each attachment, with displacement u = N' x for degrees of freedom x; sparse, shape (dofs, 3).
+        up_to: highest attachment mode [Hz]; the modes above stay residual flexibility.
     """
-    load = np.hstack([place.toarray() for place in places])
+    load = np.hstack([attachment.toarray() for attachment in attachments])
     psi = residual_vectors(body, modes, load)
-    flexibility, turn = scipy.linalg.eigh(psi.T @ (body.stiffness @ psi))
-    real = flexibility > DEPENDENT * flexibility[-1]
-    psi = psi @ (turn[:, real] / np.sqrt(flexibility[real]))  # psi' K psi = 1
+    flexibility, combinations = scipy.linalg.eigh(psi.T @ (body.stiffness @ psi))
+    independent = flexibility > DEPENDENT * flexibility[-1]
+    psi = psi @ (combinations[:, independent] / np.sqrt(flexibility[independent]))  # psi' K psi = 1
     inverse, mix = scipy.linalg.eigh(psi.T @ (body.mass @ psi))
-    return kept_modes(inverse, mix, psi, places, up_to)
+    return kept_modes(inverse, mix, psi, attachments, up_to)
 
 
 def kept_modes(
-    inverse: FloatArray, mix: FloatArray, basis: FloatArray, places: Sequence[Any], up_to: float
+    inverse: FloatArray, mix: FloatArray, basis: FloatArray, attachments: Sequence[Any], up_to: float
 ) -> ReducedModes:
-    """Modes of a basis that is orthonormal in K, up to a frequency, the others as residual flexibility.
+    """Split the modes of a stiffness-orthonormal basis into modes up to a frequency and residual flexibility.
 
     Args:
-        inverse: 1 / w^2, ascending; zero of a shape without mass [s2].
+        inverse: 1 / w^2, ascending; zero for a shape without mass [s2].
         mix: eigenvectors of basis' M basis, orthonormal.
         basis: shapes with basis' K basis = 1.
-        places: as of `attachment_modes`.
-        up_to: highest mode kept [Hz].
+        attachments: see `attachment_modes`.
+        up_to: frequency limit [Hz].
     """
     shapes = (basis @ mix)[:, ::-1]
     kept = inverse[::-1] >= 1.0 / (2.0 * np.pi * up_to) ** 2
     root = np.sqrt(inverse[::-1][kept])
-    residual = [np.asarray(at @ at.T) for at in (place.T @ shapes[:, ~kept] for place in places)]
+    higher = (attachment.T @ shapes[:, ~kept] for attachment in attachments)
+    residual = [np.asarray(local @ local.T) for local in higher]
     return ReducedModes(frequencies=1.0 / (2.0 * np.pi * root), vectors=shapes[:, kept] / root, residual=residual)

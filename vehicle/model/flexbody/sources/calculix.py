@@ -1,4 +1,4 @@
-"""K and M of CalculiX: what `*FREQUENCY, SOLVER=MATRIXSTORAGE` writes beside its input deck."""
+"""K and M of CalculiX, written next to the input deck by `*FREQUENCY, SOLVER=MATRIXSTORAGE`."""
 
 from __future__ import annotations
 
@@ -8,39 +8,37 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, IntArray
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
-from vehicle.model.flexbody.sources.matrices import BodyMatrices, IntArray
 from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole_numbers
 
 INSIDE = 3
-"""Nodes that CalculiX adds to a brick C3D8I: their displacements are the amplitudes of its nine incompatible modes,
-with mass, along the global axes (CalculiX CrunchiX user's manual, section "Eight-node brick element with
+"""Number of nodes that CalculiX adds to a brick C3D8I: their displacements are the amplitudes of its nine incompatible
+modes, with mass, along the global axes (CalculiX CrunchiX user's manual, section "Eight-node brick element with
 incompatible modes")."""
 
 
 def read_calculix(path: Path) -> BodyMatrices:
-    """The matrices of a job, in the units of its deck.
+    """Read the matrices of a job, in the units of its deck.
 
     Args:
-        path: `JOB.sti`; `JOB.mas` and `JOB.dof` (a line "node.direction" for each row), and `JOB.inp` with the nodes
-            lie beside it.
+        path: `JOB.sti`, in a folder with `JOB.mas`, `JOB.dof` (a line "node.direction" for each row) and `JOB.inp`
+            (nodes).
 
     Raises:
-        DataError: a file is missing or damaged, or the three do not belong together.
+        DataError: a file is missing or damaged, or the files are inconsistent.
     """
     files = {suffix: path.with_suffix(f".{suffix}") for suffix in ("sti", "mas", "dof", "inp")}
     for suffix, file in files.items():
         if not file.is_file():
             raise DataError(
                 f"{file}: no such file. CalculiX writes .sti, .mas and .dof with *FREQUENCY,SOLVER=MATRIXSTORAGE; the "
-                f"input deck .inp has the places of the nodes ({suffix} is missing)."
+                f"input deck .inp contains the node positions ({suffix} is missing)."
             )
     numbers = rows_of_numbers(files["dof"], 1, separator=".", columns=2)
     identity, direction = (whole_numbers(files["dof"], numbers[:, i]) - i for i in (0, 1))
     if direction.min() < 0 or direction.max() > 5:
-        raise DataError(
-            f"{files['dof']}: directions {direction.min() + 1} to {direction.max() + 1}; allowed are 1 to 6."
-        )
+        raise DataError(f"{files['dof']}: directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
     deck = read_deck(files["inp"])
     size = len(identity)
     stiffness, mass = (coordinate_matrix(files[suffix], size) for suffix in ("sti", "mas"))
@@ -50,33 +48,33 @@ def read_calculix(path: Path) -> BodyMatrices:
 def assembled(
     path: Path, stiffness: Any, mass: Any, identity: IntArray, direction: IntArray, deck: Deck, program: str
 ) -> BodyMatrices:
-    """Matrices, degrees of freedom and nodes put together.
+    """Combine matrices, degrees of freedom and nodes to `BodyMatrices`.
 
     Args:
-        path: named in the source.
-        stiffness, mass: sparse, shape (dofs, dofs).
-        identity: number of the node of each degree of freedom; shape (dofs,).
-        direction: of each, 0 to 5; shape (dofs,).
-        deck: places of the nodes, and elements.
-        program: that wrote them.
+        path: file named in messages and as the source.
+        stiffness, mass: sparse matrices, shape (dofs, dofs).
+        identity: node number of each degree of freedom, shape (dofs,).
+        direction: direction of each degree of freedom, 0 to 5, shape (dofs,).
+        deck: node positions and elements.
+        program: program that wrote the matrices.
 
     Raises:
-        DataError: a node without a place; or as of `BodyMatrices`.
+        DataError: a node has no position, or the matrices are invalid; see `BodyMatrices`.
     """
     numbers = np.unique(identity)
-    missing = [int(number) for number in numbers if int(number) not in deck.places]
-    places = dict(deck.places)
+    missing = [int(number) for number in numbers if int(number) not in deck.positions]
+    positions = dict(deck.positions)
     if missing and program == "CalculiX" and len(missing) == INSIDE * deck.incompatible:
-        # Amplitudes of incompatible modes have no place; that of the mean node keeps the extent of the body.
-        middle = np.mean([places[int(number)] for number in numbers if int(number) in places], axis=0)
-        places |= dict.fromkeys(missing, (float(middle[0]), float(middle[1]), float(middle[2])))
+        # Amplitudes of incompatible modes have no position; the mean node position keeps the extent of the body.
+        middle = np.mean([positions[int(number)] for number in numbers if int(number) in positions], axis=0)
+        positions |= dict.fromkeys(missing, (float(middle[0]), float(middle[1]), float(middle[2])))
         direction = np.where(np.isin(identity, missing), direction + 6, direction)
         missing = []
     if missing:
         raise DataError(
-            f"{path}: node {missing[0]} of the matrices has no place in the list of nodes ({len(missing)} so). Give "
-            "the list of all nodes; CalculiX expands shells and beams to solids with nodes and constraints of its own, "
-            "so that only matrices of solid elements are those of a free body."
+            f"{path}: node {missing[0]} of the matrices has no position in the list of nodes ({len(missing)} such "
+            "nodes). Specify the list of all nodes; CalculiX expands shells and beams to solids with additional nodes "
+            "and constraints, so only matrices of solid elements describe a free body."
         )
     index = {int(number): i for i, number in enumerate(numbers)}
     edges = sorted({(index[a], index[b]) for a, b in deck.edges if a in index and b in index})
@@ -85,7 +83,7 @@ def assembled(
             stiffness=stiffness,
             mass=mass,
             nodes=tuple(str(number) for number in numbers),
-            positions=np.array([places[int(number)] for number in numbers]),
+            positions=np.array([positions[int(number)] for number in numbers]),
             node=np.array([index[int(number)] for number in identity]),
             direction=direction,
             edges=np.array(edges, dtype=int).reshape(-1, 2),

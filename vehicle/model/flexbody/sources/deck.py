@@ -1,4 +1,4 @@
-"""Nodes and elements of an input deck of Abaqus or CalculiX, or a table of nodes: where the body is."""
+"""Nodes and elements of an input deck of Abaqus or CalculiX, or of a table of nodes."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ class Deck:
     """Nodes and elements of a deck.
 
     Attributes:
-        places: of nodes by their number, in the unit of the deck.
-        edges: of elements, as pairs of numbers.
-        incompatible: number of elements C3D8I, for each of which CalculiX adds three nodes.
+        positions: node number -> position, in the unit of the deck.
+        edges: element edges as pairs of node numbers.
+        incompatible: number of C3D8I elements, for each of which CalculiX adds three nodes.
     """
 
-    places: dict[int, Point]
+    positions: dict[int, Point]
     edges: frozenset[tuple[int, int]]
     incompatible: int = 0
 
@@ -36,45 +36,50 @@ def read_deck(path: Path) -> Deck:
     """Read `*NODE` and `*ELEMENT` of a deck, or a CSV of nodes "node,x,y,z".
 
     Raises:
-        DataError: unreadable, or a line of nodes or elements that is none.
+        DataError: the file is unreadable, or a line of nodes or elements is invalid.
     """
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error}).") from error
-    places: dict[int, Point] = {}
+    positions: dict[int, Point] = {}
     edges: set[tuple[int, int]] = set()
-    block, corners, kind, incompatible = "*node" if path.suffix == ".csv" else "", 0, "", 0
+    block, corners, element_type, incompatible = "*node" if path.suffix == ".csv" else "", 0, "", 0
     pending: list[int] = []
     for number, line in enumerate(lines, 1):
         text = line.strip()
         if not text or text.startswith(("**", "#")) or (path.suffix == ".csv" and number == 1 and text[:1].isalpha()):
             continue
         if text.startswith("*"):
-            words = [word.strip().lower() for word in text.split(",")]
-            block, pending = words[0], []
-            kind = next((word.split("=")[1].strip().upper() for word in words if word.startswith("type")), "")
-            corners = _CORNERS.get(kind, 0)
+            keywords = [keyword.strip().lower() for keyword in text.split(",")]
+            block, pending = keywords[0], []
+            element_type = next(
+                (keyword.split("=")[1].strip().upper() for keyword in keywords if keyword.startswith("type")), ""
+            )
+            corners = _CORNERS.get(element_type, 0)
             continue
         fields = [field for field in text.split(",") if field.strip()]
         try:
             if block == "*node":
-                # A deck may leave out coordinates of zero at the end of a line, a table may not.
-                rest = ["0"] * 3 if path.suffix != ".csv" and len(fields) > 1 else []
-                x, y, z = (float(field) for field in [*fields[1:4], *rest][:3])
+                # A deck may omit coordinates of zero at the end of a line, a table may not.
+                zeros = ["0"] * 3 if path.suffix != ".csv" and len(fields) > 1 else []
+                x, y, z = (float(field) for field in [*fields[1:4], *zeros][:3])
                 if not np.isfinite([x, y, z]).all():
                     raise ValueError("a coordinate is not finite")
-                if places.setdefault(int(fields[0]), (x, y, z)) != (x, y, z):
-                    raise ValueError(f"node {fields[0].strip()} was at {list(places[int(fields[0])])} before")
+                if positions.setdefault(int(fields[0]), (x, y, z)) != (x, y, z):
+                    raise ValueError(f"node {fields[0].strip()} is also at {list(positions[int(fields[0])])}")
             elif block == "*element" and corners:
                 pending += [int(field) for field in fields]
                 if not text.endswith(","):
-                    own = pending[1 : 1 + corners]
-                    edges |= {(min(own[a], own[b]), max(own[a], own[b])) for a, b in LINES[corners]}
+                    corner_nodes = pending[1 : 1 + corners]
+                    edges |= {
+                        (min(corner_nodes[a], corner_nodes[b]), max(corner_nodes[a], corner_nodes[b]))
+                        for a, b in LINES[corners]
+                    }
                     pending = []
-                    incompatible += kind == "C3D8I"
+                    incompatible += element_type == "C3D8I"
         except (ValueError, IndexError) as error:
-            raise DataError(f"{path}, line {number}: {text[:60]!r} is no line of {block} ({error}).") from error
-    if not places:
-        raise DataError(f"{path}: no nodes found. Give the input deck with *NODE, or a CSV node,x,y,z.")
-    return Deck(places=places, edges=frozenset(edges), incompatible=incompatible)
+            raise DataError(f"{path}, line {number}: {text[:60]!r} is not a line of {block} ({error}).") from error
+    if not positions:
+        raise DataError(f"{path}: no nodes. Specify the input deck with *NODE, or a CSV node,x,y,z.")
+    return Deck(positions=positions, edges=frozenset(edges), incompatible=incompatible)

@@ -1,4 +1,4 @@
-"""Modes of a result file of CalculiX (.frd, text): nodes, elements and displacements of `*FREQUENCY`."""
+"""Modes from a result file of CalculiX (.frd, text): nodes, elements and displacements of `*FREQUENCY`."""
 
 from __future__ import annotations
 
@@ -7,32 +7,32 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
+from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.deck import LINES
-from vehicle.model.flexbody.sources.matrices import BodyNodes
 from vehicle.model.flexbody.sources.mode_shapes import GivenModes
 
 _CORNERS = {1: 8, 4: 8, 2: 6, 5: 6, 3: 4, 6: 4}
-"""Corners of the element types of the format."""
+"""Element type number of the format -> number of corners."""
 
 
 def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
-    """Modes at all nodes of a job.
+    """Read the modes at all nodes of a job.
 
     Args:
-        path: the file.
+        path: result file.
         length: unit of length of the job [m].
         mass: unit of mass of the job [kg].
 
     Raises:
-        DataError: no frequency step, cut off, or binary.
+        DataError: the file has no frequency step, is truncated, or is binary.
 
-    Source: G. Dhondt, CalculiX CrunchiX user's manual, "Format of the frd file"; columns of twelve, not blanks.
+    Source: G. Dhondt, CalculiX CrunchiX user's manual, "Format of the frd file"; fields of twelve columns.
     """
     try:
         lines = path.read_text(encoding="ascii").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{path}: cannot be read as text ({error}); write *NODE FILE, not *NODE OUTPUT.") from error
-    places: dict[int, list[float]] = {}
+    positions: dict[int, list[float]] = {}
     edges: set[tuple[int, int]] = set()
     shapes: list[dict[int, list[float]]] = []
     frequencies: list[float] = []
@@ -58,7 +58,7 @@ def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
             elif line.startswith(" -3"):
                 block = ""
             elif line.startswith(" -1") and block == "nodes":
-                places[int(line[3:13])] = [float(line[i : i + 12]) for i in (13, 25, 37)]
+                positions[int(line[3:13])] = [float(line[i : i + 12]) for i in (13, 25, 37)]
             elif line.startswith(" -1") and block == "elements":
                 corners, element = _CORNERS.get(int(line[13:18]), 0), []
             elif line.startswith(" -2") and block == "elements":
@@ -69,21 +69,21 @@ def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
             elif line.startswith(" -1") and block == "shape":
                 shapes[-1][int(line[3:13])] = [float(line[i : i + 12]) for i in (13, 25, 37)]
     except (ValueError, IndexError) as error:
-        raise DataError(f"{path}: {line[:60]!r} is no line of a result file ({error}).") from error
+        raise DataError(f"{path}: {line[:60]!r} is not a line of a result file ({error}).") from error
     if not shapes:
         raise DataError(f"{path}: no modes; write *NODE FILE with U in a *FREQUENCY step.")
     if not lines or lines[-1].strip() != "9999" or any(len(shape) != len(shapes[0]) for shape in shapes):
-        raise DataError(f"{path}: cut off; the job did not end, or the file was not copied whole.")
+        raise DataError(f"{path}: truncated; the job did not end, or the file was copied only in part.")
     numbers = sorted(shapes[0])
-    lost = [number for number in numbers if number not in places]
-    if lost:
-        raise DataError(f"{path}: node {lost[0]} of the modes has no place.")
+    unplaced = [number for number in numbers if number not in positions]
+    if unplaced:
+        raise DataError(f"{path}: node {unplaced[0]} of the modes has no position.")
     index = {number: i for i, number in enumerate(numbers)}
     count = len(numbers)
     return GivenModes(
         body=BodyNodes(
             nodes=tuple(map(str, numbers)),
-            positions=length * np.array([places[number] for number in numbers]),
+            positions=length * np.array([positions[number] for number in numbers]),
             node=np.repeat(np.arange(count), 3),
             direction=np.tile(np.arange(3), count),
             edges=np.array([(index[a], index[b]) for a, b in sorted(edges) if a in index and b in index], dtype=int),

@@ -1,4 +1,4 @@
-"""Where the car is fixed to a finite-element body: a node of it, or the nodes around the place."""
+"""Interfaces of a car with a finite-element body: a node at an attachment point, or the nodes around the point."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ import scipy
 from vehicle.errors import DataError
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import rigid_fit
-from vehicle.model.flexbody.sources.matrices import BodyNodes
+from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.parameters.hardpoints import Point
 
 _FLAT = 1e-3
-"""Width of the nodes around a place over their length, below which they lie on one line and hold no rotation."""
+"""Width over length of a group of nodes [1] below which the nodes are collinear and define no rotation."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Interface:
-    """A place of the car on the body.
+    """Attachment or output point of the car on the body.
 
     Attributes:
-        name: of the point.
-        place: of the point [m], shape (3,).
-        moved: N of its displacement u = N' x by the degrees of freedom x; sparse, shape (dofs, 3).
-        turned: the same of its rotation; None where the model does not know it.
-        distance: of the nearest node that was used [m].
-        nodes: how many nodes move it.
+        name: name of the point.
+        position: position of the point [m], shape (3,).
+        moved: N of the displacement u = N' x for degrees of freedom x; sparse, shape (dofs, 3).
+        turned: N of the rotation, sparse, shape (dofs, 3); None if the model has no rotation there.
+        distance: distance of the nearest node used [m].
+        nodes: number of nodes that carry the point.
     """
 
     name: str
-    place: FloatArray
+    position: FloatArray
     moved: Any
     turned: Any
     distance: float
@@ -43,94 +43,99 @@ class Interface:
 
 def interfaces(
     body: BodyNodes,
-    places: Mapping[str, Point],
+    points: Mapping[str, Point],
     *,
     tolerance: float,
     spread: float = 0.0,
     named: Mapping[str, str] | None = None,
 ) -> list[Interface]:
-    """The interfaces of a body at the points of a car.
+    """Return the interfaces of a body at the points of a car.
 
     Args:
-        body: the body, in the vehicle frame.
-        places: points of the car where something acts on the body or is measured, by name [m].
-        tolerance: largest distance of the nearest node from its point [m].
-        spread: radius of the nodes that carry a point together, as the interpolation element RBE3: they move it with
-            the rigid motion that fits them best [m]; 0: the nearest node alone.
-        named: node for a point, chosen by the user, at any distance.
+        body: nodes and degrees of freedom in the vehicle frame.
+        points: attachment and output points of the car [m], by name.
+        tolerance: maximum distance of the nearest node from its point [m].
+        spread: radius around a point [m]; the nodes within carry the point by the rigid motion with the best fit, as
+            the interpolation element RBE3. With 0, the nearest node carries the point.
+        named: point name -> name of the node chosen by the user, at any distance.
 
     Raises:
-        DataError: points without a node within the distance, whose chosen node does not exist, or whose nodes within
-            the radius cannot carry them: all of them in one message.
+        DataError: a point has no node within the distance, its chosen node does not exist, or its nodes within the
+            radius cannot carry it; one message lists all faults.
     """
     chosen = dict(named or {})
     for point in chosen:
-        if point not in places:
-            raise DataError(f"map: no point {point!r} of the car; its points are {', '.join(places)}.")
-    found, far, lost, weak = [], [], [], []
-    moving = np.unique(body.node[body.direction < 3])  # of a point mass or a reference node there may be rotations only
-    for name, place in places.items():
-        gap = np.linalg.norm(body.positions[moving] - np.array(place), axis=1)
+        if point not in points:
+            raise DataError(f"map: the car has no point {point!r}; its points are {', '.join(points)}.")
+    results, far, missing_nodes, weak = [], [], [], []
+    moving = np.unique(body.node[body.direction < 3])  # a point mass or reference node may have rotations only
+    for name, position in points.items():
+        gap = np.linalg.norm(body.positions[moving] - np.array(position), axis=1)
         if name in chosen:
             if chosen[name] not in body.nodes:
-                lost.append(f"no node {chosen[name]!r} for {name}")
+                missing_nodes.append(f"no node {chosen[name]!r} for {name}")
                 continue
-            found.append(_of_node(body, name, place, body.nodes.index(chosen[name])))
+            results.append(_of_node(body, name, position, body.nodes.index(chosen[name])))
             continue
         near = moving[gap <= spread]
         if spread > 0.0 and near.size:
-            carried = _of_nodes(body, name, place, near)
+            carried = _of_nodes(body, name, position, near)
             if isinstance(carried, str):
                 weak.append(f"{name}: {carried}")
             else:
-                found.append(carried)
+                results.append(carried)
             continue
         best = int(moving[gap.argmin()])
         if gap.min() > max(tolerance, spread):
             far.append(f"{name}: node {body.nodes[best]}, {1e3 * gap.min():.1f} mm")
-        found.append(_of_node(body, name, place, best))
+        results.append(_of_node(body, name, position, best))
     faults = []
-    if lost:
-        faults.append(f"map: {'; '.join(lost)}; the body has {len(body.nodes)} nodes")
+    if missing_nodes:
+        faults.append(f"map: {'; '.join(missing_nodes)}; the body has {len(body.nodes)} nodes")
     if far:
         faults.append(
-            f"{len(far)} points of the car have no node within {1e3 * max(tolerance, spread):g} mm; the nearest are "
+            f"{len(far)} points of the car have no node within {1e3 * max(tolerance, spread):g} mm; nearest nodes: "
             f"{'; '.join(far)}"
         )
     if weak:
-        faults.append(f"{len(weak)} points are not held by the nodes within {1e3 * spread:g} mm: {'; '.join(weak)}")
+        faults.append(
+            f"{len(weak)} points cannot be carried by the nodes within {1e3 * spread:g} mm: {'; '.join(weak)}"
+        )
     if faults:
         raise DataError(
             f"{'. '.join(faults)}. Choose nodes with --point-nodes, a larger radius with --spread, or a "
             "--point-distance up to 50 mm; check the frame with --axes and --origin, and the unit of length."
         )
-    return found
+    return results
 
 
 def read_map(path: Path) -> dict[str, str]:
-    """Nodes that a user chose for points of the car: a table "point,node".
+    """Read the nodes chosen by a user for points of the car, a table "point,node".
+
+    Returns:
+        Point name -> node name.
 
     Raises:
-        DataError: unreadable, a line that is none, or a point given twice.
+        DataError: the file is unreadable, a line is invalid, or a point occurs twice.
     """
     try:
         lines = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"{path}: cannot be read ({error}).") from error
-    bad = [",".join(words) for words in lines if len(words) != 2]
+    bad = [",".join(fields) for fields in lines if len(fields) != 2]
     if bad:
-        raise DataError(f"{path}: {bad[0]!r} is no line point,node.")
-    found = [(point.strip(), node.strip()) for point, node in lines if point.strip() != "point"]
-    twice = [point for i, (point, _) in enumerate(found) if point in dict(found[:i])]
-    if twice:
-        raise DataError(f"{path}: point {twice[0]!r} is given twice; give one node for it.")
-    return dict(found)
+        raise DataError(f"{path}: {bad[0]!r} is not a line point,node.")
+    pairs = [(point.strip(), node.strip()) for point, node in lines if point.strip() != "point"]
+    duplicates = [point for i, (point, _) in enumerate(pairs) if point in dict(pairs[:i])]
+    if duplicates:
+        raise DataError(f"{path}: point {duplicates[0]!r} occurs twice; specify one node for it.")
+    return dict(pairs)
 
 
-def _of_node(body: BodyNodes, name: str, place: Point, node: int) -> Interface:
-    """A place that moves with one node."""
-    own = body.node == node
-    at = [np.flatnonzero(own & (body.direction == axis)) for axis in range(6)]
+def _of_node(body: BodyNodes, name: str, position: Point, node: int) -> Interface:
+    """Return the interface of a point that moves with a node."""
+    of_node = body.node == node
+    at = [np.flatnonzero(of_node & (body.direction == axis)) for axis in range(6)]
     size = len(body.node)
 
     def columns(axes: range) -> Any:
@@ -140,21 +145,21 @@ def _of_node(body: BodyNodes, name: str, place: Point, node: int) -> Interface:
 
     return Interface(
         name=name,
-        place=np.array(place),
+        position=np.array(position),
         moved=columns(range(3)),
         turned=columns(range(3, 6)) if all(at[axis].size for axis in range(3, 6)) else None,
-        distance=float(np.linalg.norm(body.positions[node] - np.array(place))),
+        distance=float(np.linalg.norm(body.positions[node] - np.array(position))),
         nodes=1,
     )
 
 
-def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface | str:
-    """A place that moves as the nodes around it; what keeps them from carrying it."""
+def _of_nodes(body: BodyNodes, name: str, position: Point, nodes: Any) -> Interface | str:
+    """Return the interface of a point carried by the surrounding nodes, or the reason why they cannot carry it."""
     positions = body.positions[nodes]
     widths = np.linalg.svd(positions - positions.mean(axis=0), compute_uv=False) if len(nodes) > 2 else np.zeros(3)
     if widths[1] <= _FLAT * widths[0] or widths[0] == 0.0:
-        return f"{len(nodes)} node{'s on one line' if len(nodes) > 1 else ''}, which hold no rotation"
-    fit = rigid_fit(positions, np.ones(len(nodes)), np.array(place))  # (6, k, 3)
+        return f"{len(nodes)} node{'s on one line' if len(nodes) > 1 else ''}, too few to define a rotation"
+    fit = rigid_fit(positions, np.ones(len(nodes)), np.array(position))  # (6, k, 3)
     row = {
         (int(node), int(direction)): i
         for i, (node, direction) in enumerate(zip(body.node, body.direction, strict=True))
@@ -162,7 +167,7 @@ def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface
     }
     dofs = np.array([[row.get((int(node), axis), -1) for axis in range(3)] for node in nodes])
     if np.any(dofs < 0):
-        return "one of the nodes lacks a displacement"
+        return "a node lacks a displacement"
 
     def columns(part: FloatArray) -> Any:
         values = part.reshape(3, -1)
@@ -170,10 +175,10 @@ def _of_nodes(body: BodyNodes, name: str, place: Point, nodes: Any) -> Interface
         axes = np.repeat(np.arange(3), values.shape[1])
         return scipy.sparse.csc_matrix((values.ravel(), (rows.ravel(), axes)), shape=(len(body.node), 3))
 
-    gap = np.linalg.norm(positions - np.array(place), axis=1)
+    gap = np.linalg.norm(positions - np.array(position), axis=1)
     return Interface(
         name=name,
-        place=np.array(place),
+        position=np.array(position),
         moved=columns(fit[:3]),
         turned=columns(fit[3:]),
         distance=float(gap.min()),

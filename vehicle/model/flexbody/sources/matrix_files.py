@@ -1,4 +1,4 @@
-"""K and M as files of their own: Matrix Market, MATLAB, Abaqus, with tables of degrees of freedom and of nodes."""
+"""K and M in separate files: Matrix Market, MATLAB, Abaqus and others, with tables of degrees of freedom and nodes."""
 
 from __future__ import annotations
 
@@ -10,52 +10,50 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices
 from vehicle.model.flexbody.sources.calculix import assembled
 from vehicle.model.flexbody.sources.deck import Deck, read_deck
 from vehicle.model.flexbody.sources.dof_list import read_dofs
 from vehicle.model.flexbody.sources.harwell_boeing import is_harwell_boeing, read_harwell_boeing
-from vehicle.model.flexbody.sources.matrices import BodyMatrices
 from vehicle.model.flexbody.sources.nastran import dmig_pair, is_bulk_data, read_bulk_data
 from vehicle.model.flexbody.sources.text_matrices import coordinate_matrix, rows_of_numbers, whole, whole_numbers
 
 _FIVE = re.compile(r"\s*(\d+[\s,]+){4}[-+.\d]")
-"""Node, direction, node, direction, value."""
+"""Row "node, direction, node, direction, value"."""
 
 
 def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: Path | None) -> BodyMatrices:
-    """Matrices of a body, in the units of the source.
+    """Read stiffness and mass matrix of a body, in the units of the source.
 
     Args:
-        stiffness, mass: Matrix Market, as `*EXPORT,...,MMF` of ANSYS; Harwell-Boeing, as its `HBMAT`; `.mat` of MATLAB,
-            "FILE.mat:NAME" where it holds several matrices; `.mtx` or text of Abaqus'
-            `*MATRIX OUTPUT`, rows "node, direction, node, direction, value", which need no list of degrees of freedom;
-            text "row column value"; DMIG of Nastran, both in one file.
-        dofs: of each row of the matrices, as of `read_dofs`.
-        nodes: table "node,x,y,z", or an input deck; GRID of the file of the matrices where none is given.
+        stiffness, mass: Matrix Market, as `*EXPORT,...,MMF` of ANSYS; Harwell-Boeing, as `HBMAT` of ANSYS; `.mat` of
+            MATLAB, "FILE.mat:NAME" to select one of several matrices; `.mtx` or text of `*MATRIX OUTPUT` of Abaqus,
+            rows "node, direction, node, direction, value", which need no list of degrees of freedom; text "row column
+            value"; DMIG of Nastran, both matrices in one file.
+        dofs: list of degrees of freedom of the rows; see `read_dofs`.
+        nodes: table "node,x,y,z" or input deck; by default, GRID in the file of the matrices.
 
     Raises:
-        ConfigurationError: no mass, nodes or list of degrees of freedom where they are needed.
-        DataError: a file is missing or damaged, or they do not belong together.
+        ConfigurationError: the mass matrix, nodes or list of degrees of freedom are required but missing.
+        DataError: a file is missing or damaged, or the files are inconsistent.
     """
     if is_bulk_data(stiffness):
         return _of_bulk_data(stiffness, mass, nodes)
     if mass is None or nodes is None:
         raise ConfigurationError(
-            f"{stiffness.name}: a stiffness matrix needs --mass and, for where its nodes are, --nodes beside it"
+            f"{stiffness.name}: a stiffness matrix also needs --mass and, for the node positions, --nodes"
         )
     deck = _nodes(nodes)
     by_node = _is_by_node(stiffness)
     if by_node:
         table, other = rows_of_numbers(stiffness, 1, columns=5), rows_of_numbers(mass, 1, columns=5)
-        named = [whole_numbers(file, one[:, :4]) for file, one in ((stiffness, table), (mass, other))]
+        named = [whole_numbers(file, rows[:, :4]) for file, rows in ((stiffness, table), (mass, other))]
         pairs = np.unique(np.vstack(named).reshape(-1, 2), axis=0)
         index = {(int(node), int(direction)): i for i, (node, direction) in enumerate(pairs)}
-        matrices = [_of_pairs(one, index) for one in (table, other)]
+        matrices = [_of_pairs(rows, index) for rows in (table, other)]
         identity, direction = pairs[:, 0], pairs[:, 1] - 1
         if direction.min() < 0 or direction.max() > 5:
-            raise DataError(
-                f"{stiffness}: directions {direction.min() + 1} to {direction.max() + 1}; allowed are 1 to 6."
-            )
+            raise DataError(f"{stiffness}: directions {direction.min() + 1} to {direction.max() + 1}, must be 1 to 6.")
     else:
         if dofs is None:
             raise ConfigurationError(
@@ -68,24 +66,24 @@ def read_matrices(stiffness: Path, mass: Path | None, dofs: Path | None, nodes: 
 
 
 def _of_bulk_data(stiffness: Path, mass: Path | None, nodes: Path | None) -> BodyMatrices:
-    """K and M of a punch file of Nastran, "FILE:NAME" where it holds several."""
+    """Read K and M from a punch file of Nastran; "FILE:NAME" selects one of several matrices."""
     file, _, name = stiffness.name.partition(":")
     path, other = stiffness.with_name(file), "" if mass is None else mass.name.partition(":")[2]
     data = read_bulk_data(path)
     first, second, identity, direction = dmig_pair(path, data, (name, other))
-    deck = _nodes(nodes) if nodes else Deck(places=data.places, edges=frozenset())
+    deck = _nodes(nodes) if nodes else Deck(positions=data.positions, edges=frozenset())
     return assembled(path, first, second, identity, direction, deck, "Nastran")
 
 
 def _nodes(path: Path) -> Deck:
-    """Where nodes are: a table, a deck of Abaqus or CalculiX, or bulk data of Nastran."""
+    """Read node positions from a table, a deck of Abaqus or CalculiX, or bulk data of Nastran."""
     if is_bulk_data(path):
-        return Deck(places=read_bulk_data(path).places, edges=frozenset())
+        return Deck(positions=read_bulk_data(path).positions, edges=frozenset())
     return read_deck(path)
 
 
 def _is_by_node(path: Path) -> bool:
-    """Rows of five numbers, as Abaqus writes them."""
+    """Return True if a file contains rows of five numbers, as written by Abaqus."""
     if path.suffix == ".mat" or ":" in path.name:
         return False
     try:
@@ -105,7 +103,7 @@ def _of_pairs(table: Any, index: dict[tuple[int, int], int]) -> Any:
 
 
 def _matrix(path: Path, size: int) -> Any:
-    """A symmetric sparse matrix of any of the formats."""
+    """Read a symmetric sparse matrix in any of the supported formats."""
     name, _, variable = path.name.partition(":")
     file = path.with_name(name)
     if file.suffix == ".mat":
@@ -119,26 +117,26 @@ def _matrix(path: Path, size: int) -> Any:
             return coordinate_matrix(file, size)
         return _real(file, scipy.io.mmread(file))
     except (OSError, ValueError, OverflowError, TypeError) as error:
-        raise DataError(f"{file}: no matrix that can be read ({error}).") from error
+        raise DataError(f"{file}: the matrix cannot be read ({error}).") from error
 
 
 def _of_matlab(file: Path, variable: str) -> Any:
     try:
         content = {key: value for key, value in scipy.io.loadmat(file).items() if not key.startswith("__")}
     except (OSError, ValueError, NotImplementedError, TypeError) as error:
-        raise DataError(f"{file}: no MAT file of version 5 ({error}); save it with -v7.") from error
+        raise DataError(f"{file}: not a MAT file of version 5 ({error}); save it with -v7.") from error
     square = {
         key: value for key, value in content.items() if getattr(value, "ndim", 0) == 2 and len(set(value.shape)) == 1
     }
     if variable and variable not in content:
-        raise DataError(f"{file}: no variable {variable!r}; it has {', '.join(content)}.")
+        raise DataError(f"{file}: no variable {variable!r}; the file has {', '.join(content)}.")
     if not variable and len(square) != 1:
         raise DataError(f"{file}: {len(square)} square matrices ({', '.join(square)}); choose one as {file.name}:NAME.")
     return _real(file, content[variable] if variable else next(iter(square.values())))
 
 
 def _real(file: Path, matrix: Any) -> Any:
-    """The whole matrix, of real numbers."""
+    """Convert a matrix to a complete symmetric sparse matrix of real numbers."""
     if getattr(matrix, "ndim", 0) != 2 or matrix.dtype.kind not in "iuf":
-        raise DataError(f"{file}: {getattr(matrix, 'dtype', type(matrix))}, no matrix of real numbers; give K and M.")
+        raise DataError(f"{file}: {getattr(matrix, 'dtype', type(matrix))}, must be a matrix of real numbers.")
     return whole(scipy.sparse.csc_matrix(matrix, dtype=float))

@@ -1,8 +1,9 @@
-"""Bulk data of Nastran in text: matrices as DMIG (a punch file `.pch`), and the nodes as GRID.
+"""Bulk data of Nastran as text: matrices as DMIG (punch file `.pch`) and nodes as GRID.
 
-An entry is a line of eight fields of 8 columns, of four of 16 where its name ends in *, or of fields between commas;
-lines that begin with a blank, + or * continue it. Columns behind the 72nd are sequence numbers. A real number may leave
-out the E of its exponent. Source: MSC Nastran Quick Reference Guide, Bulk Data: DMIG, GRID, format of entries.
+An entry is a line of eight fields of 8 columns, four fields of 16 columns if its name ends in *, or fields separated by
+commas. Lines that begin with a blank, + or * continue an entry. Columns after the 72nd are sequence numbers. A real
+number may omit the E of its exponent. Source: MSC Nastran Quick Reference Guide, Bulk Data: DMIG, GRID, format of
+entries.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
-from vehicle.model.flexbody.sources.matrices import IntArray
+from vehicle.model.flexbody.sources.body_matrices import IntArray
 from vehicle.model.flexbody.sources.text_matrices import whole
 from vehicle.model.parameters.hardpoints import Point
 
@@ -27,22 +28,22 @@ _SYMMETRIC, _SQUARE = 6, 1
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BulkData:
-    """What a file holds.
+    """DMIG matrices and GRID points of a bulk data file.
 
     Attributes:
-        matrices: name to its entries (node, component, node, component) -> value, as they are stored.
-        places: of the nodes, in the unit of the file.
+        matrices: matrix name -> stored entries, (node, component, node, component) -> value.
+        positions: node number -> position, in the unit of the file.
     """
 
     matrices: dict[str, dict[tuple[int, int, int, int], float]]
-    places: dict[int, Point]
+    positions: dict[int, Point]
 
 
 def entries(path: Path) -> Iterator[tuple[int, str, list[str]]]:
-    """Entries of a file: number of the first line, name, fields; each line of an entry is filled to its full width.
+    """Yield the entries of a file: number of the first line, name, fields with empty fields up to the line width.
 
     Raises:
-        DataError: unreadable.
+        DataError: the file is unreadable.
     """
     try:
         lines = path.read_text(encoding="ascii", errors="replace").splitlines()
@@ -74,79 +75,79 @@ def entries(path: Path) -> Iterator[tuple[int, str, list[str]]]:
 
 
 def read_bulk_data(path: Path) -> BulkData:
-    """The DMIG matrices and GRID points of a file.
+    """Read the DMIG matrices and GRID points of a file.
 
     Raises:
-        DataError: a damaged entry, a complex matrix, a scalar point, a place in a coordinate system of its own.
+        DataError: an entry is damaged, a matrix complex, a point scalar, or a position in a local coordinate system.
     """
     matrices: dict[str, dict[tuple[int, int, int, int], float]] = {}
-    places: dict[int, Point] = {}
+    positions: dict[int, Point] = {}
     for number, name, fields in entries(path):
         try:
             if name == "DMIG":
                 _dmig(matrices, fields)
             elif name == "GRID":
                 if fields[1] not in ("", "0"):
-                    raise ValueError(f"its place is in coordinate system {fields[1]}; write GRID in the basic one")
+                    raise ValueError(f"position in coordinate system {fields[1]}; use the basic system for GRID")
                 if fields[5] not in ("", "0"):
-                    raise ValueError(f"it moves along the axes of system {fields[5]}; let it move along the basic ones")
+                    raise ValueError(f"displacements in coordinate system {fields[5]}; use the basic system")
                 x, y, z = (_real(field) if field else 0.0 for field in fields[2:5])
-                places[int(fields[0])] = (x, y, z)
+                positions[int(fields[0])] = (x, y, z)
         except (ValueError, IndexError) as error:
             raise DataError(f"{path}, line {number}: {name} {fields[0]}: {error}.") from error
-    return BulkData(matrices=matrices, places=places)
+    return BulkData(matrices=matrices, positions=positions)
 
 
 def is_bulk_data(path: Path) -> bool:
-    """Whether a file, "FILE:MATRIX" too, is named as bulk data of Nastran."""
+    """Return True if the suffix of a file, also in "FILE:MATRIX", is one of Nastran bulk data."""
     return path.with_name(path.name.partition(":")[0]).suffix.lower() in (".pch", ".bdf", ".nas")
 
 
 def dmig_pair(path: Path, data: BulkData, names: tuple[str, str]) -> tuple[Any, Any, IntArray, IntArray]:
-    """K and M of a file, and what their rows are.
+    """Return K and M of a file, with the node and direction of their rows.
 
     Args:
-        path: named in messages.
-        data: of it.
-        names: of the stiffness and the mass; the only ones that begin with K and with M where they are empty.
+        path: file named in messages.
+        data: content of the file.
+        names: names of the stiffness and mass matrix; an empty name selects the only matrix that begins with K or M.
 
     Returns:
-        Two sparse matrices, the number of the node and the direction, 0 to 5, of each row.
+        Two sparse matrices; node number and direction, 0 to 5, of each row.
 
     Raises:
-        DataError: no such matrix, or several.
+        DataError: a matrix is missing or ambiguous.
     """
     chosen = []
     for letter, name in zip("KM", names, strict=True):
-        found = [name.upper()] if name else [own for own in data.matrices if own.startswith(letter)]
-        if len(found) != 1 or found[0] not in data.matrices:
+        candidates = [name.upper()] if name else [key for key in data.matrices if key.startswith(letter)]
+        if len(candidates) != 1 or candidates[0] not in data.matrices:
             raise DataError(
-                f"{path}: DMIG matrices {', '.join(data.matrices) or 'none'}; needed are one whose name begins with K "
-                f"and one with M, or {path.name}:NAME with --mass {path.name}:NAME."
+                f"{path}: found DMIG matrices {', '.join(data.matrices) or 'none'}, must be one whose name begins with "
+                f"K and one with M. Otherwise specify {path.name}:NAME and --mass {path.name}:NAME."
             )
-        chosen.append(data.matrices[found[0]])
-    rows = sorted({pair for matrix in chosen for key in matrix for pair in (key[:2], key[2:])})
-    index = {pair: i for i, pair in enumerate(rows)}
-    pair = []
+        chosen.append(data.matrices[candidates[0]])
+    rows = sorted({matrices for matrix in chosen for key in matrix for matrices in (key[:2], key[2:])})
+    index = {matrices: i for i, matrices in enumerate(rows)}
+    matrices = []
     for matrix in chosen:
-        place = np.array([(index[key[2:]], index[key[:2]]) for key in matrix]).reshape(-1, 2)
+        indices = np.array([(index[key[2:]], index[key[:2]]) for key in matrix]).reshape(-1, 2)
         values = list(matrix.values())
-        pair.append(whole(scipy.sparse.coo_matrix((values, place.T), shape=(len(rows), len(rows))).tocsc()))
+        matrices.append(whole(scipy.sparse.coo_matrix((values, indices.T), shape=(len(rows), len(rows))).tocsc()))
     node, component = np.array(rows).reshape(-1, 2).T
-    return pair[0], pair[1], node, component - 1
+    return matrices[0], matrices[1], node, component - 1
 
 
 def _dmig(matrices: dict[str, dict[tuple[int, int, int, int], float]], fields: list[str]) -> None:
     name = fields[0].upper()
     if fields[1] == "0":  # the head of a matrix: form, type
         if int(fields[2]) not in (_SQUARE, _SYMMETRIC):
-            raise ValueError(f"form {fields[2]}; needed is 6, symmetric, or 1, square")
+            raise ValueError(f"form {fields[2]}, must be 6 (symmetric) or 1 (square)")
         if int(fields[3]) not in (1, 2):
-            raise ValueError(f"type {fields[3]}; needed is 1 or 2, real")
+            raise ValueError(f"type {fields[3]}, must be 1 or 2 (real)")
         matrices.setdefault(name, {})
         return
     if name not in matrices:
-        raise ValueError("a column before the head of the matrix, DMIG NAME 0 ...")
+        raise ValueError("a column before the header of the matrix, DMIG NAME 0 ...")
     column = int(fields[1]), int(fields[2] or 0)
     for i in range(4, len(fields), 4):
         if not any(fields[i : i + 4]):
@@ -155,16 +156,16 @@ def _dmig(matrices: dict[str, dict[tuple[int, int, int, int], float]], fields: l
         for node, component in (row, column):
             if not 1 <= component <= 6:
                 raise ValueError(
-                    f"component {component} of {node}; allowed are 1 to 6. Scalar points are coordinates of a "
-                    "reduction: punch the matrices of all nodes, or of a static reduction without modes"
+                    f"component {component} of {node}, must be 1 to 6. Scalar points are coordinates of a reduction: "
+                    "punch the matrices of all nodes, or of a static reduction without modes"
                 )
         if (*column, *row) in matrices[name]:
-            raise ValueError(f"row {row[0]}, {row[1]} of column {column[0]}, {column[1]} is given twice")
+            raise ValueError(f"row {row[0]}, {row[1]} of column {column[0]}, {column[1]} occurs twice")
         matrices[name][(*column, *row)] = _real(fields[i + 2])
 
 
 def _real(text: str) -> float:
-    """A real number of Nastran: 1.5, 1.5+3, 1.5D+03."""
+    """Parse a real number of Nastran: 1.5, 1.5+3, 1.5D+03."""
     value = float(_BARE_EXPONENT.sub(r"E\1", text.upper().replace("D", "E")))
     if not np.isfinite(value):
         raise ValueError(f"{text} is not finite")

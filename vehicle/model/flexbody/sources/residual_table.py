@@ -1,7 +1,7 @@
-"""Residual flexibility of attachments as a table: what a modal test adds to its modes, measured at each attachment.
+"""Table of residual flexibilities measured at the attachments, a supplement to the modes of a modal test.
 
-At an attachment the static driving-point flexibility of the free body less the share of the modes that are kept,
-H(0) - sum of phi^2 / w^2 [m/N], is what the modes above give way; a local stiffness [N/m] is its inverse.
+The residual flexibility of an attachment is the static driving-point flexibility of the free body minus the share of
+the modes of the model, H(0) - sum of phi^2 / w^2 [m/N]; a local stiffness [N/m] is its inverse.
 """
 
 from __future__ import annotations
@@ -18,45 +18,49 @@ from vehicle.model.flexbody.beam import FloatArray
 from vehicle.names import AXES
 
 UNITS = {"m/N": (1.0, 1), "mm/N": (1e-3, 1), "N/m": (1.0, -1), "N/mm": (1e3, -1)}
-"""Unit to its size in SI, and whether it is a flexibility or a stiffness."""
+"""Unit -> its size in SI, and the exponent that converts to flexibility: 1 for a flexibility, -1 for a stiffness."""
 
 
-def read_residuals(path: Path, places: Collection[str]) -> dict[str, FloatArray]:
-    """Residual flexibility of some attachments, along the axes of the car.
+def read_residuals(path: Path, points: Collection[str]) -> dict[str, FloatArray]:
+    """Read the residual flexibility of attachments along the axes of the car.
 
     Args:
-        path: table with the head `point,x [N/m],y [N/m],z [N/m]`; other units are those of `UNITS`.
-        places: points of the car.
+        path: table with the header `point,x [N/m],y [N/m],z [N/m]`, or other units of `UNITS`.
+        points: names of the points of the car.
 
     Returns:
-        Point to flexibility [m/N], shape (3, 3).
+        Point name -> flexibility [m/N], shape (3, 3).
 
     Raises:
-        DataError: unreadable, a bad head, an unknown or repeated point, or a value that is no positive number.
+        DataError: the file is unreadable, the header invalid, a point unknown or repeated, or a value not positive.
     """
     try:
         rows = [row for row in csv.reader(path.read_text(encoding="utf-8").splitlines()) if row and row[0][:1] != "#"]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise DataError(f"{path}: cannot be read ({error}).") from error
-    heads = [word.strip() for word in rows[0]] if rows else []
-    units = [head.partition("[")[2].rstrip("]") for head in heads[1:]]
-    names = [head.partition("[")[0].strip() for head in heads]
+    header = [word.strip() for word in rows[0]] if rows else []
+    units = [head.partition("[")[2].rstrip("]") for head in header[1:]]
+    names = [head.partition("[")[0].strip() for head in header]
     if names != ["point", *AXES] or not set(units) <= set(UNITS):
         raise DataError(
-            f"{path}: found the head {','.join(heads)!r}, needed is point,x [N/m],y [N/m],z [N/m] for stiffnesses, or "
+            f"{path}: found the header {','.join(header)!r}, must be point,x [N/m],y [N/m],z [N/m] for stiffnesses, or "
             f"another unit of {', '.join(UNITS)}."
         )
-    found: dict[str, FloatArray] = {}
+    flexibilities: dict[str, FloatArray] = {}
     for row in rows[1:]:
         point, values = row[0].strip(), [_number(word) for word in row[1:]]
-        if point not in places or point in found:
-            what = "given twice" if point in found else f"no point of the car; its points are {', '.join(places)}"
-            raise DataError(f"{path}: {point!r} is {what}.")
+        if point not in points or point in flexibilities:
+            fault = (
+                "occurs twice"
+                if point in flexibilities
+                else f"is not a point of the car; choose from {', '.join(points)}"
+            )
+            raise DataError(f"{path}: {point!r} {fault}.")
         if len(values) != len(AXES) or not all(0.0 < value < math.inf for value in values):
-            raise DataError(f"{path}: {point}: found {','.join(row[1:])}, needed are three numbers above 0.")
-        own = [(UNITS[unit][0] * value) ** UNITS[unit][1] for unit, value in zip(units, values, strict=True)]
-        found[point] = np.diag(own)
-    return found
+            raise DataError(f"{path}: {point}: found {','.join(row[1:])}, must be three numbers above 0.")
+        axes = [(UNITS[unit][0] * value) ** UNITS[unit][1] for unit, value in zip(units, values, strict=True)]
+        flexibilities[point] = np.diag(axes)
+    return flexibilities
 
 
 def _number(text: str) -> float:

@@ -1,4 +1,4 @@
-"""From modes of all nodes of a body to its modal superelement at the places of a car."""
+"""Modal superelement at the points of a car, from the modes of a body at all nodes."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from vehicle.model.flexbody.beam import FloatArray
+from vehicle.model.flexbody.frame_modes import fix_signs
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.modes import fix_signs
 from vehicle.model.flexbody.sources import METHODS
 from vehicle.model.flexbody.sources.attachment_modes import ReducedModes, attachment_modes
+from vehicle.model.flexbody.sources.body_matrices import BodyMatrices, BodyNodes, IntArray
 from vehicle.model.flexbody.sources.craig_bampton import craig_bampton
+from vehicle.model.flexbody.sources.free_body_modes import FreeModes, free_modes, residual_flexibility
 from vehicle.model.flexbody.sources.interfaces import Interface
-from vehicle.model.flexbody.sources.matrices import BodyMatrices, BodyNodes, IntArray
-from vehicle.model.flexbody.sources.reduction import FreeModes, free_modes, residual_flexibility
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.signals.analysis.thinned_wireframe import neighbours, thinned
 
@@ -26,15 +26,15 @@ class BodyModes:
     """Elastic modes of a free body with modal mass 1, at all its nodes.
 
     Attributes:
-        body: nodes, and what each row of the vectors is.
-        frequencies: [Hz], shape (modes,).
-        damping_ratio: [1], shape (modes,); NaN where the source tells none.
-        vectors: [kg^-1/2], shape (dofs, modes).
+        body: nodes, with the node and direction of each row of the vectors.
+        frequencies: natural frequencies [Hz], shape (modes,).
+        damping_ratio: modal damping ratios [1], shape (modes,); NaN where unknown.
+        vectors: mass-normalised shapes [kg^-1/2], shape (dofs, modes).
         rigid: mass properties.
-        names: of the modes.
-        remarks: what was scaled, left out or could not be checked, in words.
-        residual: flexibility of each interface [m/N], (3, 3), by name; none where the source has no K and M.
-        notices: what the user must know of the accuracy, in words.
+        names: names of the modes.
+        remarks: scaling, omissions and missing checks, as text.
+        residual: interface name -> residual flexibility [m/N], shape (3, 3); empty for a source without K and M.
+        notices: statements on the accuracy for the user, as text.
     """
 
     body: BodyNodes
@@ -49,96 +49,98 @@ class BodyModes:
 
 
 ATTACHMENTS_TO = 5.0
-"""Up to which frequency modes of the attachments are kept, over that of the modes, where none is given [1]: assumed;
-FRFs of a car on a frame of solids are then within 2 % up to 0.6 of the latter, 4 % with these modes static."""
+"""Default frequency limit of the attachment modes over that of the free-free modes [1], assumed. FRFs of a car on a
+frame of solids are then within 2 % up to 0.6 of the latter limit; with static attachment modes, within 4 %."""
 
 
 HELD_TO = (3.0, 6.0)
-"""Highest modes of the held body over the highest one wanted, tried in turn by "craig-bampton" [1]."""
+"""Highest fixed-interface mode over the highest mode of the free body [1], tried in this order by "craig-bampton"."""
 NEAR = 0.01
-"""Relative error of the frequencies of modes of the free body at which these are enough [1]: that of a car body's own
-modes between two cars of a type is a few percent."""
+"""Maximum relative error of the Craig-Bampton frequencies [1]: mode frequencies of two car bodies of the same type
+differ by a few percent."""
 
 
 def modes_of_matrices(
     body: BodyMatrices,
     up_to: float,
-    places: list[Interface],
+    attachments: list[Interface],
     method: str = METHODS[0],
     attachments_to: float | None = None,
 ) -> BodyModes:
-    """Modes and residual flexibility of K and M.
+    """Compute modes and residual flexibility of a body from K and M by a reduction method.
 
     Args:
-        body: in SI units and the vehicle frame.
-        up_to: highest frequency of modes of the free body; "craig-bampton" takes modes of the body held at its places
-            to a multiple of it, until the modes to here are within 1 % of those of the free body [Hz].
-        places: interfaces, which get their residual flexibility.
+        body: K and M in SI units and the vehicle frame.
+        up_to: frequency limit of the free-free modes [Hz]. "craig-bampton" uses fixed-interface modes up to a multiple
+            of the limit, chosen so that the modes below the limit are within 1 % of the free-free modes.
+        attachments: interfaces, for which the residual flexibility is computed.
         method: one of `METHODS`.
-        attachments_to: highest mode that "rubin" adds, or that "craig-bampton" keeps of the reduced pair [Hz].
+        attachments_to: highest attachment mode of "rubin", or highest mode of the reduced body of "craig-bampton" [Hz].
 
     Raises:
-        DataError: as of `free_modes`.
+        DataError: see `free_modes`.
     """
-    found = free_modes(body, up_to)
-    moved, count = [place.moved for place in places], len(found.frequencies)
+    free = free_modes(body, up_to)
+    displacements, count = [attachment.moved for attachment in attachments], len(free.frequencies)
     limit = attachments_to or ATTACHMENTS_TO * up_to
-    frequencies, vectors = found.frequencies, found.vectors
+    frequencies, vectors = free.frequencies, free.vectors
     names = [f"mode {number}" for number in range(1, count + 1)]
     notices: tuple[str, ...] = ()
     if method == "rubin":
-        added = attachment_modes(body, found, moved, limit)
+        added = attachment_modes(body, free, displacements, limit)
         frequencies = np.concatenate([frequencies, added.frequencies])
         vectors, residual = np.hstack([vectors, added.vectors]), added.residual
         names += [f"attachment mode {number}" for number in range(1, len(added.frequencies) + 1)]
-        kept = f"{count} modes to {up_to:g} Hz, {len(added.frequencies)} of the attachments to {limit:g} Hz (Rubin)"
+        summary = f"{count} modes to {up_to:g} Hz, {len(added.frequencies)} attachment modes to {limit:g} Hz (Rubin)"
     elif method == "craig-bampton":
-        added, held, held_to, above = _near_enough(body, found, moved, limit)
+        added, held, held_to, above = _near_enough(body, free, displacements, limit)
         frequencies, vectors, residual = added.frequencies, added.vectors, added.residual
         names = [f"mode {number}" for number in range(1, len(frequencies) + 1)]
-        kept = (
-            f"Craig-Bampton with {held} modes to {held_to:g} Hz of the body held at {len(places)} points, modes of it "
-            f"to {limit:g} Hz, those to {up_to:g} Hz up to {above:.2%} above the {count} of the free body"
+        summary = (
+            f"Craig-Bampton with {held} modes to {held_to:g} Hz of the body fixed at {len(attachments)} points, "
+            f"reduced modes to {limit:g} Hz, modes to {up_to:g} Hz up to {above:.2%} above the {count} free-free modes"
         )
         notices = (
-            f"Craig-Bampton: the modes to {up_to:g} Hz are up to {above:.2%} too high against the {count} of the free "
-            f"body, with modes to {held_to:g} Hz of the held body",
+            f"Craig-Bampton: the modes to {up_to:g} Hz are up to {above:.2%} higher than the {count} free-free modes, "
+            f"with fixed-interface modes to {held_to:g} Hz",
         )
     else:
-        residual = residual_flexibility(body, found, moved)
-        kept = f"modes to {up_to:g} Hz"
+        residual = residual_flexibility(body, free, displacements)
+        summary = f"modes to {up_to:g} Hz"
     return BodyModes(
         body=body,
         frequencies=frequencies,
         damping_ratio=np.full(len(frequencies), np.nan),
         vectors=vectors,
-        rigid=found.rigid,
+        rigid=free.rigid,
         notices=notices,
         names=tuple(names),
         remarks=(
-            f"{len(body.node)} degrees of freedom, {kept}, modes above as residual flexibility",
-            f"the stiffness gives rigid motions {found.rigid_frequency:.2g} Hz; modes orthogonal to them and to each "
-            f"other within {found.orthogonality:.1e}",
+            f"{len(body.node)} degrees of freedom, {summary}, modes above as residual flexibility",
+            f"rigid motions have up to {free.rigid_frequency:.2g} Hz from the stiffness; modes orthogonal to them and "
+            f"to each other within {free.orthogonality:.1e}",
         ),
-        # Where every mode of the attachments is kept nothing is left: the place is rigid, not of infinite stiffness.
-        residual={place.name: value for place, value in zip(places, residual, strict=True) if value.any()},
+        # With all attachment modes in the model the residual is zero: omit it, the attachment is rigid.
+        residual={
+            attachment.name: value for attachment, value in zip(attachments, residual, strict=True) if value.any()
+        },
     )
 
 
 def _near_enough(
     body: BodyMatrices, free: FreeModes, moved: list[Any], limit: float
 ) -> tuple[ReducedModes, int, float, float]:
-    """Craig-Bampton with as many modes of the held body as the first modes of the free one need.
+    """Reduce a body by Craig-Bampton with enough fixed-interface modes for the accuracy `NEAR`.
 
     Args:
         body: K and M.
-        free: modes of the free body, against which the reduced ones are measured.
-        moved: places, as of `craig_bampton`.
-        limit: highest mode of the reduced pair that is kept [Hz].
+        free: free-free modes, the reference of the accuracy.
+        moved: N of each attachment; see `craig_bampton`.
+        limit: highest mode of the reduced body [Hz].
 
     Returns:
-        The modes; number of modes of the held body and their highest frequency [Hz]; largest relative error of the
-        frequencies up to that of the free modes [1].
+        Modes of the reduced body; number of fixed-interface modes; their frequency limit [Hz]; largest relative error
+        of the frequencies below the limit of the free-free modes [1].
     """
     for factor in HELD_TO:
         reduced, held = craig_bampton(body, free, moved, limit, factor * free.up_to)
@@ -150,48 +152,56 @@ def _near_enough(
 
 
 def superelement_of(
-    modes: BodyModes, places: list[Interface], *, name: str, damping: float, picture: int = 400
+    modes: BodyModes, attachments: list[Interface], *, name: str, damping: float, picture: int = 400
 ) -> Superelement:
-    """The superelement at the interfaces of a car, with some of the other nodes for the picture.
+    """Build the superelement at the interfaces of a car, with additional nodes for the wireframe picture.
 
     Args:
-        modes: of the body.
-        places: interfaces.
-        name: of the body.
-        damping: modal damping ratio [1] where the source tells none.
-        picture: how many nodes at most, spread evenly, are kept for the picture.
+        modes: modes of the body at all nodes.
+        attachments: interfaces of the car.
+        name: name of the body.
+        damping: modal damping ratio [1] of modes without one in the source.
+        picture: maximum number of evenly distributed nodes for the picture.
     """
     body, vectors = modes.body, modes.vectors
     shown, edges = _picture(body, picture)
-    at = np.array([place.moved.T @ vectors for place in places]).reshape(len(places), 3, vectors.shape[1])
-    shapes = np.concatenate([at.transpose(2, 0, 1), body.displacements(vectors)[:, shown]], axis=1)
+    attachment_shapes = np.array([attachment.moved.T @ vectors for attachment in attachments]).reshape(
+        len(attachments), 3, vectors.shape[1]
+    )
+    shapes = np.concatenate([attachment_shapes.transpose(2, 0, 1), body.displacements(vectors)[:, shown]], axis=1)
     signed = fix_signs(shapes)
     sign = np.where(np.einsum("ank,ank->a", signed, shapes) < 0.0, -1.0, 1.0)
-    own = np.isfinite(modes.damping_ratio)
-    told = [] if own.all() else [f"damping ratio {damping:g} of {'all' if not own.any() else (~own).sum()} modes given"]
+    has_damping = np.isfinite(modes.damping_ratio)
+    damping_remark = (
+        []
+        if has_damping.all()
+        else [f"damping ratio {damping:g} set for {'all' if not has_damping.any() else (~has_damping).sum()} modes"]
+    )
     return Superelement(
         name=name,
-        nodes=(*(place.name for place in places), *(f"node_{body.nodes[i]}" for i in shown)),
-        positions=np.vstack([*(place.place for place in places), body.positions[shown]]),
-        edges=edges + len(places),
+        nodes=(*(attachment.name for attachment in attachments), *(f"node_{body.nodes[i]}" for i in shown)),
+        positions=np.vstack([*(attachment.position for attachment in attachments), body.positions[shown]]),
+        edges=edges + len(attachments),
         mass_properties=modes.rigid,
         frequencies=modes.frequencies,
-        damping_ratio=np.where(own, modes.damping_ratio, damping),
+        damping_ratio=np.where(has_damping, modes.damping_ratio, damping),
         shapes=signed,
         rotations={
-            place.name: sign[:, None] * (place.turned.T @ vectors).T for place in places if place.turned is not None
+            attachment.name: sign[:, None] * (attachment.turned.T @ vectors).T
+            for attachment in attachments
+            if attachment.turned is not None
         },
         residual=modes.residual,
         mode_names=modes.names,
-        provenance="; ".join([body.source, *modes.remarks, *told]),
+        provenance="; ".join([body.source, *modes.remarks, *damping_remark]),
     )
 
 
-def _picture(body: BodyNodes, most: int) -> tuple[IntArray, IntArray]:
-    """Nodes and lines of the picture; of a source without lines each node is joined to its neighbours."""
+def _picture(body: BodyNodes, maximum: int) -> tuple[IntArray, IntArray]:
+    """Select nodes and lines of the picture; without lines in the source, each node is joined to its neighbours."""
     if not len(body.edges):
-        shown = np.unique(np.linspace(0, len(body.nodes) - 1, most).astype(int))
+        shown = np.unique(np.linspace(0, len(body.nodes) - 1, maximum).astype(int))
         return shown, neighbours(body.positions[shown])
-    lines = thinned(body.positions, body.edges, most)
+    lines = thinned(body.positions, body.edges, maximum)
     shown, index = np.unique(lines, return_inverse=True)
     return shown, index.reshape(-1, 2)

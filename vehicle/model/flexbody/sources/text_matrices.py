@@ -19,20 +19,22 @@ IntArray = npt.NDArray[np.intp]
 
 
 _NAMES = re.compile(r"(?!nan|inf)[a-z_]\w*([\s,]+[a-z_]\w*)*", re.IGNORECASE)
-"""A line of names above the numbers, as node,direction. With units in brackets it is none: those are options."""
+"""Header line of column names, as "node,direction". Headers with units in brackets do not match."""
 
 
-def rows_of_numbers(path: Path, least: int, *, separator: str | None = None, columns: int | None = None) -> FloatArray:
-    """The numbers of a file of equal rows, shape (rows, columns); a first line of names is passed over.
+def rows_of_numbers(
+    path: Path, minimum: int, *, separator: str | None = None, columns: int | None = None
+) -> FloatArray:
+    """Read a text file with rows of numbers of equal length, shape (rows, columns); skip a header line of names.
 
     Args:
-        path: the file.
-        least: fewest rows.
-        separator: between numbers; blanks or commas by default.
-        columns: how many are wanted.
+        path: text file.
+        minimum: minimum number of rows.
+        separator: separator of the numbers; blanks or commas by default.
+        columns: required number of columns.
 
     Raises:
-        DataError: unreadable, not of numbers, of unequal rows, or cut off.
+        DataError: the file is unreadable or truncated, or has entries other than numbers or rows of unequal length.
     """
     try:
         text = path.read_text(encoding="ascii")
@@ -43,55 +45,61 @@ def rows_of_numbers(path: Path, least: int, *, separator: str | None = None, col
     text = text.replace(separator or ",", " ").replace("D", "E").replace("d", "e")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # of no rows, which is said below
-            found = np.loadtxt(io.StringIO(text), ndmin=2, comments=("#", "%", "**"))
+            warnings.simplefilter("ignore", UserWarning)  # no rows: raised below
+            numbers = np.loadtxt(io.StringIO(text), ndmin=2, comments=("#", "%", "**"))
     except ValueError as error:
         raise DataError(
-            f"{path}: not rows of numbers, or cut off: {error}; needed are numbers alone, below one line "
-            "of names at most"
+            f"{path}: not rows of numbers, or truncated: {error}. The file may contain only numbers, below at most "
+            "one line of names."
         ) from error
-    if not np.all(np.isfinite(found)):
-        raise DataError(f"{path}: row {int(np.argwhere(~np.isfinite(found))[0, 0]) + 1} holds a number not finite.")
-    if len(found) < least or (columns is not None and found.shape[1] != columns):
-        raise DataError(f"{path}: {found.shape[0]} rows of {found.shape[1]} numbers; needed are {columns} in each.")
-    return np.asarray(found)
+    if not np.all(np.isfinite(numbers)):
+        raise DataError(
+            f"{path}: row {int(np.argwhere(~np.isfinite(numbers))[0, 0]) + 1} contains a number that is not finite."
+        )
+    if len(numbers) < minimum or (columns is not None and numbers.shape[1] != columns):
+        raise DataError(
+            f"{path}: {numbers.shape[0]} rows of {numbers.shape[1]} numbers, must be {columns} in each row."
+        )
+    return np.asarray(numbers)
 
 
 def coordinate_matrix(path: Path, size: int) -> Any:
-    """A symmetric sparse matrix from rows "row column value", counted from 1: one triangle of it, or both.
+    """Read a symmetric sparse matrix from lines "row column value", counted from 1: one triangle or both.
 
     Args:
-        path: the file.
-        size: number of rows and columns.
+        path: text file.
+        size: number of rows and columns of the matrix.
 
     Raises:
-        DataError: a place outside the matrix; or as of `rows_of_numbers`.
+        DataError: an entry is outside the matrix, or the file is invalid; see `rows_of_numbers`.
     """
     table = rows_of_numbers(path, 1, columns=3)
     row, column = (whole_numbers(path, table[:, i]) - 1 for i in (0, 1))
     if min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size:
         raise DataError(
             f"{path}: rows {row.min() + 1} to {row.max() + 1} and columns {column.min() + 1} to {column.max() + 1}; "
-            f"allowed are 1 to {size}, the degrees of freedom given. The files do not belong together."
+            f"must be 1 to {size}, the number of degrees of freedom. The files are inconsistent."
         )
     matrix = scipy.sparse.coo_matrix((table[:, 2], (row, column)), shape=(size, size)).tocsc()
     return whole(matrix)
 
 
 def whole_numbers(path: Path, values: FloatArray) -> IntArray:
-    """Numbers of nodes, directions, rows.
+    """Convert numbers of nodes, directions or rows to integers.
 
     Raises:
-        DataError: one is not whole.
+        DataError: a number is not whole.
     """
-    found = values.astype(int)
-    if np.any(found != values):
-        raise DataError(f"{path}: {values[found != values][0]:g} is no whole number, as of a node, direction or row.")
-    return found
+    integers = values.astype(int)
+    if np.any(integers != values):
+        raise DataError(
+            f"{path}: found {values[integers != values][0]:g}, must be a whole number (node, direction, row)."
+        )
+    return integers
 
 
 def whole(matrix: Any) -> Any:
-    """The symmetric matrix of which one triangle may be given, as csc."""
+    """Complete a symmetric matrix stored as one triangle, and convert it to csc."""
     upper, lower = scipy.sparse.triu(matrix, 1), scipy.sparse.tril(matrix, -1)
     if upper.nnz and lower.nnz:
         return matrix.tocsc()

@@ -1,4 +1,4 @@
-"""Rigid-body mass properties: the thesis's tensor is not physical, its nearest neighbour and the improved one are."""
+"""Inertia tensors: the tensor of the thesis is not physical; the nearest and the improved tensor are physical."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
-from vehicle.model.flexbody.inertia import (
+from vehicle.model.flexbody.inertia_tensor import (
     about_cog,
     inertia_tensor,
     nearest_physical,

@@ -1,4 +1,4 @@
-"""Rigid-body mass properties: products of inertia as integrals, the move to the CoG, the nearest physical tensor."""
+"""Inertia tensors: sign convention of the products, parallel-axis theorem, nearest physical tensor."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.beam import FloatArray
 
 _FLOOR = 1e-6
-"""Smallest principal second moment of a repaired tensor over their sum: round-off never breaks the inequality again."""
+"""Minimum principal second moment of a repaired tensor over their sum, so that round-off keeps the inequality."""
 
 
 def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float, iyz: float) -> FloatArray:
-    """Inertia tensor from moments and from products given as integrals: off-diagonal terms are -int x y dm.
+    """Return the inertia tensor from moments and from products as integrals: off-diagonal terms are -int x y dm.
 
     Args:
         ixx: int (y^2 + z^2) dm [kg m2], and iyy, izz alike.
@@ -26,18 +26,18 @@ def inertia_tensor(*, ixx: float, iyy: float, izz: float, ixy: float, izx: float
         iyz: see ixy.
 
     Returns:
-        Tensor [kg m2], shape (3, 3), about the point that the integrals are taken about.
+        Tensor [kg m2], shape (3, 3), about the reference point of the integrals.
 
-    Source: Bommer 2006, section 3.1.2; its Izx = 1800 is positive because m x z = 1773 is.
+    Source: Bommer 2006, section 3.1.2; published Izx = 1800 is positive, as is m x z = 1773.
     """
     return np.array([[ixx, -ixy, -izx], [-ixy, iyy, -iyz], [-izx, -iyz, izz]])
 
 
 def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> FloatArray:
-    """Parallel axis theorem: I_c = I_0 - m (|c|^2 1 - c c^T).
+    """Return the inertia tensor about the CoG by the parallel-axis theorem: I_c = I_0 - m (|c|^2 1 - c c^T).
 
     Args:
-        inertia_about_origin: tensor [kg m2], shape (3, 3).
+        inertia_about_origin: I_0 [kg m2], shape (3, 3).
         mass: mass [kg].
         cog: centre of gravity [m], shape (3,).
 
@@ -49,35 +49,35 @@ def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> F
 
 
 def second_moments(inertia: ArrayLike) -> FloatArray:
-    """Second moment matrix int r r^T dm = tr(I)/2 1 - I [kg m2], shape (3, 3): positive definite for a real body."""
+    """Return the second moments int r r^T dm = tr(I)/2 1 - I [kg m2], shape (3, 3); positive definite if physical."""
     tensor = np.asarray(inertia, dtype=float)
     return np.asarray(np.trace(tensor) / 2.0 * np.eye(3) - tensor)
 
 
 def triangle_shortfall(inertia: ArrayLike) -> float:
-    """By how much the two smaller principal moments fall short of the largest [kg m2]; 0 for a physical tensor."""
+    """Return how far the two smaller principal moments fall short of the largest [kg m2]; 0 for a physical tensor."""
     low, middle, high = np.linalg.eigvalsh(np.asarray(inertia, dtype=float))
     return max(0.0, float(high - low - middle))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PhysicalInertia:
-    """A physical inertia tensor and what had to change to get it."""
+    """Physical inertia tensor nearest to a given tensor, and the difference."""
 
     inertia: FloatArray
-    """about the CoG [kg m2], shape (3, 3)"""
+    """physical tensor about the CoG [kg m2], shape (3, 3)"""
     change: FloatArray
-    """repaired minus given [kg m2], shape (3, 3); zero where nothing was wrong"""
+    """repaired minus given tensor [kg m2], shape (3, 3); zero if the given tensor is physical"""
     shortfall: float
     """triangle shortfall of the given tensor [kg m2]"""
 
     @property
     def repaired(self) -> bool:
-        """Whether the given tensor was not physical."""
+        """True if the given tensor was not physical."""
         return bool(np.any(self.change))
 
     def describe(self) -> str:
-        """One sentence for a report."""
+        """Return a summary of the repair for a report."""
         if not self.repaired:
             return "The inertia tensor is physical and used as given."
         largest = float(np.abs(self.change).max())
@@ -88,7 +88,7 @@ class PhysicalInertia:
 
 
 def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
-    """Nearest physical tensor: negative principal second moments are raised to a small positive floor.
+    """Return the nearest physical tensor: negative principal second moments are raised to a small positive minimum.
 
     S = tr(I)/2 1 - I must be positive definite, which is the triangle inequality. Clipping its eigenvalues is the
     smallest change of S in the Frobenius norm, and I' = tr(S') 1 - S'.
@@ -100,20 +100,20 @@ def nearest_physical(inertia: ArrayLike) -> PhysicalInertia:
         The physical tensor, the change and the shortfall.
 
     Raises:
-        ConfigurationError: not a finite symmetric (3, 3) tensor, or no positive second moment at all.
+        ConfigurationError: the tensor is not finite and symmetric of shape (3, 3), or has no positive second moment.
 
     Source: N. J. Higham, Computing a nearest symmetric positive semidefinite matrix, 1988, theorem 2.1.
     """
     tensor = np.asarray(inertia, dtype=float)
     if tensor.shape != (3, 3) or not np.all(np.isfinite(tensor)) or not np.allclose(tensor, tensor.T, rtol=1e-9):
         raise ConfigurationError(
-            f"inertia tensor {tensor.tolist()}: it must be a finite symmetric 3 x 3 matrix [kg m2]."
+            f"inertia tensor: found {tensor.tolist()}, must be a finite symmetric 3 x 3 matrix [kg m2]"
         )
     values, axes = np.linalg.eigh(second_moments(tensor))
     if values[-1] <= 0.0:
         raise ConfigurationError(
-            f"inertia tensor {tensor.tolist()}: no principal second moment is positive, so no body is near it. "
-            "Check signs and units [kg m2] and that it is taken about the centre of gravity."
+            f"inertia tensor {tensor.tolist()}: no principal second moment is positive, so no physical tensor is near. "
+            "Check signs, units [kg m2] and the reference point (centre of gravity)."
         )
     floor = _FLOOR * float(values[values > 0.0].sum())
     if values[0] >= floor:

@@ -1,4 +1,4 @@
-"""Units of bodies: what follows, what is refused and which option it names."""
+"""Units of bodies: consistent units, rejected units, and the option named in the message."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vehicle.engines.simulation.standing import require_body_modes
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.mass_difference import require_unit_of_mass, vehicle_lines
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.sources.units import require_first_mode, require_mass, units_of
+from vehicle.model.flexbody.sources.body_units import require_first_mode, require_mass, units_of
 from vehicle.runs.car import Car
 
 NEWTON = {("m", "kg"): 1.0, ("mm", "t"): 1.0, ("in", "lbf s2/in"): 4.4482216152605}

@@ -1,4 +1,4 @@
-"""The elastic model of a vehicle's body: computed from a design on its hardpoints, or imported as a superelement."""
+"""Elastic model of a vehicle body: computed from a design on the hardpoints, or imported as a superelement."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_design import BodyDesign, read_design
 from vehicle.model.flexbody.body_frame import design_superelement, skeleton
-from vehicle.model.flexbody.loads import body_loads, with_loads
+from vehicle.model.flexbody.body_loads import body_loads, with_loads
 from vehicle.model.flexbody.mass_difference import require_unit_of_mass
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
@@ -23,34 +23,33 @@ from vehicle.model.parameters.vehicle import Vehicle
 PACKAGE_FOLDER = FOCUS_FILE.parent
 BODY_DESIGN = PACKAGE_FOLDER / "body_design.toml"
 TRIMMED_BODY = PACKAGE_FOLDER / "trimmed_body.toml"
-"""The shipped design, and its superelement on the shipped car for those who want it as it was fitted; it is written by
-`python -m vehicle body build --output`."""
+"""Shipped body design, and its superelement on the shipped car, written by `python -m vehicle body build --output`."""
 _DESIGN = re.compile(r"""^format *= *["']body design""", re.MULTILINE)
 
 
 def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
-    """The superelement of a vehicle's free trimmed body; one without modes where it is rigid.
+    """Return the superelement of the free trimmed body of a vehicle; without modes if the body is rigid.
+
+    A design is built on the hardpoints with the mass properties of the vehicle. A rigid body uses only the local
+    stiffness of the attachments from its file; without a file, its nodes are the hardpoints.
 
     Args:
         vehicle: parameters; `body.superelement` names a body design or a modal superelement.
         folder: folder of the vehicle file, searched before the package.
 
-    Returns:
-        The body. A design stands on the hardpoints and has the mass properties of the vehicle; of a rigid body
-        only the local stiffness of attachments is taken, and without a file its nodes are the bare hardpoints.
-
     Raises:
-        ConfigurationError: no such file and the vehicle needs one; a bad design, or one that does not fit the vehicle.
-        DataError: the superelement is bad, or its mass is in another unit.
+        ConfigurationError: a required file is missing, or the design is invalid or does not fit the vehicle.
+        DataError: the superelement is invalid, or its mass is in another unit.
     """
     body, points = vehicle.body, vehicle.points
     file = None if body.superelement is None else _find(body.superelement, folder)
     if file is None:
         if body.superelement is not None and (body.flexible or body.attachment_flexibility):
-            known = ", ".join(sorted(found.name for found in PACKAGE_FOLDER.glob("*.toml")))
+            package_files = ", ".join(sorted(path.name for path in PACKAGE_FOLDER.glob("*.toml")))
             raise ConfigurationError(
-                f"body.superelement: no file {body.superelement!r} beside the vehicle file nor in the package, which "
-                f"has {known}; a rigid body (body.flexible = false, body.attachment_flexibility = false) needs none"
+                f"body.superelement: no file {body.superelement!r} in the folder of the vehicle file or in the package "
+                f"(files: {package_files}). Name an existing file, or set body.flexible = false and "
+                "body.attachment_flexibility = false for a rigid body"
             )
         return _bare(vehicle)
     status = file.stat()
@@ -61,7 +60,7 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
     try:
         if not body.flexible:
             return skeleton(source, points)
-        rigid_body(body)  # says better what is wrong with an inertia
+        rigid_body(body)  # raises the clearer message for an invalid inertia
         attachments, loads = vehicle.composition.attachments(), body_loads(vehicle)
         built = design_superelement(source, points, attachments, body, loads)
         return _with_changed_modes(_up_to(built, vehicle), vehicle) if loads else _as_in(vehicle, built)
@@ -71,43 +70,45 @@ def body_model(vehicle: Vehicle, folder: Path | None = None) -> Superelement:
 
 
 def _as_in(vehicle: Vehicle, model: Superelement) -> Superelement:
-    """Return a body with the mass, the loads and the modes that the vehicle gives it.
+    """Return a body model with the mass factor, load masses and changed mode parameters of the vehicle.
 
-    `modes_up_to` is a frequency before the mass is scaled, so that the mass does not change the number of modes; of a
-    body with loads it is one with the loads, which are in the space of all its modes.
+    Without loads, `modes_up_to` applies before the mass is scaled, and the number of modes is independent of the mass.
+    With loads, `modes_up_to` applies to the modes with the loads, which are combinations of all modes of the body.
     """
     factor, loads = vehicle.body.model_factor, body_loads(vehicle)
-    kept = _up_to(with_loads(model.scaled(factor), loads), vehicle) if loads else _up_to(model, vehicle).scaled(factor)
-    return _with_changed_modes(kept, vehicle)
+    reduced = (
+        _up_to(with_loads(model.scaled(factor), loads), vehicle) if loads else _up_to(model, vehicle).scaled(factor)
+    )
+    return _with_changed_modes(reduced, vehicle)
 
 
 def _up_to(model: Superelement, vehicle: Vehicle) -> Superelement:
-    """The body with the modes that the vehicle keeps."""
+    """Return the body with its modes up to `body.modes_up_to`."""
     limit = vehicle.body.modes_up_to
     if limit is None:
         return model
     kept = model.up_to(limit, set(attached_nodes(model, vehicle.composition.attachments()).values()))
     if not kept.frequencies.size:
         raise ConfigurationError(
-            f"body.modes_up_to: found {limit:g} Hz, below the first mode at {model.frequencies[0]:.4g} Hz; a body "
-            "without modes is body.flexible = false"
+            f"body.modes_up_to: found {limit:g} Hz, below the first mode at {model.frequencies[0]:.4g} Hz. Set a "
+            "higher frequency, or body.flexible = false for a body without modes"
         )
     return kept
 
 
 def _with_changed_modes(model: Superelement, vehicle: Vehicle) -> Superelement:
-    """The body with what the vehicle changes of single modes; they keep their numbers, whatever their order becomes."""
-    changes = {int(number): change for number, change in vehicle.body.modes.items()}
-    if not changes:
+    """Apply the changes of frequency and damping in `body.modes` to single modes, without sorting the modes again."""
+    mode_changes = {int(number): change for number, change in vehicle.body.modes.items()}
+    if not mode_changes:
         return model
     count = len(model.frequencies)
-    if max(changes) > count:
+    if max(mode_changes) > count:
         above = "" if vehicle.body.modes_up_to is None else f" up to body.modes_up_to = {vehicle.body.modes_up_to:g} Hz"
         raise ConfigurationError(
-            f"body.modes.{max(changes)}: {model.name} has modes 1 to {count}{above}; give the number of one"
+            f"body.modes.{max(mode_changes)}: {model.name} has modes 1 to {count}{above}; use one of these numbers"
         )
     frequencies, damping = model.frequencies.copy(), model.damping_ratio.copy()
-    for number, change in changes.items():
+    for number, change in mode_changes.items():
         frequencies[number - 1] *= change.frequency_factor
         if change.damping_ratio is not None:
             damping[number - 1] = change.damping_ratio
@@ -115,48 +116,48 @@ def _with_changed_modes(model: Superelement, vehicle: Vehicle) -> Superelement:
 
 
 def own_body_file(vehicle: Vehicle, folder: Path | None) -> Path | None:
-    """The file of the body where it is none of the package; arguments as of `body_model`."""
-    found = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
-    return None if found is None or found.parent == PACKAGE_FOLDER else found
+    """Return the body file of a vehicle, or None if it belongs to the package; see `body_model` for the arguments."""
+    file = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
+    return None if file is None or file.parent == PACKAGE_FOLDER else file
 
 
 def body_file(vehicle: Vehicle, folder: Path | None = None) -> Path:
-    """The body design or superelement that a vehicle names.
+    """Return the path of the body design or superelement named by a vehicle.
 
     Raises:
-        ConfigurationError: it names none, or there is no such file.
+        ConfigurationError: the vehicle names no file, or the file does not exist.
     """
     file = None if vehicle.body.superelement is None else _find(vehicle.body.superelement, folder)
     if file is None:
-        raise ConfigurationError(f"body.superelement: {vehicle.body.superelement}, no such file; name a body design")
+        raise ConfigurationError(f"body.superelement: no file {vehicle.body.superelement}; name a body design")
     return file
 
 
 def _find(name: str, folder: Path | None) -> Path | None:
-    """A file by its name, or by the whole path that the user gives as an override; None where there is none."""
+    """Find a file by name in the folder and then the package, or by its path; None if the file does not exist."""
     if "/" in name:
         return Path(name) if Path(name).is_file() else None
-    for place in (folder, PACKAGE_FOLDER):
-        if place is None or not (place / name).is_file():
+    for directory in (folder, PACKAGE_FOLDER):
+        if directory is None or not (directory / name).is_file():
             continue
-        if (place / name).resolve().parent != place.resolve():
+        if (directory / name).resolve().parent != directory.resolve():
             raise ConfigurationError(
-                f"body.superelement: {name} is a link that leads out of {place}; put the file itself there"
+                f"body.superelement: {name} is a link that points outside {directory}; put the file itself there"
             )
-        return place / name
+        return directory / name
     return None
 
 
-# A sweep builds thousands of cars on one body; neither kind can be changed once it is read.
+# A sweep builds thousands of cars with one body; designs and superelements are immutable.
 @lru_cache(maxsize=8)
 def _read_once(file: Path, modified: int, size: int) -> BodyDesign | Superelement:
-    """Read a file again only where it has changed."""
+    """Read a body file, cached until its modification time or size changes."""
     is_design = file.suffix != ".npz" and _DESIGN.search(file.read_text(encoding="utf-8", errors="replace"))
     return read_design(file) if is_design else read_superelement(file)
 
 
 def _bare(vehicle: Vehicle) -> Superelement:
-    """A rigid body without a file: its nodes are hardpoints, and its mass, which nothing asks for, is spread evenly."""
+    """Return a rigid body without a file: nodes at the attachments, mass (not used further) spread evenly."""
     points = vehicle.composition.attachments()
     return Superelement(
         name="rigid_body",

@@ -1,20 +1,20 @@
-"""Fit of the section factors of the body: what it is held to, what of that is published, and which rows it has used.
+"""Fit of the section factors of the body to published and assumed modal data.
 
-Published of the body: nine modes, the first at 19 Hz and the ninth at 43 Hz, and that a torsion mode couples with the
+Published for the body: nine modes, the first at 19 Hz and the ninth at 43 Hz, and that a torsion mode couples with the
 vertical wheel mode at 28 Hz. The torsion mode lies below the wheel mode and pushes it up: frequency and amplitude at
 the strut towers were chosen on the complete car with stuck dampers such that its wheel mode is at 28 Hz and gives the
 highest peak of the knuckle. Torsion at 30.5 Hz leaves the wheel mode at 26.4 to 27.3 Hz.
 
-Not published: shapes. A frame that is fitted to the frequencies alone has an antinode of its first five modes at the
+Mode shapes are not published. A frame fitted to the frequencies alone has an antinode of its first five modes at the
 seat rail (0.042 to 0.052 kg^-1/2 along z; the mean of the body is 813^-1/2 = 0.035), and seat-rail levels of 2.3 to 3
-times those on the axes of figures 4.1 and 4.2. So the rail's amplitudes have limits here, and these levels count as
-fitted. The comfort figures 4.3 to 4.12 and the bump figures 3.13 to 3.18 were looked at when limits and torsion mode
-were chosen; none is in the residuals, and none of them counts as predicted. A free body that bends as a parabola has an
-antinode in its middle, where the seats are: with a quiet rail the first mode is a pitching of the front on the soft
-door frame, with a modal assurance of 0.13 with bending.
+times those on the axes of figures 4.1 and 4.2. So the fit limits the amplitudes of the rail, and these levels count as
+fitted. The comfort figures 4.3 to 4.12 and the bump figures 3.13 to 3.18 were consulted when limits and torsion mode
+were chosen; the residuals contain none of these figures, but they do not count as predicted either. A free body that
+bends as a parabola has an antinode at the seats in its middle: with small amplitudes of the rail, the first mode is a
+pitching of the front on the soft door frame, with a modal assurance of 0.13 with bending.
 
-Everything else only fills the gap, weighted low: modes spread over the range, a tenth mode above it, modes that are
-symmetric or antisymmetric, no node that moves far more than the body around it, factors near one.
+The remaining residuals make the fit unique and have low weights: modes spread over the frequency range, a tenth mode
+above the range, symmetric or antisymmetric modes, no node that moves far more than its surroundings, factors near one.
 """
 
 from __future__ import annotations
@@ -32,37 +32,38 @@ from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.symmetry import mirror_nodes, parity
 
 FIRST_HZ, LAST_HZ = 19.0, 43.0
-"""published: Bommer 2006, section 3.1.2; the first is made the lowest symmetric mode (assumed)"""
+"""Frequencies of the first and last mode [Hz], published: Bommer 2006, section 3.1.2; first = lowest symmetric mode
+(assumed)."""
 MODE_COUNT = 9
-"""published"""
+"""Number of elastic modes, published: Bommer 2006, section 3.1.2."""
 TORSION_HZ = 25.5
-"""Fitted to the vertical wheel mode at 28 Hz of the complete car."""
+"""Frequency of the torsion mode [Hz], fitted to the vertical wheel mode at 28 Hz of the complete car."""
 STAGES = (0.5, 2.0, 8.0, 30.0)
 """Weight of the three frequencies in the stages of a fit from the nominal sections [1/Hz]."""
 _TORSION_AMPLITUDE = 0.018  # kg^-1/2 vertical at a strut top, fitted as TORSION_HZ
-_TOWER = np.array([0.022] + 8 * [0.014])  # the same, largest in the other modes: less than in torsion but for the first
+_TOWER = np.array([0.022] + 8 * [0.014])  # kg^-1/2, limit at the strut top per mode other than torsion
 _RAIL = np.array([0.007, 0.011, 0.010] + 6 * [0.008])
-"""Largest amplitude of the seat rail along z [kg^-1/2], mode by mode: a fifth to a third of the mean of the body."""
-_RAIL_SIDEWAYS = 0.012  # the same along x and y
+"""Maximum amplitude of the seat rail along z [kg^-1/2] per mode: a fifth to a third of the mean of the body."""
+_RAIL_SIDEWAYS = 0.012  # kg^-1/2, maximum amplitude of the seat rail along x and y
 _SPREAD_HZ = (25.5, 30.5, 31.8, 33.2, 35.5, 38.0, 40.5)  # assumed for the modes between first and last
-_GAP_HZ = 1.3  # assumed: closer modes of an almost symmetric body mix into lopsided ones
-_TENTH_HZ = 46.0  # assumed: well above the last mode that is kept
-_ASSURANCE = 0.38  # assumed: likeness of the torsion mode to pure torsion
-_PARITY = 0.97  # assumed
-_NODE_ENERGY = 0.235  # assumed: largest share of one node in the kinetic energy of a mode
-_PAIR_DIFFERENCE = 0.10  # assumed: relative difference of the amplitudes of facing interface nodes
-_FACTOR = np.log(4.0)  # a factor of four away from nominal is the most, and costs as much as one mode 3 Hz off
+_GAP_HZ = 1.3  # assumed: closer modes of an almost symmetric body mix into asymmetric modes
+_TENTH_HZ = 46.0  # assumed: well above the last mode of the superelement
+_ASSURANCE = 0.38  # assumed: minimum modal assurance of the torsion mode with pure torsion
+_PARITY = 0.97  # assumed: minimum |parity| of a mode
+_NODE_ENERGY = 0.235  # assumed: maximum share of one node in the kinetic energy of a mode
+_PAIR_DIFFERENCE = 0.10  # assumed: maximum relative difference of the amplitudes of opposite interface nodes
+_FACTOR = np.log(4.0)  # maximum deviation from nominal is a factor of four; costs as much as a mode 3 Hz off
 _MOUNTS = ("hydromount", "linear_mount", "bottom_")
 _INTERFACES = ("arm_", "strut_top", "tie_", "stab_", "rear_support", "seat", *_MOUNTS)
 
 
 def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> FloatArray:
-    """What the fit minimises, as one vector [1]; the first three are first, last and torsion frequency.
+    """Return the residuals of the fit as a vector [1]: first, last and torsion frequency, then the other residuals.
 
     Args:
         frame: the body frame.
         factors: factor of every member group [1].
-        weight: weight of first, last and torsion frequency [1/Hz]; everything else has weight of order one.
+        weight: weight of first, last and torsion frequency [1/Hz]; the other residuals have weights of order one.
     """
     body = frame.skeleton
     frequencies, shapes = frame.modes(factors, MODE_COUNT + 1)
@@ -90,7 +91,7 @@ def residuals(frame: BodyFrame, factors: Mapping[str, float], weight: float) -> 
 
 
 def _excess_motion(body: Superelement, node_mass: FloatArray, shapes: FloatArray) -> FloatArray:
-    """Penalties [1] for a loud seat rail, nodes that move far more than the body around them, and lopsided pairs."""
+    """Return penalties [1] for large motion of the seat rail or of single nodes, and for asymmetric pairs of nodes."""
     amplitude = np.linalg.norm(shapes, axis=2)  # (modes, n)
     facing = mirror_nodes(body.positions)
     interface = np.array([name.startswith(_INTERFACES) for name in body.nodes])
@@ -98,7 +99,9 @@ def _excess_motion(body: Superelement, node_mass: FloatArray, shapes: FloatArray
     right = np.flatnonzero((facing >= 0) & (body.positions[:, 1] > 0.0))
     energy = node_mass * amplitude**2
     sides = amplitude[:, right], amplitude[:, facing[right]]
-    difference = 2.0 * np.abs(sides[0] - sides[1]) / np.maximum(sides[0] + sides[1], 0.02)  # 0.01 counts as little
+    difference = (
+        2.0 * np.abs(sides[0] - sides[1]) / np.maximum(sides[0] + sides[1], 0.02)
+    )  # amplitudes below 0.01 are small
     return np.concatenate(
         [
             500.0 * np.maximum(0.0, rail[:, 2] - _RAIL),
@@ -113,18 +116,18 @@ def _excess_motion(body: Superelement, node_mass: FloatArray, shapes: FloatArray
 
 
 def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[float, ...]) -> dict[str, float]:
-    """Factors that minimise `residuals`, in stages of growing weight of the three frequencies.
+    """Fit the section factors that minimise `residuals`, in stages of growing weight of the three frequencies.
 
     Args:
         frame: the body frame.
-        start: first guess of every factor [1].
+        start: initial value of every factor [1].
         weights: weight of the three frequencies in each stage [1/Hz].
 
     Returns:
         Factor of every member group [1].
 
     Raises:
-        ConfigurationError: the frequencies cannot be met within 0.1 Hz from this start.
+        ConfigurationError: the fit from this start misses a frequency by more than 0.1 Hz.
     """
     groups = frame.design.fitted_groups
 
@@ -146,6 +149,6 @@ def fit_factors(frame: BodyFrame, start: Mapping[str, float], weights: tuple[flo
     if missed.max() > 0.1:
         raise ConfigurationError(
             f"body fit: first, last and torsion frequency are {missed.round(3).tolist()} Hz away from {FIRST_HZ:g}, "
-            f"{LAST_HZ:g} and {TORSION_HZ:g} Hz; 0.1 Hz is allowed. Start nearer or change the nominal sections."
+            f"{LAST_HZ:g} and {TORSION_HZ:g} Hz, must be at most 0.1 Hz. Start nearer or change the nominal sections."
         )
     return best

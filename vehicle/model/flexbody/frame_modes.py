@@ -1,4 +1,4 @@
-"""Free-free modes of a frame whose nodes carry translational mass only."""
+"""Free-free modes of a frame with translational mass at its nodes."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from vehicle.model.flexbody.beam import FloatArray
 
 
 def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Eliminate the massless node rotations; exact, because no inertia force acts on them.
+    """Eliminate the node rotations; exact, because the rotations have no inertia.
 
-    K = K_tt - K_tr K_rr^-1 K_rt, and the rotations follow as -K_rr^-1 K_rt u.
+    K = K_tt - K_tr K_rr^-1 K_rt, and the rotations are -K_rr^-1 K_rt u.
 
     Args:
         stiffness: frame stiffness, shape (6 n, 6 n), six degrees of freedom node by node.
@@ -22,7 +22,7 @@ def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
         translations, shape (6 n, 3 n).
 
     Raises:
-        ConfigurationError: a node can turn without resistance.
+        ConfigurationError: a node can rotate freely.
     """
     count = stiffness.shape[0] // 6
     dofs = np.arange(6 * count).reshape(count, 6)
@@ -31,22 +31,22 @@ def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
         factor = scipy.linalg.cho_factor(stiffness[np.ix_(r, r)])
     except np.linalg.LinAlgError as error:
         raise ConfigurationError(
-            "space frame: a node can turn freely (its rotational stiffness is singular). "
+            "space frame: a node can rotate freely (its rotational stiffness is singular). "
             "Connect every node to a beam that resists bending and torsion."
         ) from error
     recovery = np.zeros((6 * count, 3 * count))
     recovery[t, np.arange(3 * count)] = 1.0
     recovery[r] = -scipy.linalg.cho_solve(factor, stiffness[np.ix_(r, t)])
     condensed = stiffness[np.ix_(t, t)] + stiffness[np.ix_(t, r)] @ recovery[r]
-    return 0.5 * (condensed + condensed.T), recovery  # symmetric but for round-off
+    return 0.5 * (condensed + condensed.T), recovery  # removes the asymmetry of round-off
 
 
 def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
-    """Displacement of every node in the six rigid motions: unit translations, unit rotations about the centre.
+    """Return the displacement of every node in the six rigid motions: unit translations, unit rotations about a centre.
 
     Args:
         positions: node positions [m], shape (n, 3).
-        center: point the rotations are about [m], shape (3,).
+        center: centre of the rotations [m], shape (3,).
 
     Returns:
         Shapes [1 and m], shape (6, n, 3).
@@ -61,17 +61,17 @@ def rigid_shapes(positions: FloatArray, center: FloatArray) -> FloatArray:
 def free_free_modes(
     stiffness: FloatArray, node_mass: FloatArray, positions: FloatArray, count: int, added: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Lowest elastic modes of the unsupported structure, mass-normalised and orthogonal to the rigid-body modes.
+    """Compute the lowest elastic modes of the free structure, mass-normalised and orthogonal to the rigid-body modes.
 
-    (K - w^2 M) phi = 0 with phi_i^T M phi_j = delta_ij. The rigid modes are moved above the spectrum instead of being
-    looked for near zero, so what is left is orthogonal to them to round-off.
+    (K - w^2 M) phi = 0 with phi_i^T M phi_j = delta_ij. The rigid-body modes are shifted above the spectrum, so that
+    the elastic modes are orthogonal to them to round-off.
 
     Args:
         stiffness: translational stiffness [N/m], shape (3 n, 3 n).
         node_mass: lumped masses [kg], all positive, shape (n,).
         positions: node positions [m], shape (n, 3).
-        count: number of elastic modes wanted.
-        added: mass matrix beside the lumped masses [kg], shape (3 n, 3 n).
+        count: number of elastic modes.
+        added: mass matrix in addition to the lumped masses [kg], shape (3 n, 3 n).
 
     Returns:
         Frequencies [Hz], shape (count,); shapes [kg^-1/2], shape (count, n, 3), signs by `fix_signs`.
@@ -95,13 +95,13 @@ def free_free_modes(
 
 
 def fix_signs(shapes: FloatArray) -> FloatArray:
-    """Give every mode the sign that makes its largest component positive, so that a rebuilt file is the same file.
+    """Choose the sign of every mode so that its largest component is positive, which makes the shapes reproducible.
 
     Args:
         shapes: mode shapes, shape (modes, n, 3).
 
     Returns:
-        The same shapes, some of them multiplied by -1.
+        Shapes, each multiplied by 1 or -1.
     """
     flat = shapes.reshape(len(shapes), -1)
     largest = flat[np.arange(len(flat)), np.argmax(np.abs(flat), axis=1)]
