@@ -14,6 +14,7 @@ import scipy.linalg
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from tests.benchmarks.blas_threads import Server, jobs
+from vehicle import threads
 from vehicle.threads import THREADS, one_blas_thread, prefer_one_thread
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -150,3 +151,37 @@ def test_results_are_bitwise_those_of_one_thread_in_the_environment():
         assert one(name)[2] == free(name)[2], name
     one.close()
     free.close()
+
+
+def test_another_thread_can_set_the_number_after_a_block(three):
+    with one_blas_thread():
+        pass
+    thread = threading.Thread(target=threadpool_limits, args=(2, "blas"))
+    thread.start()
+    thread.join()
+    assert blas_threads() == {2}
+
+
+class NumberOfEachThread(threading.local):
+    """Library whose number of threads belongs to the calling thread, as that of MKL."""
+
+    internal_api, num_threads = "mkl", 3
+
+    def set_num_threads(self, number):
+        self.num_threads = number
+
+
+def test_a_number_of_each_thread_is_restored_in_its_thread(monkeypatch):
+    library, leave, after = NumberOfEachThread(), threading.Event(), []
+    monkeypatch.setattr(threads, "_libraries", lambda: (library,))
+
+    def other():
+        with one_blas_thread():
+            after.append(library.num_threads)
+        after.append(library.num_threads)
+        leave.set()
+
+    with one_blas_thread():
+        threading.Thread(target=other).start()
+        assert leave.wait(10.0) and library.num_threads == 1
+    assert after == [1, 3] and library.num_threads == 3
