@@ -1,5 +1,1 @@
 """Short studies, one script each: `python -m scenarios.NAME`."""
-
-from vehicle.threads import prefer_one_thread
-
-prefer_one_thread()

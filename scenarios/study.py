@@ -20,6 +20,7 @@ from vehicle.commands.options import engine_option, jobs_option, message_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.threads import one_blas_thread
 
 STUDIES = {
     "levels": "Low, mid and high random input: FRFs, slip shares, wheel mode.",
@@ -101,6 +102,7 @@ class Study(Generic[Subject]):
             Exit code, see `run_command`.
         """
 
+        @one_blas_thread()
         def job(options: argparse.Namespace) -> None:
             started = clock.perf_counter()
             subject = self.load(options)

@@ -12,6 +12,7 @@ import pytest
 from vehicle.commands import command_line
 from vehicle.commands.command_line import COLLECTED, begin_process, parse_and_run
 from vehicle.commands.parser import Parser
+from vehicle.threads import THREADS
 
 
 @pytest.fixture
@@ -25,18 +26,24 @@ def at_end(monkeypatch):
 
 
 def test_a_process_collects_seldom_and_loads_no_window(monkeypatch, at_end):
+    for name in THREADS:
+        monkeypatch.setenv(name, "3")
+        monkeypatch.delenv(name)
     monkeypatch.setenv("MUJOCO_GL", "")
     monkeypatch.delenv("MUJOCO_GL")
     begin_process()
     assert gc.isenabled() and gc.get_threshold() == COLLECTED
     assert at_end == [gc.freeze]
     assert os.environ["MUJOCO_GL"] == "disable"
+    assert {os.environ.get(name) for name in THREADS} == {"1"}
 
 
 def test_the_library_that_a_user_names_stays(monkeypatch, at_end):
     monkeypatch.setenv("MUJOCO_GL", "egl")
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
     begin_process()
     assert os.environ["MUJOCO_GL"] == "egl"
+    assert os.environ["OMP_NUM_THREADS"] == "3"
 
 
 @pytest.mark.parametrize(("arguments", "times"), [(None, 1), ([], 0)])

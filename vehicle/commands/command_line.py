@@ -18,6 +18,7 @@ from types import FrameType
 
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError, OutputError, VehicleError
+from vehicle.threads import prefer_one_thread
 
 INTERRUPTED = 130
 
@@ -84,12 +85,13 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
 
 
 def begin_process() -> None:
-    """Set up the garbage collector and OpenGL for a process that runs one command; call it before heavy imports."""
+    """Set up garbage collector, OpenGL and threads for the process of a command; call it before heavy imports."""
     gc.set_threshold(*COLLECTED)
     # The operating system frees the memory; a last collection would take as long as a run.
     atexit.register(gc.freeze)
     # Without this MuJoCo loads the GLFW library at its import. Films select a backend themselves.
     os.environ.setdefault("MUJOCO_GL", "disable")
+    prefer_one_thread()
 
 
 def _stand_in_for_closed_streams() -> io.StringIO | None:

@@ -26,6 +26,7 @@ from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
+from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
 
@@ -68,6 +69,7 @@ class BatchRuns:
         )
 
 
+@one_blas_thread()
 def simulate_batch(
     models: Sequence[PoleModel],
     signal: Signal,

@@ -43,6 +43,7 @@ from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.threads import one_blas_thread
 
 Overrides = Iterable[str] | Mapping[str, Any]
 """Changes of parameters: path to value, or texts "path=value"."""
@@ -132,11 +133,13 @@ class Car:
         return car_card(self)
 
     @cached_property
+    @one_blas_thread()
     def trimmed_body(self) -> Superelement:
         """Superelement of the free trimmed body: from its file, or computed from a design on these hardpoints."""
         return body_model(self.vehicle, self.folder)
 
     @cached_property
+    @one_blas_thread()
     def model(self) -> CarModel:
         """Assembled, compiled and trimmed MuJoCo model."""
         return build_model(self.vehicle, self.trimmed_body)
@@ -146,11 +149,13 @@ class Car:
         return VariantTerms(self.model, self.matrices, self.trimmed_body)
 
     @cached_property
+    @one_blas_thread()
     def _from_terms(self) -> CarVariant | None:
         """Matrices from the terms of the base car; None if this car must be built."""
         return None if self._base is None else self._base._terms.variant(self.vehicle)
 
     @cached_property
+    @one_blas_thread()
     def matrices(self) -> CarMatrices:
         """Mass, damping and stiffness matrices of the same model in its design position."""
         if self._from_terms:
@@ -164,15 +169,18 @@ class Car:
         return self._from_terms.static if self._from_terms else self.model.static
 
     @cached_property
+    @one_blas_thread()
     def poles(self) -> PoleModel:
         """Modal form of the same matrices, one scalar equation per pole, for the reduced engine."""
         return pole_model(self.matrices)
 
     @cached_property
+    @one_blas_thread()
     def load_rows(self) -> LoadRows:
         """Output rows for the forces of all elements and the suspension travel, in the coordinates of the matrices."""
         return load_rows(self.model, self.matrices)
 
+    @one_blas_thread()
     def check(self, engine: str = "mujoco") -> None:
         """Check the car before a run, once for each engine.
 
@@ -190,6 +198,7 @@ class Car:
             require_stable(self.model, self.matrices, self.poles.poles)
         self._checked.add(engine)
 
+    @one_blas_thread()
     def stepped(self) -> Car:
         """Return this car with a sufficiently small time step: the given step, else the largest that passes all checks.
 
@@ -210,12 +219,14 @@ class Car:
             self._stepped = car
         return self._stepped
 
+    @one_blas_thread()
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Return the modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
         model = self._base.model if self._base and self._from_terms else self.model
         names = model.superelement.mode_names
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
+    @one_blas_thread()
     def matrix_frf(
         self, channels: Sequence[str], frequency: npt.ArrayLike, *, damper: str = "stuck", wheel: str | None = None
     ) -> npt.NDArray[np.complex128]:
@@ -234,6 +245,7 @@ class Car:
         driven = [float(name == wheel) for name in self.vehicle.wheels]
         return exact_response(form, frequency, channels, "acceleration", driven=driven)
 
+    @one_blas_thread()
     def run(
         self,
         source: Signal | Road | Path | str,

@@ -18,6 +18,7 @@ from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import PARTS, clock_advice, response_faults, run_times, sign_and_unit
 from vehicle.signals.records.measured import Measured, read_measured
+from vehicle.threads import one_blas_thread
 
 LARGEST_DRIFT = 0.1
 """Maximum drift of a clock [-]; a larger value means a wrong sampling rate."""
@@ -71,6 +72,7 @@ def compare_run(
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
 
 
+@one_blas_thread()
 def comparison_of(
     measured: Measured,
     simulated: Simulated,

@@ -21,6 +21,7 @@ from vehicle.signals.analysis.samples import (
     lines_in_band,
 )
 from vehicle.signals.analysis.segments import MINIMUM_AVERAGES, cut_into_segments
+from vehicle.threads import one_blas_thread
 
 EXCITED = 1e-24
 """Minimum power of an excited line over the strongest line: amplitude ratio 1e-12, below which rounding of the
@@ -83,6 +84,7 @@ def frequency_response(
     )[0]
 
 
+@one_blas_thread()
 def frequency_responses(
     time_step: float,
     excitations: ArrayLike,

@@ -35,6 +35,7 @@ from vehicle.signals.analysis.samples import (
     checked_time_step,
     is_constant,
 )
+from vehicle.threads import one_blas_thread
 
 LEAST_HALF_WIDTH, LINES_OF_AN_INPUT = 8, 5
 """Minimum half width n of a window [lines], 17 lines for 6 unknowns, and its increase for every further input."""
@@ -95,6 +96,7 @@ def local_rational_response(
     return estimates[0]
 
 
+@one_blas_thread()
 def local_rational_responses(
     time_step: float,
     excitations: ArrayLike,

@@ -15,6 +15,7 @@ from vehicle.signals.records.reader import read_record
 from vehicle.studies.replication.driven_car import DrivenCar
 from vehicle.studies.replication.iteration import Replication, Step, replicate
 from vehicle.studies.replication.target import Target, read_target
+from vehicle.threads import one_blas_thread
 
 BAND = (1.0, 50.0)
 """Default band of the replicated response [Hz]."""
@@ -60,6 +61,7 @@ class FoundDrive:
         return self.plant.last
 
 
+@one_blas_thread()
 def replicate_drive(
     car: Car,
     target: Path | str,

@@ -26,6 +26,7 @@ from vehicle.studies.sweeps.case import Case, signal_of
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure
 from vehicle.studies.sweeps.run_batch import Runs
+from vehicle.threads import one_blas_thread
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -42,6 +43,7 @@ _ONE_AT_A_TIME = threading.Lock()
 """Lock for MuJoCo, whose callbacks belong to the whole process: an executor may use threads."""
 
 
+@one_blas_thread()
 def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
     """Evaluate the cases of a sweep in this process, in batches where the reduced engine supports it.
 

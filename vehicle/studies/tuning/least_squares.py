@@ -25,6 +25,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range, checked_ranges
 from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, target_statistics
 from vehicle.studies.tuning.identifiability import Unidentified, covariance, worst_direction
+from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
 
@@ -62,6 +63,7 @@ class Target(Protocol):
         """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded."""
 
 
+@one_blas_thread()
 def fit(
     parameters: Sequence[Range],
     targets: Sequence[Target],
