@@ -146,3 +146,18 @@ def test_two_inputs_are_separated_related_or_not():
         "Statistics and intervals", "error of an FRF by a related second input, over that by an unrelated one", ratio,
         1.0 / np.sqrt(0.3), rel=0.15, source="closed form: 1 / sqrt(1 - coherence of the inputs)",
     )  # fmt: skip
+
+
+def test_an_frf_does_not_depend_on_the_other_responses_up_to_the_nyquist_frequency():
+    # Windows and responses are fitted in batches; towards 50.5 Hz the windows become narrower again.
+    rng = np.random.default_rng(7)
+    drive = rng.normal(size=3000)
+    answers = np.array([np.convolve(drive, rng.normal(size=9), "same") for _ in range(40)])
+    answers += 0.1 * rng.normal(size=answers.shape)
+    together = local_rational_response(1.0 / 101.0, drive, answers, band=(1.0, 50.0))
+    assert np.isfinite(together.response).mean() > 0.95
+    for row in (0, 17, 39):
+        alone = local_rational_response(1.0 / 101.0, drive, answers[row], band=(1.0, 50.0))
+        np.testing.assert_allclose(together.response[row], alone.response[0], rtol=1e-9)
+        np.testing.assert_allclose(together.random_error[row], alone.random_error[0], rtol=1e-9)
+        np.testing.assert_allclose(together.coherence[row], alone.coherence[0], rtol=1e-9)

@@ -11,7 +11,7 @@ Noise, 2008: rounding to a step q adds white noise of variance q^2 / 12.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cache, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -94,10 +94,10 @@ def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> t
     count, mean = samples.size, samples.mean()
     all_lines = count // 2 + 1
     computed = min(lines + 1, all_lines) if lines is not None and is_long(count) else all_lines
-    transform, coarse = RecordLines(count, 0, computed), np.linspace(0.0, 1.0, TAPER_SAMPLES)
+    transform = RecordLines(count, 0, computed)
     power, total = np.zeros(computed), 0.0
-    for taper in scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS):
-        window = partial(_window, scipy.interpolate.CubicSpline(coarse, taper), count)
+    for number in range(TAPERS):
+        window = partial(_window, number, count)
         tapered = partial(_tapered, samples, mean, window)
         energy = sum(float(np.sum(window(part) ** 2)) for part in transform.parts)
         power += np.abs(transform.of(tapered)) ** 2 * count / energy / TAPERS
@@ -111,15 +111,35 @@ def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> t
     return power[:lines], floor
 
 
-def _window(spline: Any, count: int, part: slice) -> Real:
-    """Return a part of a taper over a record of `count` samples; the spline covers 0 to 1."""
-    values: Real = spline(np.minimum(np.arange(part.start, part.stop) * (1.0 / (count - 1)), 1.0))
+@cache
+def _taper_splines() -> list[Any]:
+    """Return a cubic spline through each Slepian taper, from 0 to 1."""
+    tapers = scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS)
+    return [scipy.interpolate.CubicSpline(np.linspace(0.0, 1.0, TAPER_SAMPLES), taper) for taper in tapers]
+
+
+def _window(number: int, count: int, part: slice) -> Real:
+    """Return a part of a taper over a record of `count` samples."""
+    return _window_samples(number, count, part.start, part.stop)
+
+
+@lru_cache(maxsize=1)
+def _window_samples(number: int, count: int, start: int, stop: int) -> Real:
+    """Return samples of a taper; the last part is stored, because energy and spectrum need it one after the other."""
+    values: Real = _taper_splines()[number](np.minimum(np.arange(start, stop) * (1.0 / (count - 1)), 1.0))
     return values
 
 
 def _tapered(samples: Real, mean: float, window: Callable[[slice], Real], part: slice) -> Real:
     """Return a part of a record without its mean, multiplied by a taper."""
     return (samples[part] - mean) * window(part)
+
+
+@lru_cache(maxsize=64)
+def _cubic_basis(half: int) -> Real:
+    """Return an orthonormal basis of the cubic polynomials over 2 n + 1 lines, shape (2 n + 1, 4)."""
+    basis: Real = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
+    return basis
 
 
 def silent_lines(
@@ -148,7 +168,7 @@ def silent_lines(
         power, floor = tapered_power(samples, step or rounding_step(samples), farthest)
         for selected, lines in windows_of_equal_length(centres, halves):
             half = lines.shape[1] // 2
-            smooth = np.linalg.qr(np.vander(np.arange(-half, half + 1) / half, 4))[0]
+            smooth = _cubic_basis(half)
             drive, line_power = spectrum[lines], power[centres[selected]]
             energy = np.abs(drive) ** 2
             roughness = np.mean(np.abs(drive - (drive @ smooth) @ smooth.T) ** 2, axis=1)

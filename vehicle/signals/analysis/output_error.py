@@ -23,30 +23,15 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.signals.analysis.pole_grid import FARTHEST, PoleGrid, pole_grid, right_sides, sums_of_poles
+
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-SHARPEST = 0.15
-"""Minimum half-bandwidth of a pole relative to n: 0.3 % damping if n is 2 % of the frequency."""
-
-LEAST_BANDWIDTH = 0.4
-"""Minimum half-bandwidth [lines] at the minimum n: a narrower pole affects only two lines and is not identifiable."""
-
-WIDEST = 3.0
-"""Maximum half-bandwidth relative to n; the polynomial terms represent wider poles."""
-
-FARTHEST = 1.3
-"""Maximum distance of a pole from the centre of the window relative to n."""
-
-POSITIONS, BANDWIDTHS = 21, 7
-"""Number of positions and bandwidths of the pole grid, spacing 0.13 n. A grid of 27 by 9 changes the result by less
-than 0.1 standard errors."""
 
 STEPS = 8
 """Maximum Gauss-Newton steps; the start from the grid is within a cell, so that each step squares the error."""
@@ -57,6 +42,12 @@ ENOUGH = 0.1
 SHARP_SHARE = 0.1
 """Minimum probability of the best grid node for Gauss-Newton steps; below it, the posterior covers some ten nodes and
 their sum is accurate."""
+
+FITS_IN_CACHE = 200
+"""Fits (windows times responses) processed at once: their arrays over the grid, 300 kB each, stay in the cache."""
+
+REFINED_AT_ONCE = 256
+"""Poles refined at once: the terms of their windows stay in the cache."""
 
 ROUNDING, TINY, SMALLEST = 1e-13, 1e-300, 1e-2
 """Lower bounds against division by zero: for a pole without a residue, and for a pole farther away than 100 n."""
@@ -77,137 +68,234 @@ class WindowFit:
     """power of the error e per line, shape (s, k)"""
 
 
-def fit_windows(inputs: Complex, outputs: Complex, *, wide: bool) -> WindowFit:
-    """Fit every response in every window; windows of equal length share the grid of poles and are fitted in a batch.
+def fit_windows(inputs: Complex, outputs: Complex, halves: NDArray[np.int_], *, wide: bool) -> WindowFit:
+    """Fit the local rational model to all responses in s frequency windows, vectorised over windows and responses.
+
+    Windows are centred in N lines; lines outside a window are zero.
 
     Args:
-        inputs: U on N = 2 n + 1 lines, scaled to unit mean power, shape (s, p, N).
-        outputs: Y, scaled to unit mean power, shape (s, k, N).
-        wide: True if n is above the minimum half width.
+        inputs: spectra U of the inputs, scaled to unit mean power in each window, shape (s, p, N).
+        outputs: spectra Y of the responses, scaled likewise, shape (N, s, k).
+        halves: lines n on each side of the centre line of each window, in ascending order, shape (s,).
+        wide: True if n is a share of the frequency, False if n is the minimum number of lines.
     """
-    input_count, lines = inputs.shape[1:]
-    half, dof = lines // 2, lines - 3 * input_count - 3  # less b, t and a
-    offset = np.arange(-half, half + 1) / half
-    floor = EXACT * _power(outputs)
-    windows = _Windows(offset, inputs)
-    coefficients = _adjoint(windows.basis) @ _transposed(outputs)  # (s, 2p + 1, k)
-    residual = np.ascontiguousarray(outputs - _transposed(windows.basis @ coefficients))
-    total = _power(residual)
+    input_count, count, output_count = inputs.shape[1], *outputs.shape[1:]
+    dof = (2 * halves + 1 - 3 * input_count - 3)[:, None]  # less b, t and a
+    floor = EXACT * _column_power(outputs)
+    windows = _Windows(inputs, halves)
+    coefficients = _adjoint(windows.basis) @ outputs.swapaxes(0, 1)  # (s, 2p + 1, k)
+    residual = outputs - (windows.basis @ coefficients).swapaxes(0, 1)
+    total = _column_power(residual)
+    response = _transposed(windows.weights @ coefficients)
+    covariance = np.empty((count, output_count, input_count, input_count), dtype=np.complex128)
+    noise, share = np.empty((2, count, output_count))
+    best = np.empty((count, output_count), dtype=np.intp)
 
     # All poles of the grid, preceded by a model without pole: x^2 and, for the transient, x replace 1 / (1 + a x).
-    poles, spacing, sharpest, shapes = _pole_grid(half, wide)
-    gram, direct = (np.concatenate(parts) for parts in zip(windows.without_pole(), windows.gram(shapes), strict=True))
-    projected = windows.tail.conj().transpose(1, 0, 2)[:, :, :, None] * residual.transpose(2, 0, 1)[:, :, None]
-    right = (shapes.conj() @ projected.reshape(lines, -1)).reshape(-1, *projected.shape[1:])  # (G, s, p + 1, k)
-    right = np.concatenate([(_adjoint(windows.smooth) @ _transposed(residual))[None], right])
-    inverse = np.linalg.inv(gram)
-    unknowns = inverse @ right  # (G, s, p + 1, k)
-    explained = np.sum(right.real * unknowns.real + right.imag * unknowns.imag, axis=2)
-    residual_power = np.maximum(total - explained, floor)  # (G, s, k)
-    probability = np.exp(dof * (np.log(residual_power.min(axis=0)) - np.log(residual_power)))
-    probability /= probability.sum(axis=0)
-    pole_part = direct @ unknowns  # (G, s, p, k)
-    mean = np.sum(probability[:, :, None] * pole_part, axis=0)  # (s, p, k)
-    noise = np.sum(probability * residual_power, axis=0) / dof
-    node_covariance = windows.covariance + direct @ inverse @ _adjoint(direct)  # (G, s, p, p)
-    spread = np.ascontiguousarray((probability * residual_power).transpose(1, 2, 0)) / dof  # (s, k, G)
-    covariance = (spread @ node_covariance.reshape(*node_covariance.shape[:2], -1).swapaxes(0, 1)).reshape(
-        *total.shape, input_count, input_count
-    )
-    scatter = pole_part - mean
-    for i, j in np.ndindex(input_count, input_count):
-        covariance[..., i, j] += np.sum(probability * scatter[:, :, i] * scatter[:, :, j].conj(), axis=0)
-    response = _transposed(windows.weights @ coefficients + mean)
+    grid = pole_grid(wide, int(halves[0]))
+    equations = _normal_equations(grid, windows, halves)
+    size = max(FITS_IN_CACHE // max(output_count, 1), 1)
+    for begin in range(0, count, size):
+        block = slice(begin, min(begin + size, count))
+        right = right_sides(grid, windows.tail[block], equations.smooth[block], residual[:, block], halves[block])
+        best[block], share[block], noise[block], mean, covariance[block] = _posterior(
+            equations, right, total[block], floor[block], dof[block], block
+        )
+        response[block] += np.moveaxis(mean, 0, -1)
 
     # Where the pole is narrower than a grid cell, the refined best node replaces the mean over the grid.
-    best = np.argmin(residual_power, axis=0)
-    window, sharp = np.nonzero((best > 0) & (probability.max(axis=0) > SHARP_SHARE))
-    if sharp.size:
-        node, refined_windows = best[window, sharp] - 1, windows.of(window)
-        refined = _refine(poles[node], residual[window, sharp], refined_windows, sharpest)
-        spread = np.maximum(refined.cost, floor[window, sharp]) / dof
-        cells = np.sqrt(spread) * refined.error / np.abs(refined.a) ** 2 / spacing[node]
+    of, sharp = np.nonzero((best > 0) & (share > SHARP_SHARE))
+    for begin in range(0, sharp.size, REFINED_AT_ONCE):
+        chosen = slice(begin, begin + REFINED_AT_ONCE)
+        at = of[chosen], sharp[chosen]
+        node, refined_windows = best[at] - 1, windows.of(at[0])
+        refined = _refine(grid.poles[node], residual[:, at[0], at[1]].T, refined_windows, grid.sharpest)
+        power = np.maximum(refined.cost, floor[at]) / dof[at[0], 0]
+        cells = np.sqrt(power) * refined.error / np.abs(refined.a) ** 2 / grid.spacing[node]
         trust = 1.0 / (1.0 + (2.0 * cells) ** 4)
-        whole = (refined_windows.weights @ coefficients[window, :, sharp][:, :, None])[:, :, 0] + refined.part
-        node_covariance = (refined_windows.covariance + refined.covariance) * spread[:, None, None]
-        response[window, sharp] += trust[:, None] * (whole - response[window, sharp])
-        covariance[window, sharp] += trust[:, None, None] * (node_covariance - covariance[window, sharp])
-        noise[window, sharp] += trust * (spread - noise[window, sharp])
+        whole = (refined_windows.weights @ coefficients[at[0], :, at[1]][:, :, None])[:, :, 0] + refined.part
+        node_covariance = (refined_windows.covariance + refined.covariance) * power[:, None, None]
+        response[at] += trust[:, None] * (whole - response[at])
+        covariance[at] += trust[:, None, None] * (node_covariance - covariance[at])
+        noise[at] += trust * (power - noise[at])
     return WindowFit(response=response, covariance=covariance, noise=noise)
 
 
-class _Windows:
-    """Inputs of s windows, and the projection on the terms without a pole, common to all poles and responses.
+def _posterior(
+    equations: _NormalEquations, right: list[Complex], total: Real, floor: Real, dof: NDArray[np.int_], block: slice
+) -> tuple[NDArray[np.intp], Real, Real, Complex, Complex]:
+    """Average the estimates of all poles of the grid, weighted by their probability.
 
-    A pole enters only by sums over the lines, with s = 1 / (1 + a x): |s|^2 U_i* U_j for the Gram matrix, s q* U for
-    the projection on the basis q of the other terms. The last U is 1, for the transient.
+    Args:
+        equations: normal equations of all windows.
+        right: right-hand sides of the windows of `block`, p + 1 arrays of shape (G, s, k); overwritten.
+        total: residual power of the model without x^2 and pole, shape (s, k).
+        floor: minimum residual power, shape (s, k).
+        dof: degrees of freedom, shape (s, 1).
+        block: indices of the windows.
+
+    Returns:
+        Index of the most probable pole, its probability and the noise power, shape (s, k); mean of the part in H,
+        shape (p, s, k); covariance of H, shape (s, k, p, p).
+    """
+    gain, direct = equations.gain[..., block], equations.direct[..., block]
+    residual_power: Real = np.broadcast_to(total, right[0].shape)
+    for i, row in enumerate(right):
+        for j in range(i):
+            row -= equations.lower[i][j][:, block, None] * right[j]
+        residual_power = residual_power - (row.real**2 + row.imag**2) * equations.weights[i][:, block, None]
+    residual_power = np.maximum(residual_power, floor)
+    best = np.argmin(residual_power, axis=0)
+    probability = np.log(residual_power)
+    probability -= probability.min(axis=0)
+    probability *= -dof
+    np.exp(probability, out=probability)
+    share = 1.0 / probability.sum(axis=0)  # of the most probable pole
+    probability *= share
+    residual_power *= probability
+    noise = residual_power.sum(axis=0) / dof
+    part = []
+    for row_gain in gain:
+        values = row_gain[0][:, :, None] * right[0]
+        for j in range(1, len(right)):
+            values += row_gain[j][:, :, None] * right[j]
+        part.append(values)
+    mean = np.array([np.sum(probability * values, axis=0) for values in part])  # (p, s, k)
+    for values, middle in zip(part, mean, strict=True):
+        values -= middle
+    covariance = np.empty((*total.shape, len(part), len(part)), dtype=np.complex128)
+    for i, j in np.ndindex(len(part), len(part)):
+        node_covariance = equations.covariance[block, i, j] + np.sum(gain[i] * direct[j].conj(), axis=0)  # (G, s)
+        real = part[i].real * part[j].real + part[i].imag * part[j].imag
+        covariance[..., i, j] = np.einsum("gsk,gs->sk", residual_power, node_covariance.real) / dof + np.einsum(
+            "gsk,gsk->sk", probability, real
+        )
+        if i != j:
+            imaginary = part[i].imag * part[j].real - part[i].real * part[j].imag
+            spread = np.einsum("gsk,gs->sk", residual_power, node_covariance.imag) / dof
+            covariance[..., i, j] += 1j * (spread + np.einsum("gsk,gsk->sk", probability, imaginary))
+    return best, share, noise, mean, covariance
+
+
+class _Windows:
+    """Terms of the model without a pole, and the inputs, for a number of frequency windows.
+
+    Attributes:
+        offset: x of every line, zero outside a window, shape (s, N).
+        tail: inputs and 1 (transient), the factors of s = 1 / (1 + a x), shape (s, N, p + 1).
+        basis: orthonormal basis of the terms U, U x and 1, shape (s, N, 2p + 1).
+        inverse: transform of the terms to the basis, shape (s, 2p + 1, 2p + 1).
+        weights: first p rows of `inverse`; H = weights @ (basis' Y) + the part of the pole.
+        covariance: covariance of H without a pole per unit of noise power, shape (s, p, p).
+        size: lines of each window, shape (s,).
     """
 
-    def __init__(self, offset: Real, inputs: Complex) -> None:
+    def __init__(self, inputs: Complex, halves: NDArray[np.int_]) -> None:
         input_count, lines = inputs.shape[1:]
-        unit = np.ones((len(inputs), 1, lines))
-        self.offset = offset
-        self.tail = _transposed(np.concatenate([inputs, unit], axis=1))  # (s, N, p + 1)
-        smooth = _transposed(np.concatenate([inputs, inputs * offset, unit], axis=1))
-        self.basis, triangle = np.linalg.qr(smooth)  # (s, N, 2p + 1)
-        self.weights = np.linalg.inv(triangle)[:, :input_count]  # H = weights @ (basis' Y) + the part of the pole
+        offset = np.arange(-(lines // 2), lines // 2 + 1) / halves[:, None]
+        inside = np.abs(offset) <= 1.0
+        self.size = 2 * halves + 1
+        self.offset = np.where(inside, offset, 0.0)
+        one, x = inside[:, None].astype(np.float64), self.offset[:, None]
+        self.tail = _transposed(np.concatenate([inputs, one], axis=1))
+        self.basis, triangle = np.linalg.qr(_transposed(np.concatenate([inputs, inputs * x, one], axis=1)))
+        self.inverse = np.linalg.inv(triangle)
+        self.weights = self.inverse[:, :input_count]
         self.covariance = self.weights @ _adjoint(self.weights)
-        smooth = _transposed(np.concatenate([inputs * offset**2, offset * unit], axis=1))
-        overlap = _adjoint(self.basis) @ smooth
-        self.smooth = smooth - self.basis @ overlap
-        self.lost = self.weights @ overlap
 
     def of(self, indices: NDArray[np.intp]) -> _Windows:
-        """Return the windows of the given indices; repeated indices repeat the window."""
-        selected = copy.copy(self)
-        for name in ("tail", "basis", "weights", "covariance"):
-            setattr(selected, name, getattr(self, name)[indices])
-        return selected
+        """Return the windows with the given indices, repeated as listed."""
+        chosen = copy.copy(self)
+        for name in ("tail", "basis", "weights", "covariance", "offset", "size"):
+            setattr(chosen, name, getattr(self, name)[indices])
+        return chosen
 
-    def without_pole(self) -> tuple[Complex, Complex]:
-        """Return Gram matrices (1, s, p + 1, p + 1) of x^2 and x, and their coefficients in H, (1, s, p, p + 1)."""
-        return (_adjoint(self.smooth) @ self.smooth)[None], -self.lost[None]
+    def without_pole(self) -> tuple[Complex, Complex, Complex]:
+        """Return terms U x^2 and x less their projection on the basis (s, N, p + 1), Gram matrices, and parts in H."""
+        smooth = self.tail * self.offset[:, :, None]
+        smooth[:, :, :-1] *= self.offset[:, :, None]
+        held = _adjoint(self.basis) @ smooth
+        smooth -= self.basis @ held
+        return smooth, _adjoint(smooth) @ smooth, -(self.weights @ held)
 
-    def gram(self, shapes: Complex) -> tuple[Complex, Complex]:
-        """Return Gram matrices (G, s, p + 1, p + 1) of shapes 1 / (1 + a x), (G, N), and their coefficients in H."""
-        count, _, size = self.tail.shape
-        pairs = self.tail.conj()[..., None] * self.tail[:, :, None]
-        shared = self.basis.conj()[..., None] * self.tail[:, :, None]
-        power = (shapes.real**2 + shapes.imag**2) @ _lines_first(pairs).view(np.float64)
-        share = (shapes @ _lines_first(shared)).reshape(len(shapes), count, -1, size)  # (G, s, 2p + 1, p + 1)
-        return self._projected(power.view(np.complex128).reshape(-1, count, size, size), share)
+    def gram_each(self, with_pole: Complex, adjoint: Complex) -> tuple[Complex, Complex]:
+        """Return Gram matrices (s, p + 1, p + 1) and parts in H (s, p, p + 1) of one pole per window.
 
-    def gram_each(self, shapes: Complex) -> tuple[Complex, Complex]:
-        """Return Gram matrices (s, p + 1, p + 1) of a shape per window, (s, N), and their coefficients in H."""
-        with_pole = shapes[:, :, None] * self.tail
-        return self._projected(_adjoint(with_pole) @ with_pole, _adjoint(self.basis) @ with_pole)
-
-    def _projected(self, power: Complex, share: Complex) -> tuple[Complex, Complex]:
-        """Return Gram matrices orthogonal to the terms without a pole, and the coefficients of the remainder in H."""
+        Args:
+            with_pole: terms with the pole, s `tail`, shape (s, N, p + 1).
+            adjoint: their conjugate transpose.
+        """
+        power, share = adjoint @ with_pole, _adjoint(adjoint @ self.basis)
         inputs, size = self.weights.shape[1], self.tail.shape[2]
         return power - _adjoint(share) @ share, np.eye(inputs, size) - self.weights @ share
 
 
-class _PoleGrid(NamedTuple):
-    """Grid of poles z in units of n lines, a = -1/z."""
+class _NormalEquations(NamedTuple):
+    """Normal equations L D L' of the terms with a pole, for no pole and all poles of the grid."""
 
-    poles: Complex  # a (G,)
-    spacing: Real  # distance of neighbours in z (G,)
-    sharpest: float  # least imaginary part of z
-    shapes: Complex  # 1 / (1 + a x) (G, N)
+    lower: list[list[Complex]]  # L below its diagonal, elements of shape (G, s)
+    weights: list[Real]  # 1 / D, elements of shape (G, s)
+    direct: Complex  # part in H of the unknowns after the elimination (p, p + 1, G, s)
+    gain: Complex  # the same over D
+    covariance: Complex  # covariance of H without a pole per unit of noise power (s, p, p)
+    smooth: Complex  # terms of the model without a pole (s, N, p + 1)
 
 
-@lru_cache(maxsize=4)
-def _pole_grid(half: int, wide: bool) -> _PoleGrid:
-    """Return the pole grid of a window of half width n [lines]."""
-    sharpest = max(SHARPEST if wide else 0.0, LEAST_BANDWIDTH / half)
-    real, imaginary = np.linspace(-FARTHEST, FARTHEST, POSITIONS), np.geomspace(sharpest, WIDEST, BANDWIDTHS)
-    nodes: Complex = (real[:, None] + 1j * imaginary).ravel().astype(np.complex128)
-    spacing = np.minimum(real[1] - real[0], (imaginary[1] / imaginary[0] - 1.0) * nodes.imag)
-    offset = np.arange(-half, half + 1) / half
-    inverse: Complex = -np.reciprocal(nodes)
-    shapes: Complex = np.reciprocal(1.0 + inverse[:, None] * offset)
-    return _PoleGrid(inverse, spacing, sharpest, shapes)
+def _normal_equations(grid: PoleGrid, windows: _Windows, halves: NDArray[np.int_]) -> _NormalEquations:
+    """Return the normal equations of the terms with a pole, less their projection on the basis.
+
+    With s = 1 / (1 + a x), the sums over the lines of s |U|^2, s U and s are sufficient, because
+
+        x s = (1 - s) / a   and   |s|^2 = (a s - a* s*) / (a - a*).
+    """
+    size = windows.tail.shape[2]
+    inputs, a = size - 1, grid.poles[:, None]
+    tail = np.ascontiguousarray(windows.tail.transpose(1, 0, 2))  # (N, s, p + 1)
+    upper = [(i, j) for i in range(size) for j in range(i, size)]
+    products = np.stack([tail[:, :, i].conj() * tail[:, :, j] for i, j in upper], axis=2)
+    first, mirrored = sums_of_poles(grid, products.view(np.float64), halves)
+    shape = (size, size, len(a), len(halves))
+    sums = np.empty(shape, dtype=np.complex128)  # sum of s conj(t_i) t_j, t = (U, 1)
+    for number, (i, j) in enumerate(upper):
+        # real and imaginary columns of a product, each times s
+        columns = slice(2 * number, 2 * number + 2)
+        real, imaginary = np.moveaxis(
+            np.concatenate([first[0, ..., columns] + 1j * first[1, ..., columns],
+                            mirrored[0, ..., columns] - 1j * mirrored[1, ..., columns]]), -1, 0)  # fmt: skip
+        sums[i, j], sums[j, i] = real + 1j * imaginary, real - 1j * imaginary
+    smooth, gram_none, direct_none = windows.without_pole()
+    gram = np.empty((size, size, len(a) + 1, len(halves)), dtype=np.complex128)
+    direct = np.empty((inputs, *gram.shape[1:]), dtype=np.complex128)
+    gram[:, :, 0], direct[:, :, 0] = gram_none.transpose(1, 2, 0), direct_none.transpose(1, 2, 0)
+    gram[:, :, 1:] = (a * sums - (a * sums.swapaxes(0, 1)).conj()) / (a - a.conj())
+    direct[:, :, 1:] = np.eye(inputs, size)[:, :, None, None]
+    plain = (_adjoint(windows.tail) @ windows.tail).transpose(1, 2, 0)[:, :, None]  # (p + 1, p + 1, 1, s)
+    held = np.concatenate([sums[:-1], (plain[:-1] - sums[:-1]) / a, sums[-1:]])
+    inverse = windows.inverse.transpose(1, 2, 0)  # (2p + 1, 2p + 1, s)
+    for column in range(len(held)):
+        share = inverse[0, column].conj() * held[0]  # (p + 1, G, s)
+        for row in range(1, column + 1):
+            share += inverse[row, column].conj() * held[row]
+        for i in range(size):
+            gram[i, : i + 1, 1:] -= share[i].conj() * share[: i + 1]
+        direct[:, :, 1:] -= inverse[:inputs, column, None, None] * share
+    lower: list[list[Complex]] = []
+    pivots: list[Real] = []
+    for i in range(size):
+        row_of: list[Complex] = []
+        for j in range(i):
+            element = gram[i, j].copy()
+            for m in range(j):
+                element -= row_of[m] * lower[j][m].conj() * pivots[m]
+            row_of.append(element / pivots[j])
+            direct[:, i] -= direct[:, j] * row_of[j].conj()
+        pivot = gram[i, i].real.copy()
+        for m in range(i):
+            pivot -= np.abs(row_of[m]) ** 2 * pivots[m]
+        lower.append(row_of)
+        pivots.append(pivot)
+    weights = [np.reciprocal(pivot) for pivot in pivots]
+    return _NormalEquations(lower, weights, direct, direct * np.array(weights), windows.covariance, smooth)
 
 
 class _Refined(NamedTuple):
@@ -224,18 +312,19 @@ class _Refined(NamedTuple):
 def _solved(a: Complex, residual: Complex, total: Real, windows: _Windows) -> _Refined:
     """Solve the least squares with a given pole for each response, and compute the Gauss-Newton step of the pole."""
     shapes = 1.0 / (1.0 + a[:, None] * windows.offset)  # (k, N)
-    gram, direct = windows.gram_each(shapes)
+    terms = shapes[:, :, None] * windows.tail  # (k, N, p + 1)
+    adjoint = _adjoint(terms)
+    gram, direct = windows.gram_each(terms, adjoint)
     inverse = np.linalg.inv(gram)
-    adjoint = _adjoint(windows.tail)  # (k, p + 1, N)
-    right = adjoint @ (shapes.conj() * residual)[:, :, None]  # (k, p + 1, 1)
+    right = adjoint @ residual[:, :, None]  # (k, p + 1, 1)
     theta = inverse @ right
     # d(model) / da = -x s^2 (sum_i c_i2 U_i + d1), minus its projection on the terms without a pole, then on the terms
     # with the pole (Schur complement).
-    slope = -windows.offset * shapes**2 * (windows.tail @ theta)[:, :, 0]
+    slope = -windows.offset * shapes * (terms @ theta)[:, :, 0]
     floor = ROUNDING * _power(slope) + TINY
-    overlap = _adjoint(windows.basis) @ slope[:, :, None]  # (k, 2p + 1, 1)
+    overlap = _adjoint(slope[:, None].conj() @ windows.basis)  # (k, 2p + 1, 1)
     slope -= (windows.basis @ overlap)[:, :, 0]
-    with_pole = adjoint @ (shapes.conj() * slope)[:, :, None]
+    with_pole = adjoint @ slope[:, :, None]
     coupled = inverse @ with_pole
     power_of_slope = np.maximum(_power(slope) - _inner(with_pole, coupled).real, floor)
     gradient = np.sum(slope.conj() * residual, axis=1) - _inner(with_pole, theta)
@@ -256,7 +345,7 @@ def _refine(start: Complex, residual: Complex, windows: _Windows, least_imaginar
     total = _power(residual)
     current, scale = _solved(start, residual, total, windows), np.ones(len(start))
     for _ in range(STEPS):
-        error = current.error * np.sqrt(np.maximum(current.cost, EXACT * total) / residual.shape[1])
+        error = current.error * np.sqrt(np.maximum(current.cost, EXACT * total) / windows.size)
         active = np.flatnonzero(scale * np.abs(current.step) > ENOUGH * error)
         if not active.size:
             break
@@ -278,6 +367,11 @@ def _power(rows: Complex) -> Real:
     return np.asarray(np.sum(rows.real**2 + rows.imag**2, axis=-1))
 
 
+def _column_power(columns: Complex) -> Real:
+    """Return the sum of |z|^2 over the first axis."""
+    return np.asarray(np.sum(columns.real**2 + columns.imag**2, axis=0))
+
+
 def _transposed(matrices: Complex) -> Complex:
     """Transpose a stack of matrices."""
     return np.swapaxes(matrices, -1, -2)
@@ -286,11 +380,6 @@ def _transposed(matrices: Complex) -> Complex:
 def _adjoint(matrices: Complex) -> Complex:
     """Return the conjugate transpose of a stack of matrices."""
     return np.swapaxes(matrices.conj(), -1, -2)
-
-
-def _lines_first(products: Complex) -> Complex:
-    """Reshape products (s, N, i, j) to columns over the lines, (N, s i j)."""
-    return np.ascontiguousarray(products.swapaxes(0, 1)).reshape(products.shape[1], -1)
 
 
 def _inner(first: Complex, second: Complex) -> Complex:
