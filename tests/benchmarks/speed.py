@@ -205,8 +205,6 @@ def accuracy(car: Car, seconds: float) -> Figures:
         "rms_error": errors[worst],
         "rms_error_channel": worst,
         "slip_error": max(slips),
-        "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
-        "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
         "reduced_rms_error": max(reduced),
     }
 
