@@ -125,7 +125,7 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
 
 def modes_table(car: Any, damper: str) -> dict[str, Any]:
     """Return the modes of the car and of its free body as plain numbers and texts."""
-    from vehicle.model.parameters.whole_body import body_notices
+    from vehicle.model.parameters.body_notices import body_notices
 
     body = car.model.superelement
     trimmed = car.trimmed_body

@@ -11,9 +11,10 @@ import pytest
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.rigid_body import cog_inertia
 from vehicle.model.parameters.body import MOMENTS
+from vehicle.model.parameters.body_notices import body_notices, body_rules
 from vehicle.model.parameters.toml_file import write_text
 from vehicle.model.parameters.vehicle import load_vehicle, vehicle_of
-from vehicle.model.parameters.whole_body import body_notices, body_rules, followers
+from vehicle.model.parameters.whole_body import followers
 from vehicle.runs.car import Car
 
 RNG = np.random.default_rng(5)

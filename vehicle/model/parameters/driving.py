@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.quantity import Validated, quantity
 from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.topology import Template
-
-if TYPE_CHECKING:
-    from vehicle.model.parameters.vehicle import Vehicle
 
 SPIN = "spin"
 """Name of the hinge about which a wheel turns on its hub."""
@@ -111,61 +106,3 @@ def as_driven(template: Template, driving: Driving) -> Template:
         for connection in template.connection
     )
     return replace(template, joint=tuple(joints), connection=connections)
-
-
-def require_rolling(vehicle: Vehicle) -> None:
-    """Check the data that tyres and wheels of a rolling car need.
-
-    Raises:
-        ConfigurationError: the first parameter that is missing or wrong.
-    """
-    driving, car = vehicle.driving, vehicle.composition
-    if not driving.rolling:
-        return
-    standing = "let the tyres stand: --tyre standing, or driving.speed=0"
-    remedy = f"set it, or {standing}"
-    on_plates = {link.carrier: link for link in car.connections}
-    if not car.wheels or any(link.ground and link.rolling is None for link in car.connections):
-        raise ConfigurationError(
-            f"driving.speed: found {driving.speed:g} m/s, but {vehicle.name} has other ground contacts "
-            f"than wheels; {standing}"
-        )
-    for wheel in car.wheels:
-        tyre = on_plates[wheel.plate]
-        if not isinstance(tyre.law, Tyre):
-            raise ConfigurationError(f"{tyre.path}: found a hydromount, which cannot roll; {standing}")
-        for key in ("slip_stiffness", "cornering_stiffness", "carcass_longitudinal", "carcass_lateral"):
-            if getattr(tyre.law, key) is None:
-                raise ConfigurationError(
-                    f"{tyre.path}.{key}: missing; a rolling tyre needs it (driving.speed {driving.speed:g} m/s); "
-                    f"{remedy}"
-                )
-        if tyre.moving == wheel.part:
-            raise ConfigurationError(
-                f'{tyre.path}: its template fixes {wheel.part} to the hub; use a joint of kind = "spin", as '
-                f"wheel.toml has; {remedy}"
-            )
-        if abs(wheel.center[0] - wheel.patch[0]) > ROUND:
-            raise ConfigurationError(
-                f"{wheel.paths[1]}.x: found {wheel.patch[0]:g} m, must be that of {wheel.paths[0]}, "
-                f"{wheel.center[0]:g} m: ahead of the centre the load would drive or brake a rolling wheel"
-            )
-        spinning = {part.name for part in car.parts if part.parent == wheel.part and not part.joints} | {wheel.part}
-        held = [(link.path, {link.moving, link.carrier}) for link in car.connections]
-        held += [(f"outputs.{link.name}", {link.on}) for link in car.outputs]
-        for path, parts in held:
-            if parts & spinning:
-                raise ConfigurationError(
-                    f"{path}: is on {', '.join(sorted(parts & spinning))}, which turns with the rolling wheel; put it "
-                    "on the hub"
-                )
-        for part in car.parts:
-            if part.name not in spinning:
-                continue
-            x, _, z = (a - b for a, b in zip(part.cog, wheel.center, strict=True))
-            ixx, _, izz = part.numbers.inertia or (0.0, 0.0, 0.0)
-            if max(abs(x), abs(z), abs(ixx - izz), *map(abs, part.numbers.products)) > ROUND:
-                raise ConfigurationError(
-                    f"{part.path}: turns with the wheel and is no body of revolution about its axle; must have "
-                    "inertia.x = inertia.z, no products, and an offset along y alone"
-                )

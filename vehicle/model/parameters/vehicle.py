@@ -14,11 +14,11 @@ from vehicle.model.parameters.body import TrimmedBody, require_inertia_table
 from vehicle.model.parameters.compose import compose
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
-from vehicle.model.parameters.driving import Driving, driving_of, require_rolling
+from vehicle.model.parameters.driving import Driving, driving_of
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
-from vehicle.model.parameters.plausible import require_plausible
+from vehicle.model.parameters.plausible import require_plausible, require_rolling
 from vehicle.model.parameters.quantity import field_quantity, quantity, validate
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.toml_file import build, convert

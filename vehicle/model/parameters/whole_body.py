@@ -9,18 +9,13 @@ model belongs, also in `vehicle.toml` of a run (`TrimmedBody.model_factor`).
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body import MOMENTS
 from vehicle.model.parameters.paths import Optional, meant, override
 from vehicle.names import AXES
-
-if TYPE_CHECKING:
-    from vehicle.model.parameters.vehicle import Vehicle
 
 _PRODUCTS = {"ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
 
@@ -122,50 +117,3 @@ def _of_point(mass: float, at: Sequence[float]) -> dict[str, float]:
     squares = [value * value for value in at]
     moments = {name: mass * (sum(squares) - squares[axis]) for axis, name in enumerate(MOMENTS[:3])}
     return moments | {name: mass * at[i] * at[j] for name, (i, j) in _PRODUCTS.items()}
-
-
-def body_notices(vehicle: Vehicle, overrides: Iterable[str]) -> list[str]:
-    """Return a notice for each override of mass or CoG of the body: the changes that followed.
-
-    Args:
-        vehicle: the car.
-        overrides: texts "path=value" of the car.
-    """
-    body, texts = vehicle.body, {text.partition("=")[0].strip(): text.strip() for text in overrides}
-    notices = _notices(vehicle, texts)
-    moments = ", ".join(f"{name} {getattr(body.inertia, name):.6g}" for name in MOMENTS[:3])
-    now = f"{moments} kg m2 about the {'CoG' if body.inertia.about == 'cog' else 'origin'}"
-    if body.flexible and body.model_mass is not None:
-        root = body.model_factor**-0.5
-        now += f"; masses of the body model times {body.model_factor:.6g}, its frequencies times {root:.6g}"
-    return [f"{text}; {now}" for text in notices]
-
-
-def body_rules(vehicle: Vehicle, paths: Iterable[str]) -> list[str]:
-    """Return a notice for mass and CoG of the body if a study varies them: the changes that follow.
-
-    Args:
-        vehicle: the car.
-        paths: varied parameters.
-    """
-    return _notices(vehicle, {path: path for path in paths})
-
-
-def _notices(vehicle: Vehicle, texts: Mapping[str, str]) -> list[str]:
-    """Return the notices for mass and CoG; `texts`: text that names each path."""
-    text_of_path: dict[str, str] = {}
-    for path, text in texts.items():
-        # An optional parameter may have its default again.
-        with contextlib.suppress(ConfigurationError):
-            text_of_path |= dict.fromkeys(meant(vehicle.table, path), text)
-    inertia_set = any(path.startswith("body.inertia.") for path in text_of_path)
-    exception = ", but for what is given of body.inertia" if inertia_set else ""
-    moved = dict.fromkeys(
-        text for path, text in text_of_path.items() if path == "body.cog" or path.startswith("body.cog.")
-    )
-    notices = (
-        [f"{text_of_path['body.mass']}: the whole body is scaled, radii of gyration stay{exception}"]
-        if ("body.mass" in text_of_path)
-        else []
-    )
-    return notices + ([f"{', '.join(moved)}: the inertia about the CoG stays{exception}"] if moved else [])

@@ -14,8 +14,8 @@ from vehicle.errors import DataError, SimulationError
 from vehicle.model.flexbody.body_loads import body_loads
 from vehicle.model.flexbody.mass_difference import mass_difference
 from vehicle.model.flexbody.rigid_body import rigid_body
+from vehicle.model.parameters.body_notices import body_notices
 from vehicle.model.parameters.idle import idle_parameters
-from vehicle.model.parameters.whole_body import body_notices
 from vehicle.runs.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.vehicle import Vehicle
-from vehicle.model.parameters.whole_body import body_rules
 from vehicle.runs.car import Car
 from vehicle.studies.optimisation.car_table import columns
 from vehicle.studies.optimisation.front_checks import NEW_CARS, Differences, Shares

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
-from vehicle.model.parameters.whole_body import body_rules
 from vehicle.runs.car import Car
 from vehicle.studies.sweeps.case import Case, all_tyre_words, varied_cases
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
