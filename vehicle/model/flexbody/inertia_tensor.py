@@ -45,7 +45,8 @@ def about_cog(inertia_about_origin: ArrayLike, mass: float, cog: ArrayLike) -> F
         Tensor about the CoG [kg m2], shape (3, 3).
     """
     c = np.asarray(cog, dtype=float)
-    return np.asarray(np.asarray(inertia_about_origin) - mass * (c @ c * np.eye(3) - np.outer(c, c)))
+    square = np.sum(c * c)  # not c @ c: BLAS rounds it differently on different processors
+    return np.asarray(np.asarray(inertia_about_origin) - mass * (square * np.eye(3) - np.outer(c, c)))
 
 
 def second_moments(inertia: ArrayLike) -> FloatArray:
