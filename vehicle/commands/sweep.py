@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,9 +33,10 @@ def parser() -> Parser:
         "--vary",
         action="append",
         default=[],
-        metavar="PATH=V1,V2,...",
-        help="values of a parameter, as damper.coulomb_friction=62.5,125, or of a component of a vector, as "
-        "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
+        metavar="PATH=VALUES",
+        help="values of a parameter, as damper.coulomb_friction=62.5,125, or 62.5:125:6 for six equally spaced ones; "
+        "of a component of a vector, as bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: "
+        "every combination",
     )
     parser.add_argument(
         "--table",
@@ -67,7 +67,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.sweep_table import read_variations
 
     if bool(options.vary) == bool(options.table):
-        raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
+        raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
     paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
     changes = [[f"{path}={value}" for path, value in zip(paths, row, strict=True)] for row in rows]
     car = Car.load(options.vehicle, options.overrides)
@@ -106,26 +106,20 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
     """Return the parameter paths and the rows of all combinations of `--vary`; the last path varies fastest.
 
     Raises:
-        ConfigurationError: an option is not PATH=V1,V2,...
+        ConfigurationError: an option is not PATH=A,B,C or PATH=A:B:N, or a path occurs twice.
     """
     from itertools import product
 
     from vehicle.errors import ConfigurationError
+    from vehicle.model.parameters.ranges import parsed_variation
 
     paths, values = [], []
     for text in texts:
-        path, separator, listed = text.partition("=")
-        # A comma within brackets belongs to a vector.
-        items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
-        if not separator or not path.strip() or not all(items):
-            raise ConfigurationError(
-                f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; the path of one "
-                "component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
-            )
-        if path.strip() in paths:
-            raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")
-        paths.append(path.strip())
-        values.append(items)
+        variation = parsed_variation("--vary", text)
+        if variation.path in paths:
+            raise ConfigurationError(f"--vary {variation.path}: given twice; list all its values in one option")
+        paths.append(variation.path)
+        values.append(variation.listed())
     return paths, list(product(*values))
 
 
