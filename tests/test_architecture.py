@@ -55,12 +55,13 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "simulation", "threads"},
-    "tuning": {"analysis", "car", "excitation", "parameters", "records", "threads"},
+    "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "rendering", "report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation"},
     "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "optimisation"}
-    | {"output", "parameters", "records", "rendering", "replication", "report", "simulation", "sweeps", "threads"},
+    | {"output", "parameters", "records", "rendering", "replication", "report", "simulation", "sweeps", "threads"}
+    | {"tuning"},
     "threads": set(),
     "compiler": set(),
     "errors": set(),

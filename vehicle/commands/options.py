@@ -29,7 +29,8 @@ def command_parser(name: str, description: str) -> Parser:
     return parser
 
 
-VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of Bommer 2006 by default"
+CAR_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}"
+VEHICLE_HELP = f"{CAR_HELP}; the car of Bommer 2006 by default"
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
@@ -48,6 +49,12 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
         metavar="FILE.toml",
         help=VEHICLE_HELP,
     )
+    set_option(group)
+    return group
+
+
+def set_option(group: argparse._ActionsContainer) -> None:
+    """Add --set, which changes parameters of the car."""
     group.add_argument(
         "--set",
         dest="overrides",
@@ -57,7 +64,6 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
         help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], and the path "
         "of one component ends with its axis: bushings.tyre.stiffness.z=2e5; may be repeated",
     )
-    return group
 
 
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:

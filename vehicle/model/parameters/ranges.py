@@ -90,7 +90,7 @@ class Variation:
         """
         if self.bounds is None:
             raise ConfigurationError(
-                f"{self.option}: contains values; needed are two bounds, PATH=LOW:HIGH, as front.damper.viscous=800:4000"
+                f"{self.option}: contains values; needed are two bounds, PATH=LOW:HIGH, as damper.viscous=800:4000"
             )
         return Range(path=self.path, low=self.bounds[0], high=self.bounds[1])
 

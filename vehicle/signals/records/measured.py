@@ -55,6 +55,7 @@ def read_measured(
     inverted: Collection[str] = (),
     window: float | None = None,
     measurement: Measurement | None = None,
+    estimate: bool = True,
 ) -> Measured:
     """Read channels of a measurement file as frequency responses and time histories of the model.
 
@@ -69,6 +70,7 @@ def read_measured(
         inverted: names of channels whose sign is inverted.
         window: length of Hann windows for estimated responses [s]; by default the local rational model.
         measurement: contents of the file, if already read.
+        estimate: False estimates no responses from time histories, which may then be short.
 
     Returns:
         Frequency responses [m/s2 per m] and time histories in SI units, as far as contained in the file.
@@ -125,10 +127,10 @@ def read_measured(
         start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
         record = _record(file, replace(selection, channels={**times, **histories}), inverted)
         notices += record.notices
-        if frf is None:
-            estimate = estimated_frf(record, window)
-            if estimate is not None:
-                frf, estimator = estimate
+        if frf is None and estimate:
+            estimated = estimated_frf(record, window)
+            if estimated is not None:
+                frf, estimator = estimated
                 notices.append(f"responses estimated from the time histories: {estimator}")
             elif "m/s2" in record.units.values():
                 notices.append(
