@@ -142,7 +142,7 @@ def measured_histories(
     """
     path, contained = Path(file), signal is None
     asked = _asked(choice, channels)
-    measured = _read(car, path, asked, inverted, None, estimate=False)
+    measured = _read(car, path, asked, inverted, None, histories_only=True)
     held = measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
@@ -208,11 +208,17 @@ def _asked(choice: Choice | None, channels: Mapping[str, str] | None) -> Choice:
 
 
 def _read(
-    car: Car, file: Path, asked: Choice, inverted: Collection[str], window: float | None, *, estimate: bool = True
+    car: Car,
+    file: Path,
+    asked: Choice,
+    inverted: Collection[str],
+    window: float | None,
+    *,
+    histories_only: bool = False,
 ) -> Measured:
     """Return the chosen channels of a file under the names of the model."""
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
-    return read_measured(file, model_channels, asked, inverted=inverted, window=window, estimate=estimate)
+    return read_measured(file, model_channels, asked, inverted=inverted, window=window, histories_only=histories_only)
 
 
 def _signal(

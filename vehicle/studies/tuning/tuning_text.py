@@ -64,7 +64,7 @@ def fit_sentences(tuned: TunedCar) -> list[str]:
     result, final = tuned.result, tuned.final
     sentences = [
         f"{result.evaluations} cars computed with matrices and the reduced engine; weighted residuals "
-        f"{result.before:.3g} before, {result.after:.3g} after (1: as large as the estimated noise)"
+        f"{result.before:.3g} before, {result.after:.3g} after"
     ]
     if not result.converged:
         sentences.append(f"not converged: {result.message}; narrow the bounds, or start nearer with --set PATH=VALUE")
