@@ -55,7 +55,8 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "simulation", "threads"},
-    "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "rendering", "report", "threads"},
+    "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
+    | {"report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation"},

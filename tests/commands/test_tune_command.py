@@ -97,6 +97,27 @@ def test_console_says_the_values_first(record, tmp_path, capsys):
     assert lines[3].startswith("not determined: damper.viscous: the data do not identify this parameter")
 
 
+def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):
+    pytest.importorskip("emcee")
+    words = ["focus", "--frf", str(record), *MAP, "--parameters", "damper.coulomb_friction=60:200", BOUNDS[3]]
+    words += ["--spacing", "1", "--engine", "reduced", "--posterior", "--samples", "16", "--discrepancy", "5"]
+    words += ["--rival", "damper.coulomb_friction=1", "damper.viscous=1000:8000"]
+    assert main([*words, "--output", str(tmp_path / "tune")]) == 0
+    said = capsys.readouterr().out
+    for text in (
+        "posterior: median, 90 % interval",
+        "comfort on bench.mf4: ",
+        "evidence: fitted law ",
+        "R-hat at most 1.00",
+    ):
+        assert text in said
+    content = json.loads((tmp_path / "tune" / "tune.json").read_text(encoding="utf-8"))["posterior"]
+    for row in content["parameters"]:
+        assert row["low"] < HIDDEN[row["path"]] < row["high"] and row["r_hat"] < 1.01
+    assert "posterior.png" in {path.name for path in (tmp_path / "tune").iterdir()}
+    assert 'id="posterior"' in (tmp_path / "tune" / "report.html").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message", "code"),
     [
@@ -104,6 +125,8 @@ def test_console_says_the_values_first(record, tmp_path, capsys):
         (["--signal", "low.csv"], "--signal: belongs to the --frf or --record before it", 2),
         (["--record", "FILE", "--stuck"], "--stuck: belongs to --frf", 2),
         (["--band", "3:45"], "belongs to --frf", 2),
+        (["--samples", "64"], "belongs to --posterior", 2),
+        (["--record", "FILE", *MAP, *("--parameters", BOUNDS[0]), "--posterior"], "--posterior: no FRFs", 3),
         (["--record", "FILE", *MAP], "no parameter to fit", 2),
         (["--record", "FILE", *MAP, "--parameters", "damper.viscous=1,2"], "contains values; needed are two bounds", 2),
         (["--record", "FILE", *MAP, "--parameters", "damper.viscous=3e3:4e3"], "0 < lower < start < upper", 2),

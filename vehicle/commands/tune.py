@@ -27,8 +27,10 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import vehicle_file
 
 if TYPE_CHECKING:
+    from vehicle.model.parameters.ranges import Range
     from vehicle.runs.car import Car
     from vehicle.studies.tuning.measured_targets import MeasuredTarget
+    from vehicle.studies.tuning.posterior_text import NamedPosterior
 
 OUTPUT = Path("runs/tune")
 
@@ -126,6 +128,14 @@ def parser() -> Parser:
         help="length of the Hann windows of measured FRFs [s]; those of the model are estimated in the same way; by "
         "default a local rational model of the whole record",
     )
+    responses.add_argument(
+        "--averages",
+        type=float,
+        default=1.0,
+        metavar="N",
+        help="number of independent averages of FRFs from a file without random errors; with 1, the default, their "
+        "noise is overestimated",
+    )
     records = parser.scoped_group(
         "time histories", needs="--record", active=lambda options: _has_files(options, "record")
     )
@@ -147,6 +157,28 @@ def parser() -> Parser:
         metavar="HZ",
         help="corner of the low-pass filter on measurement and model [Hz]; %(default)g by default",
     )
+    parser.add_argument(
+        "--posterior", action="store_true", help="posterior distribution of the parameters given the FRFs (emcee)"
+    )
+    posterior = parser.scoped_group("posterior", needs="--posterior", active=lambda options: options.posterior)
+    posterior.add_argument(
+        "--samples", type=int, default=256, metavar="K", help="cars of the emulator; %(default)s by default"
+    )
+    posterior.add_argument(
+        "--discrepancy",
+        type=float,
+        default=10.0,
+        metavar="PERCENT",
+        help="standard deviation of the error of the model in each third octave [%%]; %(default)g by default",
+    )
+    posterior.add_argument(
+        "--rival",
+        nargs="+",
+        default=[],
+        metavar="PATH=VALUE",
+        help="another law with its evidence against the fitted one: settings, as damper.viscous_law=degressive, and "
+        "further parameters with bounds, as damper.degressive_viscous=2e3:1e4",
+    )
     engine_option(parser, "mujoco")
     output_options(parser, OUTPUT)
     parser.add_argument("--json", action="store_true", help="print the content of tune.json")
@@ -163,8 +195,11 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import output_folder
     from vehicle.studies.tuning.car_fit import ranges_of, require_fittable
+    from vehicle.studies.tuning.frf_target import FrfTarget
+    from vehicle.studies.tuning.posterior import require_posterior
+    from vehicle.studies.tuning.posterior_text import posterior_lines
     from vehicle.studies.tuning.tuned_car import tuned_car
-    from vehicle.studies.tuning.tuning_files import write_tuning
+    from vehicle.studies.tuning.tuning_files import NUMBERS, write_tuning
     from vehicle.studies.tuning.tuning_text import tuning_text
 
     if not options.measurements:
@@ -182,6 +217,8 @@ def _job(options: argparse.Namespace) -> None:
     if not (options.quiet or options.json):
         for text in dict.fromkeys(text for target in targets for text in target.notices):
             print(f"notice: {text}", file=sys.stderr, flush=True)
+    if options.posterior:
+        require_posterior([each.target for each in targets if isinstance(each.target, FrfTarget)])
     line = ProgressLine("fit       ", enabled=not options.quiet)
     tuned = tuned_car(
         car,
@@ -192,13 +229,17 @@ def _job(options: argparse.Namespace) -> None:
         progress=lambda count, _: line(0.7 * count / (count + 6.0 * len(parameters))),
         simulated=lambda count: line(0.7 + 0.3 * count / (count + 2.0)),
     )
+    posteriors = _posteriors(options, car, parameters, targets) if options.posterior else []
     line(1.0)
     with output_folder(folder, force=options.force, protect=(*files, *protect)) as work:
-        names = write_tuning(work, tuned, f"python -m vehicle tune {shlex.join(options.words)}")
+        names = write_tuning(work, tuned, f"python -m vehicle tune {shlex.join(options.words)}", posteriors)
     if options.json:
-        print(json.dumps(tuned.summary(), indent=2, allow_nan=False))
+        content = (folder / NUMBERS).read_text(encoding="utf-8")
+        print(json.dumps(json.loads(content), indent=2, allow_nan=False))
     elif not options.quiet:
         print(tuning_text(tuned))
+        if posteriors:
+            print("\n".join(posterior_lines(posteriors, car.vehicle)))
         print(f"{folder}: {', '.join(names)}")
 
 
@@ -224,6 +265,7 @@ def _measured(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
                 band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
                 spacing=options.spacing,
                 window=options.window,
+                averages=options.averages,
                 **shared,
             )
         else:
@@ -240,6 +282,35 @@ def _measured(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
             )
         targets.append(target)
     return targets
+
+
+def _posteriors(
+    options: argparse.Namespace, car: Car, parameters: Sequence[Range], measured: Sequence[MeasuredTarget]
+) -> list[NamedPosterior]:
+    """Return the posteriors of the fitted law and of its rival."""
+    from vehicle.model.parameters.ranges import parsed_variation
+    from vehicle.runs.car import Car
+    from vehicle.studies.tuning.car_fit import ranges_of
+    from vehicle.studies.tuning.frf_target import FrfTarget
+    from vehicle.studies.tuning.posterior import emulated_car, posterior_of
+
+    targets = [each.target for each in measured if isinstance(each.target, FrfTarget)]
+    laws: list[tuple[str, Car, Sequence[Range]]] = [("fitted law", car, parameters)]
+    if options.rival:
+        rival = [parsed_variation("--rival", text) for text in options.rival]
+        settings = [f"{each.path}={each.values[0]}" for each in rival if each.bounds is None]
+        fixed = {each.path for each in rival if each.bounds is None}
+        other = Car.load(options.car, [*options.overrides, *settings])
+        bounds = {each.path: each.bounds for each in rival if each.bounds is not None}
+        middles = {path: (low, high, (low * high) ** 0.5) for path, (low, high) in bounds.items()}
+        shared = [entry for entry in parameters if entry.path not in {*fixed, *bounds}]
+        laws.append(("rival law", other, [*shared, *ranges_of(other.vehicle, middles)]))
+    posteriors = []
+    for name, law_car, law_parameters in laws:
+        progress = ProgressLine(f"{name:<10}", enabled=not options.quiet)
+        emulated = emulated_car(law_car, law_parameters, targets, cars=options.samples, progress=progress)
+        posteriors.append((name, posterior_of(emulated, discrepancy=0.01 * options.discrepancy)))
+    return posteriors
 
 
 def _pair(option: str, text: str, needed: str) -> tuple[float, float]:

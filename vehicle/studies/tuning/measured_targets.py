@@ -61,6 +61,7 @@ def measured_responses(
     band: tuple[float, float] = BAND,
     spacing: float = SPACING,
     window: float | None = None,
+    averages: float = 1.0,
 ) -> MeasuredTarget:
     """Read measured FRFs of one excitation level as a target of a fit.
 
@@ -78,6 +79,7 @@ def measured_responses(
         band: lowest and highest frequency [Hz].
         spacing: minimum distance of the frequencies [Hz].
         window: length of the Hann windows of the estimate [s]; by default the local rational model.
+        averages: number of independent averages of FRFs without a random error; 1 if unknown.
 
     Returns:
         The target; without a measured coherence all lines have equal weights.
@@ -100,7 +102,7 @@ def measured_responses(
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
     plate_signal = None if stuck else _signal(signal, car, path, measured, asked, inverted)
     wheel = car.vehicle.shaker_wheel if plate_signal is None else plate_signal.wheels[0]
-    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=wheel)
+    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=wheel, averages=averages)
     return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
 
 

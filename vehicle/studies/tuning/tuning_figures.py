@@ -1,4 +1,4 @@
-"""Figures of a fit: FRFs and time histories before and after beside the measurement, and the correlation of values."""
+"""Figures of a fit: FRFs and time histories before and after, correlation of the values, posterior."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, FADED, FRF_TICKS, fading, frf_axes, saved_figure, wrapped_phase
+from vehicle.model.parameters.ranges import Range
 from vehicle.names import channel_units
 from vehicle.runs.car import Car
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.posterior import Posterior
 from vehicle.studies.tuning.record_target import RecordTarget
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -145,3 +147,59 @@ def plot_correlation(path: Path, result: TuningResult) -> None:
 def short_name(path: str) -> str:
     """Return the path of a parameter without the table of its element, for an axis."""
     return path.replace("bushings.", "").replace("stiffness", "K")
+
+
+def plot_corner(path: Path, posterior: Posterior) -> None:
+    """Draw the distribution of each parameter, and of each pair with its 50 and 90 % regions.
+
+    Args:
+        path: PNG or SVG file.
+        posterior: posterior distribution.
+    """
+    parameters, samples = posterior.car.parameters, posterior.values()
+    size = len(parameters)
+    interval = posterior.interval()
+    caption = "Diagonal: median and 90 % interval. Below: 50 and 90 % regions of pairs. Axes: the bounds of the prior."
+    width = max(1.75 * size, 5.0)
+    with saved_figure(path, (width, width + 0.8), "Posterior", textwrap.fill(caption, int(13.0 * width))) as figure:
+        axes: Any = figure.subplots(size, size, squeeze=False)
+        edges = [np.geomspace(parameter.low, parameter.high, 41) for parameter in parameters]
+        for row, column in np.ndindex(size, size):
+            axis = axes[row, column]
+            if column > row:
+                axis.set_visible(False)
+                continue
+            bounds = parameters[column]
+            if row == column:
+                axis.hist(samples[:, row], bins=edges[row], color="#c9d8ea")
+                axis.axvline(interval[1, row], color=COLOURS[0])
+                for end in (interval[0, row], interval[2, row]):
+                    axis.axvline(end, color=COLOURS[0], linestyle="--", linewidth=0.9)
+                axis.set_yticks([])
+            else:
+                density, _, _ = np.histogram2d(samples[:, column], samples[:, row], bins=(edges[column], edges[row]))
+                ordered = np.sort(density.ravel())[::-1]
+                total = np.cumsum(ordered) / ordered.sum()
+                levels = sorted({float(ordered[int(np.searchsorted(total, share))]) for share in (0.9, 0.5)})
+                centres = [np.sqrt(each[1:] * each[:-1]) for each in (edges[column], edges[row])]
+                axis.contourf(*centres, density.T, levels=[*levels, float(ordered[0]) + 1.0],
+                              colors=["#c9d8ea", COLOURS[0]][-len(levels):])  # fmt: skip
+                axis.set(yscale="log", ylim=(parameters[row].low, parameters[row].high))
+            axis.set(xscale="log", xlim=(bounds.low, bounds.high))
+            _few_ticks(axis.xaxis, bounds if row == size - 1 else None)
+            if column != row:
+                _few_ticks(axis.yaxis, parameters[row] if column == 0 else None)
+            if row == size - 1:
+                axis.set_xlabel(short_name(bounds.path).replace(".", "\n"), fontsize=8)
+            if column == 0 and row:
+                axis.set_ylabel(short_name(parameters[row].path).replace(".", "\n"), fontsize=8)
+
+
+def _few_ticks(axis: Any, bounds: Range | None) -> None:
+    """Set ticks at a third and two thirds of a logarithmic axis, without labels for None."""
+    axis.set_ticks([], minor=True)
+    if bounds is None:
+        axis.set_ticks([])
+        return
+    ticks = [float(f"{bounds.low * (bounds.high / bounds.low) ** share:.2g}") for share in (0.2, 0.8)]
+    axis.set_ticks(ticks, [f"{tick:.5g}" for tick in ticks], fontsize=7)

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_summary
 from vehicle.studies.tuning.tuned_car import TunedCar
-from vehicle.studies.tuning.tuning_figures import plot_correlation, plot_histories, plot_responses
-from vehicle.studies.tuning.tuning_page import tuning_page
+from vehicle.studies.tuning.tuning_figures import plot_corner, plot_correlation, plot_histories, plot_responses
+from vehicle.studies.tuning.tuning_page import POSTERIOR, tuning_page
 
 VEHICLE, NUMBERS, REPORT = "vehicle.toml", "tune.json", "report.html"
 """Names of the fitted vehicle file, the numbers and the report."""
 
 
-def figures_of(tuned: TunedCar) -> dict[str, Callable[[Path], None]]:
+def figures_of(tuned: TunedCar, posteriors: Sequence[NamedPosterior] = ()) -> dict[str, Callable[[Path], None]]:
     """Return the name of each picture, and the function that writes it to a path."""
     figures: dict[str, Callable[[Path], None]] = {}
     for number, measurement in enumerate(tuned.measurements, 1):
@@ -32,16 +33,21 @@ def figures_of(tuned: TunedCar) -> dict[str, Callable[[Path], None]]:
             )
     if len(tuned.result.free) > 1:
         figures["correlation"] = partial(plot_correlation, result=tuned.result)
+    if posteriors:
+        figures[POSTERIOR] = partial(plot_corner, posterior=posteriors[0][1])
     return figures
 
 
-def write_tuning(folder: Path, tuned: TunedCar, command: str) -> tuple[str, ...]:
+def write_tuning(
+    folder: Path, tuned: TunedCar, command: str, posteriors: Sequence[NamedPosterior] = ()
+) -> tuple[str, ...]:
     """Write the files of a fit.
 
     Args:
         folder: folder of the files.
         tuned: fitted car.
         command: command line of the fit.
+        posteriors: see `posterior_lines`; empty without a posterior.
 
     Returns:
         Names of the files, the vehicle file first.
@@ -52,9 +58,10 @@ def write_tuning(folder: Path, tuned: TunedCar, command: str) -> tuple[str, ...]
     names = ", ".join(each.target.name for each in tuned.measurements)
     write_text(folder / VEHICLE, parameters_text(tuned.fitted, f"fitted to {names}: {command}"))
     copies = write_own_files(folder, tuned.fitted)
-    write_json(folder / NUMBERS, {**tuned.summary(), "command": command})
-    figures = figures_of(tuned)
+    more = {"posterior": posterior_summary(posteriors)} if posteriors else {}
+    write_json(folder / NUMBERS, {**tuned.summary(), **more, "command": command})
+    figures = figures_of(tuned, posteriors)
     for name, draw in figures.items():
         write_whole(folder / f"{name}.png", draw)
-    write_text(folder / REPORT, tuning_page(tuned, figures, command))
+    write_text(folder / REPORT, tuning_page(tuned, figures, command, posteriors))
     return (VEHICLE, REPORT, NUMBERS, *(f"{name}.png" for name in figures), *copies.values())

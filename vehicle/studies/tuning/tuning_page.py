@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from vehicle.model.parameters.paths import unit_of
@@ -11,23 +11,34 @@ from vehicle.runs.report.markup import Markup, joined, number, shortened, table,
 from vehicle.runs.report.page import document
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
+from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_sentences
 from vehicle.studies.tuning.tuned_car import TunedCar
 from vehicle.studies.tuning.tuning_text import fit_sentences
 
+POSTERIOR = "posterior"
+"""Name of the picture of the posterior."""
 
-def tuning_page(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]], command: str) -> str:
+
+def tuning_page(
+    tuned: TunedCar,
+    figures: Mapping[str, Callable[[Path], None]],
+    command: str,
+    posteriors: Sequence[NamedPosterior] = (),
+) -> str:
     """Return the report of a fit as one HTML document.
 
     Args:
         tuned: fitted car.
         figures: name of each picture and the function that writes it.
         command: command line of the fit.
+        posteriors: see `posterior_lines`; empty without a posterior.
     """
     names = ", ".join(each.target.name for each in tuned.measurements)
     vehicle = tuned.start.vehicle
     parts = [
         ("Fitted values", "values", _values(tuned)),
         ("What the data leave open", "open", _left_open(tuned)),
+        *([("Posterior", "posterior", _posterior(tuned, figures, posteriors))] if posteriors else []),
         ("Before and after", "agreement", _agreement(tuned, figures)),
         ("Residuals", "residuals", _residuals(tuned)),
         ("How to repeat the fit", "repeat", joined([tag("pre", command), tag("pre", tuned.settings)])),
@@ -78,7 +89,29 @@ def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -
         for row in tuned.agreement
     ]
     heads = ("measurement", "channel", "error of", "unit", "before", "after")
-    return joined([table(heads, rows, text_columns=4), *(drawing(draw, name) for name, draw in figures.items())])
+    drawings = [drawing(draw, name) for name, draw in figures.items() if name != POSTERIOR]
+    return joined([table(heads, rows, text_columns=4), *drawings])
+
+
+def _posterior(
+    tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]], posteriors: Sequence[NamedPosterior]
+) -> Markup:
+    posterior = posteriors[0][1]
+    rows = [
+        (parameter.path, unit_of(tuned.start.vehicle, parameter.path), *(number(value, 4) for value in ends))
+        for parameter, ends in zip(posterior.car.parameters, posterior.interval().T.tolist(), strict=True)
+    ]
+    rows += [
+        (f"comfort on {name}", "m/s2", *(number(value, 4) for value in ends))
+        for name, ends in zip(posterior.car.signals, posterior.comfort().T.tolist(), strict=True)
+    ]
+    return joined(
+        [
+            table(("", "unit", "5 %", "median", "95 %"), rows, text_columns=2),
+            *(tag("p", text) for text in posterior_sentences(posteriors)),
+            drawing(figures[POSTERIOR], POSTERIOR),
+        ]
+    )
 
 
 def _residuals(tuned: TunedCar) -> Markup:
