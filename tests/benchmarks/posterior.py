@@ -37,7 +37,11 @@ FACTORS = {
 """Bounds of the six parameters over the values of `focus_road`."""
 
 DEGRESSIVE = ("front.damper.viscous_law=degressive", "front.damper.coulomb_friction=1.0")
-LAW = {"front.damper.degressive_viscous": (2e3, 1.2e4), "front.damper.degressive_velocity": (0.01, 0.1)}
+LAW = {
+    "front.damper.viscous": (500.0, 2000.0),
+    "front.damper.degressive_viscous": (2.1e3, 1.2e4),
+    "front.damper.degressive_velocity": (0.01, 0.1),
+}
 """The rival law: almost no friction, a larger damping constant below a velocity."""
 
 CHANNELS = ("knuckle_fl_acc_z", "seat_rail_acc_z")
@@ -126,7 +130,7 @@ def coverage(cars: int, discrepancy: float) -> list[dict[str, Any]]:
 def laws(cars: int) -> list[dict[str, Any]]:
     """Return the evidence of friction against a degressive damper for hidden cars of each, at five levels of noise."""
     friction, degressive = Car.load("focus_road"), Car.load("focus_road", DEGRESSIVE)
-    other = {path: limits for path, limits in FACTORS.items() if not path.endswith("coulomb_friction")}
+    other = {path: limits for path, limits in FACTORS.items() if ".damper." not in path}
     law = [Range(path=path, low=low, high=high, start=np.sqrt(low * high)) for path, (low, high) in LAW.items()]
     emulated = {
         "friction": emulated_car(friction, ranges(friction, FACTORS), targets()),
