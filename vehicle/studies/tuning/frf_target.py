@@ -12,7 +12,7 @@ from vehicle.names import CORNERS, is_wheel
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf import FrequencyResponse, frequency_response
 from vehicle.signals.analysis.frf_agreement import log_ratio
-from vehicle.signals.analysis.local_rational import local_rational_response
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.frf_file import FrfData
 
@@ -106,7 +106,7 @@ class FrfTarget:
         if self.window is None:
             band = (float(frequency[0]), float(frequency[-1]))
             spacing = float(np.min(np.diff(frequency)))
-            estimate = local_rational_response(step, plate, responses, band=band, resolution=spacing)
+            (estimate,) = whole_record_responses(step, plate[None], responses, band=band, resolution=spacing)
         else:
             margin = 1.0 / self.window
             band = (max(float(frequency[0]) - margin, margin), float(frequency[-1]) + margin)
