@@ -67,7 +67,7 @@ def read_measured(
         choice: model channel name to channel of the file, and preprocessing; by default all channels whose names are
             in `model_channels`.
         inverted: names of channels whose sign is inverted.
-        window: length of Hann windows for estimated responses [s]; by default the local rational model.
+        window: length of Hann windows for estimated responses [s]; by default the whole record is evaluated.
         measurement: contents of the file, if already read.
 
     Returns:
