@@ -36,9 +36,9 @@ def test_an_oscillator_integrated_in_time_shows_its_analytic_response():
     # The plate moves linearly between samples: (pi f dt)^2 / 3 = 3.3e-4 at 50 Hz; the transient has fallen by
     # exp(-0.1 * 2 pi * 8 * 6) = 8e-14.
     assert np.abs(found.response[0] / transmissibility(found.frequency) - 1.0).max() < 4e-4
-    # The change between the last two periods: exp(-0.1 * 2 pi * 8 * 4) = 2e-9.
-    assert found.random_error.max() < 1e-8
-    assert found.coherence.min() > 1.0 - 1e-8
+    # The oscillator is not exactly a fraction with one pole over nine lines.
+    assert np.max(found.random_error / np.abs(found.response)) < 1e-3
+    assert found.coherence.min() > 1.0 - 1e-6
 
 
 def test_the_spread_over_periods_is_the_error_of_the_response():
@@ -66,6 +66,16 @@ def test_a_response_that_has_not_settled_is_estimated_as_a_random_record():
     assert found.estimator.startswith("local rational")
     assert "seat changes by" in found.reasons[0]
     assert "record more periods" in found.reasons[0]
+
+
+def test_a_nonlinear_response_is_estimated_as_a_random_record():
+    excitation, response = settled(4)
+    friction = np.sign(np.gradient(response))
+    for share, name in ((0.001, "periodic"), (0.5, "local rational")):
+        (found,) = whole_record_responses(STEP, excitation[None], response + share * np.std(response) * friction)
+        assert found.estimator.startswith(name)
+    assert "scatter by" in found.reasons[0]
+    np.testing.assert_allclose(found.frequency * PERIOD, np.round(found.frequency * PERIOD))  # lines of one period
 
 
 def test_other_records_keep_their_estimator():
@@ -117,7 +127,7 @@ def test_rest_slow_motion_and_coarse_samples_are_not_taken_for_periods(samples):
 def test_a_sine_and_a_constant_response():
     sine = np.sin(2 * np.pi * 5.0 * np.arange(20000) * 1e-3)
     (found,) = whole_record_responses(1e-3, sine[None], sine)
-    assert found.estimator.startswith("local rational")  # a single line is no FRF
+    assert found.estimator.startswith("local rational")  # a single line does not show that the response is linear
     excitation, response = settled(3)
     (found,) = whole_record_responses(STEP, excitation[None], [response, np.full_like(response, 0.2)], names=("a", "b"))
     assert found.reasons == ("b: constant, so its FRF and its coherence are undefined",)

@@ -40,7 +40,8 @@ class FrfTarget:
         signal: plate displacement of the measurement; None compares the linear car with stuck dampers, whose FRFs
             follow from its matrices.
         averages: number of independent averages of data without a random error; 1 if unknown.
-        window: length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record. FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
+        window: length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record.
+            FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
         wheel: wheel on the driven plate.
     """
 
