@@ -38,7 +38,7 @@ ROOMS: dict[str, set[str]] = {
     "parameters": {"records"},
     "laws": {"compiler", "parameters"},
     "records": {"analysis"},
-    "excitation": {"records"},
+    "excitation": {"analysis", "records"},
     "flexbody": {"analysis", "parameters", "records"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
@@ -48,7 +48,7 @@ ROOMS: dict[str, set[str]] = {
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
     "comparison": {"analysis", "car", "linear", "notebook", "records", "rendering", "threads"},
-    "notebook": {"analysis", "rendering", "simulation"},
+    "notebook": {"analysis", "records", "rendering", "simulation"},
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},

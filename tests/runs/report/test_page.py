@@ -62,7 +62,16 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     assert outline.links and all(link.startswith(("#", "data:")) for link in outline.links)
     assert not re.search(r"url\((?!#)|@import|<iframe|<object|<base", reported.text)
     assert "default-src 'none'" in unescape(reported.text)
-    wanted = ["Findings", "Car, signal, engine", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
+    wanted = [
+        "Findings",
+        "Car, signal, engine",
+        "Frequency responses",
+        "Time histories",
+        "Dampers",
+        "Comfort",
+        "Spectra",
+        "Modes",
+    ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
     assert reported.text.count("<svg ") == 2
 

@@ -18,6 +18,7 @@ from vehicle.runs.report.measured_section import measured
 from vehicle.runs.report.modes_section import HIGHEST_MODE, STATES, Modes, car_modes_of, moving_modes
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
+from vehicle.runs.report.spectra_section import spectra
 
 
 def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] | None = None) -> str:
@@ -72,14 +73,11 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
     parts = [
         ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
-        (
-            "Frequency responses" if run.response is not None else "Densities",
-            "responses",
-            responses(run, modes),
-        ),
+        *([("Frequency responses", "responses", responses(run, modes))] if run.responses else []),
         ("Time histories", "time", sections.time_figure(run)),
         ("Dampers", "dampers", sections.dampers(run)),
         ("Comfort", "comfort", comfort(run)),
+        ("Spectra", "spectra", spectra([run])),
     ]
     for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
         if content is not None:
