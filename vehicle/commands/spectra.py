@@ -23,7 +23,7 @@ TABLES = ("spectra.csv", "third_octaves.csv")
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser(
-        "spectra", "Densities, one-third octaves and cumulative RMS of accelerations of runs, weighted and not."
+        "spectra", "Densities, third octaves and cumulative RMS of accelerations of runs, weighted and not."
     )
     parser.add_argument(
         "runs", nargs="+", type=Path, metavar="RUN", help="folder of a run, or a file of time histories; drawn together"
@@ -90,14 +90,12 @@ def _unique(names: Sequence[str]) -> list[str]:
 
 
 def _report(runs: Mapping[str, RecordSpectra]) -> list[str]:
-    """Return the printed table: RMS over the range, highest one-third octave, and half of the mean square."""
+    """Return the printed table: RMS over the range, highest third octave, and half of the mean square."""
     width = max(len(spectrum.label) for run in runs.values() for spectrum in run.channels)
     lines = []
     for name, run in runs.items():
         lines.append(f"{name}: {run.caption}")
-        lines.append(
-            f"{'channel':<{width}}{'RMS [m/s2]':>12}  highest one-third octave   half of the mean square below"
-        )
+        lines.append(f"{'channel':<{width}}{'RMS [m/s2]':>12}  highest third octave   half of the mean square below")
         for spectrum in run.channels:
             band, rms = run.highest_band(spectrum)
             half = run.median_frequency(spectrum)

@@ -1,4 +1,4 @@
-"""Cumulative RMS and one-third octaves: against closed forms, the weighted record, and the table of the standard."""
+"""Cumulative RMS and third octaves: against closed forms, the weighted record, and the table of the standard."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def test_bands_add_up_to_the_rms():
     bands = spectrum.third_octaves(0.5, 80.0)
     # Adjacent bands have no gap and no overlap: equal but for rounding.
     validated(
-        "FRF estimation and spectra", "sum of the mean squares of adjacent one-third octaves",
+        "FRF estimation and spectra", "sum of the mean squares of adjacent third octaves",
         np.sum(bands.rms**2), spectrum.mean_square(bands.edges[0], bands.edges[-1]), rel=1e-12, unit="1",
         source="conservation: mean square of the range",
     )  # fmt: skip
@@ -34,7 +34,7 @@ def test_sines_are_in_their_bands():
     bands = CumulativeSpectrum(STEP, record).third_octaves(0.5, 80.0)
     expected = np.where(bands.nominal == 4.0, 3.0, np.where(bands.nominal == 25.0, 0.5, 0.0)) / np.sqrt(2.0)
     validated(
-        "FRF estimation and spectra", "one-third octaves of two sines", bands.rms, expected, abs=1e-9,
+        "FRF estimation and spectra", "third octaves of two sines", bands.rms, expected, abs=1e-9,
         source="closed form: amplitude over the root of 2",
     )  # fmt: skip
 
@@ -51,7 +51,7 @@ def test_weighted_cumulative_rms_is_the_rms_of_the_weighted_record():
 
 
 def test_midband_frequencies_are_those_of_the_standard():
-    # IEC 61260-1:2014, annex E, table E.1: nominal frequencies of one-third octaves from 0.5 to 80 Hz.
+    # IEC 61260-1:2014, annex E, table E.1: nominal frequencies of third octaves from 0.5 to 80 Hz.
     table = [0.5, 0.63, 0.8, 1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8, 10, 12.5, 16, 20, 25, 31.5, 40, 50, 63, 80]
     assert [nominal_midband(number) for number in range(-3, 20)] == table
     bands = CumulativeSpectrum(STEP, np.sin(TIME)).third_octaves(0.5, 80.0)

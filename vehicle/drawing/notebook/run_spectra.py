@@ -28,7 +28,7 @@ class RunSpectra(RecordSpectra):
         return card("Spectra", rows, line_drawing(shown.frequency, shown.cumulative_rms, label))
 
     def plot(self) -> Picture:
-        """Plot density, one-third octaves and cumulative RMS of up to four channels."""
+        """Plot density, third octaves and cumulative RMS of up to four channels."""
         from vehicle.drawing.rendering.spectra_plot import plot_spectra
 
         names = list(dict.fromkeys(spectrum.name for spectrum in self.channels))[:4]

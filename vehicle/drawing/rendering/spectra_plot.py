@@ -25,7 +25,7 @@ SHOWN = (0.01, 5.0)
 DECADES = 1e5
 """Range of a density in a picture, from its largest value."""
 
-ROWS = ("density [(m/s²)²/Hz]", "RMS in one-third\noctaves [m/s²]", "cumulative RMS\n[m/s²]")
+ROWS = ("density [(m/s²)²/Hz]", "RMS in third\noctaves [m/s²]", "cumulative RMS\n[m/s²]")
 
 
 def plot_spectra(
@@ -35,7 +35,7 @@ def plot_spectra(
     title: str = "",
     caption: str = "",
 ) -> None:
-    """Plot densities, one-third octaves and cumulative RMS of accelerations, a column for each channel.
+    """Plot densities, third octaves and cumulative RMS of accelerations, a column for each channel.
 
     All columns have the same scale, so that channels and runs can be compared.
 

@@ -157,7 +157,7 @@ class Run:
         return PointComfort(x=value.x, y=value.y, z=value.z, overall=value.overall, band=value.band, weighted=weighted)
 
     def psd(self, channels: Sequence[str] | None = None) -> RunSpectra:
-        """Return density, one-third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.
+        """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.
 
         Args:
             channels: names of acceleration channels; by default seat rail, a seat with an occupant, and the vertical

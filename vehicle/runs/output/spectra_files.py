@@ -50,11 +50,11 @@ def spectra_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
 
 
 def third_octaves_text(runs: Mapping[str, RecordSpectra], caption: str) -> str:
-    """Return the table of one-third octaves as CSV text, a row for each band of each channel."""
+    """Return the table of third octaves as CSV text, a row for each band of each channel."""
     heads = ("run", "channel", "weighting", "midband [Hz]", "from [Hz]", "to [Hz]", "RMS [m/s2]", "standard error [-]")
     return _text(
         caption
-        + "; one-third octaves of IEC 61260-1 (base ten), rectangular; empty: the record is shorter than 1/bandwidth",
+        + "; third octaves of IEC 61260-1 (base ten), rectangular; empty: the record is shorter than 1/bandwidth",
         heads,
         (
             (name, spectrum.name, spectrum.weighting, *numbers)

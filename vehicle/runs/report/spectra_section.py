@@ -56,7 +56,7 @@ def _points(run: FinishedRun) -> tuple[str, ...]:
 
 
 def _roads(runs: Mapping[str, RecordSpectra]) -> list[Markup]:
-    """Return a sentence for the road under each front wheel."""
+    """Return a line on the road under each front wheel."""
     return [
         tag(
             "p",

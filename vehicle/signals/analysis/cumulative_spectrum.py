@@ -1,4 +1,4 @@
-"""Cumulative RMS of a record over frequency, and RMS in one-third octave bands.
+"""Cumulative RMS of a record over frequency, and RMS in third octave bands.
 
 The periodogram has the mean square P_k = S_k df at f_k = k df. Each line is spread evenly over the df around it, so
 that the mean square below a frequency f,
@@ -32,7 +32,7 @@ HALF_BAND = 10.0**0.05
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ThirdOctaves:
-    """RMS in adjacent one-third octave bands.
+    """RMS in adjacent third octave bands.
 
     Attributes:
         nominal: nominal midband frequencies [Hz]; (b,).
@@ -80,18 +80,18 @@ class CumulativeSpectrum:
         return np.sqrt(np.maximum(self.mean_square(lowest, frequency), 0.0))
 
     def third_octaves(self, lowest: float, highest: float) -> ThirdOctaves:
-        """Return the RMS in the one-third octave bands whose nominal midbands are in [lowest, highest] Hz.
+        """Return the RMS in the third octave bands whose nominal midbands are in [lowest, highest] Hz.
 
         Raises:
             DataError: no band in the range, or the range ends above the highest line of the record.
         """
         numbers = np.array([n for n in range(-30, 51) if lowest * 0.999 <= nominal_midband(n) <= highest * 1.001])
         if not numbers.size:
-            raise DataError(f"{lowest:g} to {highest:g} Hz: contains no midband frequency of a one-third octave")
+            raise DataError(f"{lowest:g} to {highest:g} Hz: contains no midband frequency of a third octave")
         edges = 10.0 ** (np.append(numbers, numbers[-1] + 1) / 10.0) / HALF_BAND
         if edges[-1] > self._edges[-1]:
             raise DataError(
-                f"the highest one-third octave ends at {edges[-1]:.4g} Hz, above the {self._edges[-1]:.4g} Hz that the "
+                f"the highest third octave ends at {edges[-1]:.4g} Hz, above the {self._edges[-1]:.4g} Hz that the "
                 "sampling rate allows; choose a lower range, or a record with a higher rate"
             )
         width = np.diff(edges)

@@ -24,7 +24,7 @@ FITTED = (0.011, 2.83)
 """Range of the fit [cycles/m] (ISO 8608, clause 5: the general range of the road classes)."""
 
 LEAST_BANDS = 6
-"""Minimum number of one-third octaves of a fit: two octaves."""
+"""Minimum number of third octaves of a fit: two octaves."""
 
 CLASS_WIDTH = 2.0
 """Upper limit of G(n0) of a class over its geometric mean (ISO 8608: the limits of two classes differ by 4)."""
@@ -39,7 +39,7 @@ class RoadLevel:
         density: G [m3]; (m,).
         reference_density: G(n0) of the fit [m3].
         letter: class with this G(n0), "A" to "H".
-        fitted: range of the one-third octaves of the fit [cycles/m].
+        fitted: range of the third octaves of the fit [cycles/m].
     """
 
     wavenumber: NDArray[np.float64]
@@ -77,7 +77,7 @@ def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: f
     usable = np.isfinite(bands.rms) & (bands.rms > 0.0)
     if np.count_nonzero(usable) < LEAST_BANDS:
         raise DataError(
-            f"road: {np.count_nonzero(usable)} one-third octaves between {FITTED[0]:g} and {FITTED[1]:g} cycles/m "
+            f"road: {np.count_nonzero(usable)} third octaves between {FITTED[0]:g} and {FITTED[1]:g} cycles/m "
             f"have a level, {LEAST_BANDS} are needed for a class; record a longer road"
         )
     low, high = bands.edges[:-1][usable] / speed, bands.edges[1:][usable] / speed

@@ -1,4 +1,4 @@
-"""Spectra of the accelerations of a run: density, one-third octaves and cumulative RMS, unweighted and weighted."""
+"""Spectra of the accelerations of a run: density, third octaves and cumulative RMS, unweighted and weighted."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ChannelSpectrum:
         frequency: lines [Hz]; (m,).
         density: one-sided power spectral density [unit^2/Hz]; (m,).
         cumulative_rms: RMS from the lowest line up to each line [unit]; (m,).
-        third_octaves: RMS in one-third octave bands [unit].
+        third_octaves: RMS in third octave bands [unit].
     """
 
     name: str
@@ -72,7 +72,7 @@ def vibration_spectra(
 ) -> tuple[ChannelSpectrum, ...]:
     """Return the spectra of channels, each followed by its weighted spectra if it is on a seat or seat rail.
 
-    Densities are averaged over Hann windows (Welch). Cumulative RMS and one-third octaves come from the periodogram of
+    Densities are averaged over Hann windows (Welch). Cumulative RMS and third octaves come from the periodogram of
     the whole record, so that the bands add up to the RMS (`vehicle.signals.analysis.cumulative_spectrum`).
 
     Args:

@@ -59,7 +59,7 @@ class RecordSpectra:
     road_levels: Mapping[str, RoadLevel]
 
     def highest_band(self, spectrum: ChannelSpectrum) -> tuple[float, float]:
-        """Return nominal midband frequency [Hz] and RMS of the highest one-third octave of a channel."""
+        """Return nominal midband frequency [Hz] and RMS of the highest third octave of a channel."""
         rms = np.nan_to_num(spectrum.third_octaves.rms, nan=-1.0)
         index = int(np.argmax(rms))
         return float(spectrum.third_octaves.nominal[index]), float(rms[index])
