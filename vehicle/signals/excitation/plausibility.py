@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 from vehicle.signals.records.channel_faults import clipped, constant_part
 from vehicle.signals.records.clock import PAUSE
 from vehicle.signals.records.rare_events import rare_events
@@ -135,7 +136,7 @@ def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArra
     nyquist = 0.5 / timestep
     smooth = z
     if nyquist > 1.25 * ACCELERATION_BAND:  # below, the sampling itself limits the band
-        smooth = scipy.signal.sosfiltfilt(scipy.signal.butter(4, ACCELERATION_BAND / nyquist, output="sos"), z)
+        smooth = zero_phase_low_pass(z, ACCELERATION_BAND / nyquist, 4)
     inner = np.diff(smooth, 2) / timestep**2
     return np.concatenate((inner[:1], inner, inner[-1:]))
 
