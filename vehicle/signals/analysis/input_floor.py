@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache, partial
-from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from vehicle.signals.analysis.cubic_spline import CubicSpline
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
 from vehicle.signals.analysis.segments import windows_of_equal_length
 
@@ -112,10 +112,10 @@ def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> t
 
 
 @cache
-def _taper_splines() -> list[Any]:
+def _taper_splines() -> list[CubicSpline]:
     """Return a cubic spline through each Slepian taper, from 0 to 1."""
     grid = np.linspace(0.0, 1.0, TAPER_SAMPLES)
-    return [scipy.interpolate.CubicSpline(grid, taper) for taper in slepian_tapers(TAPER_SAMPLES)]
+    return [CubicSpline(grid, taper) for taper in slepian_tapers(TAPER_SAMPLES)]
 
 
 def slepian_tapers(samples: int) -> Real:

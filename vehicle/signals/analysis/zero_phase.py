@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
+
+from vehicle.signals.analysis.fast_length import fast_length
 
 REST = 1e-17
 """Share of the slowest transient that is left where the periodic continuation of the FFT begins: below round-off."""
@@ -39,7 +40,7 @@ def zero_phase_low_pass(values: NDArray[np.float64], corner: float, order: int) 
     after = 2.0 * values[..., -1:] - values[..., -2 : -edge - 2 : -1]
     record = np.concatenate((before, values, after), axis=-1)
     samples = record.shape[-1]
-    length = scipy.fft.next_fast_len(samples + int(np.ceil(np.log(REST) / np.log(slowest))), real=True)
+    length = fast_length(samples + int(np.ceil(np.log(REST) / np.log(slowest))))
     s = 2j * np.tan(np.pi * np.arange(length // 2 + 1) / length)
     factor = np.prod([-pole / (s - pole) for pole in poles], axis=0)
     for _ in range(2):

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 from vehicle.signals.records.channel_faults import clipped, constant_part
 from vehicle.signals.records.clock import PAUSE
@@ -150,7 +150,7 @@ def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
     fifth there.
     """
     centred = z - z.mean()
-    spectrum = scipy.fft.rfft(centred * np.hanning(z.size), scipy.fft.next_fast_len(z.size, real=True))
+    spectrum = np.fft.rfft(centred * np.hanning(z.size), fast_length(z.size))
     frequency = np.linspace(0.0, 1.0, spectrum.size)  # share of the Nyquist frequency
     power = (frequency * np.abs(spectrum)) ** 2
     total = float(power.sum())

@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.cubic_spline import CubicSpline
 from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
 from vehicle.signals.records.table import Vector
@@ -148,4 +149,4 @@ def at_times(time: Vector, values: Vector, grid: Vector, step: float) -> Vector:
         return values[round(first) : round(first) + grid.size]
     if step > 1.05 * interval:
         values = zero_phase_low_pass(values, 2.0 * interval * KEPT / step, 8)
-    return np.asarray(scipy.interpolate.CubicSpline(time, values)(grid))
+    return np.asarray(CubicSpline(time, values)(grid))
