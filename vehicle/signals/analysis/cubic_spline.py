@@ -16,19 +16,28 @@ Real = NDArray[np.float64]
 class CubicSpline:
     """Cubic spline y(x) with continuous y', y''; the first two and the last two segments are one cubic each.
 
-    On the segment from x_k on, with h = x - x_k: y = y_k + s_k h + c_k h^2 + d_k h^3. The slopes s_k follow from the
-    continuity of y'' by a tridiagonal system.
+    On the segment from x_k on, with h = x - x_k: y = y_k + s_k h + c_k h^2 + d_k h^3. Three samples give a parabola,
+    two a straight line.
 
     Args:
-        x: increasing knots, (n,) with n > 3.
+        x: increasing knots, (n,) with n > 1.
         y: values, (n,).
     """
 
     def __init__(self, x: Real, y: Real) -> None:
-        if x.size < 4:
-            raise ValueError(f"found {x.size} samples, must be at least 4")
         width = np.diff(x)
         secant = np.diff(y) / width
+        slope = self._slopes(x, y, width, secant)
+        excess = (slope[:-1] + slope[1:] - 2.0 * secant) / width
+        self.knots = x
+        self.coefficients = (y[:-1], slope[:-1], (secant - slope[:-1]) / width - excess, excess / width)
+
+    @staticmethod
+    def _slopes(x: Real, y: Real, width: Real, secant: Real) -> Real:
+        """Return the slopes at the knots, (n,): the solution of a tridiagonal system for a continuous y''."""
+        if x.size < 4:
+            polynomial = np.polyfit(x - x[0], y, x.size - 1)
+            return np.asarray(np.polyval(np.polyder(polynomial), x - x[0]))
         matrix, right = np.zeros((3, x.size)), np.empty(x.size)  # rows of the matrix: above, on, below the diagonal
         matrix[1, 1:-1] = 2.0 * (width[:-1] + width[1:])
         matrix[0, 2:], matrix[2, :-2] = width[:-1], width[1:]
@@ -39,10 +48,7 @@ class CubicSpline:
         both = x[-1] - x[-3]
         matrix[1, -1], matrix[2, -2] = width[-2], both
         right[-1] = (width[-1] ** 2 * secant[-2] + (2.0 * both + width[-1]) * width[-2] * secant[-1]) / both
-        slope = scipy.linalg.solve_banded((1, 1), matrix, right, overwrite_ab=True, overwrite_b=True)
-        excess = (slope[:-1] + slope[1:] - 2.0 * secant) / width
-        self.knots = x
-        self.coefficients = (y[:-1], slope[:-1], (secant - slope[:-1]) / width - excess, excess / width)
+        return np.asarray(scipy.linalg.solve_banded((1, 1), matrix, right, overwrite_ab=True, overwrite_b=True))
 
     def __call__(self, at: ArrayLike, order: int = 0) -> Real:
         """Return y, or its first or second derivative.
