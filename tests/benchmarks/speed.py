@@ -53,7 +53,7 @@ SHOWN = {
     "four_wheel_reduced_realtime_factor": "simulated over computing time of its reduced engine, all channels",
     "case_ms": "processor time of a sweep case of 30 s, ten parameters varied, everything included [ms]",
     "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
-    "shaker_ms": "processor time of `python -m vehicle.shaker --input low.csv --engine reduced`, all files written [ms]",
+    "shaker_ms": "processor time of `python -m vehicle.shaker --input low.csv --engine reduced`, all files [ms]",
     "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
     "reduced_rms_error": "largest RMS difference of an acceleration channel to MuJoCo at an eighth of the step",
 }
