@@ -18,7 +18,7 @@ def test_maxima_agree_with_scipy_with_flat_tops_and_equal_feet(levels, prominenc
         expected = [max(pair, key=lambda foot: values[foot]) for pair in feet]
         maxima = local_maxima(values, prominence)
         found += len(maxima)
-        assert [maximum.index for maximum in maxima] == tops.tolist()
+        assert [maximum.top for maximum in maxima] == tops.tolist()
         assert [maximum.prominence for maximum in maxima] == properties["prominences"].tolist()
         assert [maximum.foot for maximum in maxima] == expected
     assert found > 1000

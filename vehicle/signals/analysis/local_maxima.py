@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 class LocalMaximum(NamedTuple):
     """Local maximum of samples; a flat top counts as one maximum at its middle."""
 
-    index: int
+    top: int
     """index of the sample"""
     prominence: float
     """height above the higher foot [unit of the samples]"""

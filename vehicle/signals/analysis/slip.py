@@ -168,7 +168,7 @@ def slip_phases(
         peaks = []
         for sign in (1.0, -1.0):
             for maximum in local_maxima(sign * relative[window], 0.0):
-                top = window[maximum.index]
+                top = window[maximum.top]
                 delay = float(time[top] - start)
                 if delay > BREAK_AWAY:
                     peaks.append(
