@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from scipy.signal.windows import dpss
 
 from tests.benchmarks.frf_accuracy import banded_input
 from tests.validation import validated
-from vehicle.signals.analysis.input_floor import rounding_step, slepian_tapers, tapered_power
+from vehicle.signals.analysis.input_floor import rounding_step, tapered_power
 from vehicle.signals.analysis.local_rational import local_rational_response
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
@@ -22,13 +21,6 @@ def estimate(signal):
     echo = np.convolve(signal, [0.5, 0.3, -0.2], mode="same") + 1e-7 * np.random.default_rng(1).normal(size=signal.size)
     found = local_rational_response(STEP, signal, echo)
     return found, np.isfinite(found.response[0])
-
-
-def test_tapers_are_the_slepian_sequences_of_scipy():
-    tapers, expected = slepian_tapers(2048), dpss(2048, 6.0, 5)
-    # An eigenvector times its eigenvalue's gap rounds to 1e-10; the signs of eigenvectors are arbitrary.
-    assert np.abs(np.abs(tapers) - np.abs(expected)).max() < 1e-10
-    assert np.abs(np.sum(tapers * expected, axis=1)) == pytest.approx(np.ones(5), abs=1e-12)
 
 
 @pytest.mark.parametrize("rounded", [0.0, 3e-7, 1e-5])

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache, partial
+from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from vehicle.signals.analysis.cubic_spline import CubicSpline
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
 from vehicle.signals.analysis.segments import windows_of_equal_length
 
@@ -112,24 +112,10 @@ def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> t
 
 
 @cache
-def _taper_splines() -> list[CubicSpline]:
+def _taper_splines() -> list[Any]:
     """Return a cubic spline through each Slepian taper, from 0 to 1."""
-    grid = np.linspace(0.0, 1.0, TAPER_SAMPLES)
-    return [CubicSpline(grid, taper) for taper in slepian_tapers(TAPER_SAMPLES)]
-
-
-def slepian_tapers(samples: int) -> Real:
-    """Return the tapers of unit energy, most concentrated first, (TAPERS, samples); their signs are arbitrary.
-
-    Eigenvectors of the tridiagonal matrix ((n - 1) / 2 - k)^2 cos(2 pi BANDWIDTH / n), k (n - k) / 2.
-    Source: Percival and Walden, Spectral analysis for physical applications, 1993, section 8.3.
-    """
-    k = np.arange(samples)
-    diagonal = (0.5 * (samples - 1) - k) ** 2 * np.cos(2.0 * np.pi * BANDWIDTH / samples)
-    beside = 0.5 * k[1:] * (samples - k[1:])
-    selected = (samples - TAPERS, samples - 1)
-    _, vectors = scipy.linalg.eigh_tridiagonal(diagonal, beside, select="i", select_range=selected)
-    return np.asarray(vectors[:, ::-1].T)
+    tapers = scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS)
+    return [scipy.interpolate.CubicSpline(np.linspace(0.0, 1.0, TAPER_SAMPLES), taper) for taper in tapers]
 
 
 def _window(number: int, count: int, part: slice) -> Real:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
-from vehicle.signals.analysis.local_maxima import local_maxima
 
 PROMINENCE_DB = 1.0
 """Minimum prominence of a peak above the higher of its two feet: 1 dB, a factor 1.12."""
@@ -99,7 +99,11 @@ def resonance_peaks(
             continue
         decibel = 20.0 * np.log10(values[span])
         height, ripple = values[span], np.zeros(span.size) if error is None else error[span]
-        for top, rise, foot in local_maxima(decibel, prominence_db):
+        tops, properties = scipy.signal.find_peaks(decibel, prominence=prominence_db)
+        for top, rise, *bases in zip(
+            tops, properties["prominences"], properties["left_bases"], properties["right_bases"], strict=True
+        ):
+            foot = max(bases, key=lambda base: float(decibel[base]))
             noisy = quality is not None and quality[span[top]] < LEAST_COHERENCE
             if noisy or height[top] - height[foot] < STANDARD_ERRORS * np.hypot(ripple[top], ripple[foot]):
                 continue
@@ -110,7 +114,7 @@ def resonance_peaks(
                     frequency_hz=position,
                     magnitude=float(10.0 ** (level / 20.0)),
                     coherence=None if quality is None else float(quality[span[top]]),
-                    prominence_db=rise,
+                    prominence_db=float(rise),
                     random_error=None if error is None else float(error[span[top]]),
                 )
             )

@@ -8,8 +8,6 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.signals.analysis.fast_length import fast_length
-
 Vector = npt.NDArray[np.float64]
 
 RESOLUTION = 2.5e-4
@@ -75,8 +73,8 @@ def spectral_shares(first: Vector, second: Vector) -> tuple[Vector, Vector, Vect
     frequency = np.linspace(0.0, 0.5, LINES)
     shares, powers = [], []
     for record in (first, second):
-        size = fast_length(record.size)
-        power = np.abs(np.fft.rfft(scipy.signal.detrend(record), size)) ** 2
+        size = scipy.fft.next_fast_len(record.size, real=True)
+        power = np.abs(scipy.fft.rfft(scipy.signal.detrend(record), size)) ** 2
         width = max(SMOOTHED, int(RESOLUTION * size))
         power = scipy.ndimage.uniform_filter1d(power, width, mode="nearest")
         power = np.interp(frequency, np.arange(power.size) / size, power) / power.max()
@@ -88,10 +86,10 @@ def spectral_shares(first: Vector, second: Vector) -> tuple[Vector, Vector, Vect
 
 def _filtered(record: Vector, frequency: Vector, factor: Vector) -> Vector:
     """Return a detrended record (n,), filtered without phase by factors (k,) at frequencies."""
-    size = fast_length(record.size)
-    spectrum = np.fft.rfft(scipy.signal.detrend(record), size)
+    size = scipy.fft.next_fast_len(record.size, real=True)
+    spectrum = scipy.fft.rfft(scipy.signal.detrend(record), size)
     spectrum *= np.interp(np.arange(spectrum.size) / size, frequency, factor)
-    return np.asarray(np.fft.irfft(spectrum, size)[: record.size])
+    return np.asarray(scipy.fft.irfft(spectrum, size)[: record.size])
 
 
 def _begins(record: Vector, length: int) -> list[int]:

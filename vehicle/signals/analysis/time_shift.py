@@ -18,7 +18,6 @@ import numpy.typing as npt
 import scipy
 
 from vehicle.signals.analysis.shift_search import searched_line, spectral_shares
-from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 
 Vector = npt.NDArray[np.float64]
 
@@ -142,7 +141,8 @@ def _without_noise(first: Vector, second: Vector) -> tuple[tuple[Vector, int], t
     cut = int(np.ceil(1.0 / max(corner, 1e-9)))
     if not 0.0 < corner < HIGHEST or 4 * cut > min(first.size, second.size):
         return (first, 0), (second, 0)
-    clean, clean_second = (zero_phase_low_pass(values, 2.0 * corner, 4)[cut:-cut] for values in (first, second))
+    sections = scipy.signal.butter(4, 2.0 * corner, output="sos")
+    clean, clean_second = (scipy.signal.sosfiltfilt(sections, values)[cut:-cut] for values in (first, second))
     return (clean, cut), (clean_second, cut)
 
 

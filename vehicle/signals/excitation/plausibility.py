@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
-from vehicle.signals.analysis.fast_length import fast_length
-from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 from vehicle.signals.records.channel_faults import clipped, constant_part
 from vehicle.signals.records.clock import PAUSE
 from vehicle.signals.records.rare_events import rare_events
@@ -136,7 +135,7 @@ def band_limited_acceleration(z: NDArray[np.float64], timestep: float) -> NDArra
     nyquist = 0.5 / timestep
     smooth = z
     if nyquist > 1.25 * ACCELERATION_BAND:  # below, the sampling itself limits the band
-        smooth = zero_phase_low_pass(z, ACCELERATION_BAND / nyquist, 4)
+        smooth = scipy.signal.sosfiltfilt(scipy.signal.butter(4, ACCELERATION_BAND / nyquist, output="sos"), z)
     inner = np.diff(smooth, 2) / timestep**2
     return np.concatenate((inner[:1], inner, inner[-1:]))
 
@@ -150,7 +149,7 @@ def velocity_share_near_nyquist(z: NDArray[np.float64]) -> float:
     fifth there.
     """
     centred = z - z.mean()
-    spectrum = np.fft.rfft(centred * np.hanning(z.size), fast_length(z.size))
+    spectrum = scipy.fft.rfft(centred * np.hanning(z.size), scipy.fft.next_fast_len(z.size, real=True))
     frequency = np.linspace(0.0, 1.0, spectrum.size)  # share of the Nyquist frequency
     power = (frequency * np.abs(spectrum)) ** 2
     total = float(power.sum())

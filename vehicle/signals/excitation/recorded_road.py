@@ -26,7 +26,6 @@ import numpy as np
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.cubic_spline import CubicSpline
 from vehicle.signals.excitation.iso_road import RISE_S, Side, half_cosine_at
 from vehicle.signals.excitation.measured_road import TRACKS
 from vehicle.signals.excitation.plausibility import acceleration_events
@@ -114,7 +113,7 @@ class RecordedDrive:
         plates = {}
         for wheel, behind, side in self.wheels:
             tau = delayed(time - time[0], distance, grid, behind)
-            spline = CubicSpline(time - time[0], tracks[side] - tracks[side][0])
+            spline = scipy.interpolate.CubicSpline(time - time[0], tracks[side] - tracks[side][0])
             reached = np.isfinite(tau)
             times = np.where(reached, tau, 0.0)
             plates[wheel] = np.where(reached, spline(times) * half_cosine_at(times, RISE_S), 0.0) + 0.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import scipy
 
 from vehicle.errors import DataError
-from vehicle.signals.analysis.cubic_spline import CubicSpline
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES
 from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
 from vehicle.signals.records.table import USABLE, Table, Vector
@@ -82,6 +82,6 @@ def fill_missing(table: Table, time: Vector, column: int) -> tuple[Vector, list[
             f"interpolation bridges at most {limit:.6g} s; use the part before or after it"
         )
     filled = values.copy()
-    filled[~valid] = CubicSpline(time[valid], values[valid])(time[~valid])
+    filled[~valid] = scipy.interpolate.CubicSpline(time[valid], values[valid])(time[~valid])
     count = int(np.count_nonzero(~valid))
     return filled, [f"{count} missing values of {name} interpolated by a cubic spline, the first in {table.row(first)}"]

@@ -8,8 +8,6 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
-from vehicle.signals.analysis.cubic_spline import CubicSpline
-from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
 from vehicle.signals.records.table import Vector
 
@@ -148,5 +146,6 @@ def at_times(time: Vector, values: Vector, grid: Vector, step: float) -> Vector:
     if abs(interval / step - 1.0) < 1e-9 and abs(first - round(first)) < 1e-6:
         return values[round(first) : round(first) + grid.size]
     if step > 1.05 * interval:
-        values = zero_phase_low_pass(values, 2.0 * interval * KEPT / step, 8)
-    return np.asarray(CubicSpline(time, values)(grid))
+        sections = scipy.signal.butter(8, 2.0 * interval * KEPT / step, output="sos")
+        values = scipy.signal.sosfiltfilt(sections, values)
+    return np.asarray(scipy.interpolate.CubicSpline(time, values)(grid))

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.runs.car import Car, Run
-from vehicle.signals.analysis.zero_phase import zero_phase_low_pass
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.table import Record
 
@@ -101,4 +101,5 @@ class RecordTarget:
         )
 
     def _filtered(self, histories: Vector) -> Vector:
-        return zero_phase_low_pass(histories, 2.0 * self.record.step * self.lowpass, 4)[:, self.kept]
+        sections = scipy.signal.butter(4, 2.0 * self.record.step * self.lowpass, output="sos")
+        return np.asarray(scipy.signal.sosfiltfilt(sections, histories, axis=1)[:, self.kept])
