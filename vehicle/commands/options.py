@@ -87,6 +87,16 @@ def extra_output_options(parser: Parser, files: str) -> None:
     group.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
+def figures_option(parser: argparse._ActionsContainer) -> None:
+    """Add --no-figures, for a command that writes pictures beside its tables; the default of `figures` is True."""
+    parser.add_argument(
+        "--no-figures",
+        dest="figures",
+        action="store_false",
+        help="write no pictures (PNG): the command is done sooner; tables, summary and report are unchanged",
+    )
+
+
 def film_name(value: str, default: str) -> Path:
     """Return the path of a film.
 
