@@ -11,7 +11,7 @@ from itertools import product
 from pathlib import Path
 
 from vehicle.signals.excitation.random_road import random_road
-from vehicle.studies.sweeps.case import table_cases
+from vehicle.studies.sweeps.case_table import table_cases
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -13,11 +13,12 @@ import pytest
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.studies.sweeps import executors
-from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case_keys import case_keys
+from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER
 from vehicle.studies.sweeps.executors import process_pool, workers_of
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.sweep import case_keys, sweep
+from vehicle.studies.sweeps.sweep import sweep
 from vehicle.studies.sweeps.worker import carry_out
 
 
@@ -30,26 +31,24 @@ class Slow(Executor):
 
     def __init__(self, workers):
         self._max_workers = workers
-        self.held: list[Future[list[Result]]] = []
-        self.sizes: dict[Future[list[Result]], int] = {}
+        self.held: dict[Future[Block], Block] = {}
         self.maximum = 0
         self.quiet: Timer | None = None
 
     def submit(self, function, /, *arguments, **named):
         if self.quiet is not None:
             self.quiet.cancel()
-        future: Future[list[Result]] = Future()
-        self.held.append(future)
-        self.sizes[future] = len(arguments[0])
+        future: Future[Block] = Future()
+        self.held[future] = Block.of(*arguments[:2], [Result(values={"peak": 1.0})] * len(arguments[0]))
         self.maximum = max(self.maximum, sum(not task.done() for task in self.held))
         self.quiet = Timer(0.5, self.finish)
         self.quiet.start()
         return future
 
     def finish(self):
-        for task in list(self.held):
+        for task, block in list(self.held.items()):
             if not task.done():
-                task.set_result([Result(values={"peak": 1.0})] * self.sizes[task])
+                task.set_result(block)
 
 
 class Fails(Executor):
@@ -59,7 +58,7 @@ class Fails(Executor):
         self.error = error
 
     def submit(self, function, /, *arguments, **named):
-        future: Future[list[Result]] = Future()
+        future: Future[Block] = Future()
         if self.error is None:
             future.cancel()
             future.set_running_or_notify_cancel()
@@ -112,9 +111,9 @@ def test_an_interruption_keeps_the_rows(tmp_path):
 
 def test_a_worker_with_another_program_is_rejected():
     cases = many(1)
-    assert not carry_out(cases, Peak(), program_digest())[0].reason
+    assert not carry_out(cases, [""], Peak(), program_digest()).failed
     with pytest.raises(ConfigurationError, match="the workers have another program"):
-        carry_out(cases, Peak(), "another")
+        carry_out(cases, [""], Peak(), "another")
     # An error of the worker, not of the run, is not a row.
     with pytest.raises(ConfigurationError, match="another program"):
         sweep(cases, Peak(), executor=Fails(ConfigurationError("another program")))

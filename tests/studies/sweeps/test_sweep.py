@@ -20,11 +20,13 @@ from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps import executors
-from vehicle.studies.sweeps.case import SignalFile, table_cases
+from vehicle.studies.sweeps.case import SignalFile
+from vehicle.studies.sweeps.case_keys import case_keys
+from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.dispatcher import DIED
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
-from vehicle.studies.sweeps.sweep import case_keys, sweep
+from vehicle.studies.sweeps.sweep import sweep
 
 FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
 ROOT = Path(__file__).parents[3]

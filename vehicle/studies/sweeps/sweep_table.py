@@ -4,26 +4,39 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.runs.output.folder import write_json, write_text
 from vehicle.signals.records.formats import recognised_format
 from vehicle.signals.records.sheet_format import read_sheet_texts
 from vehicle.signals.records.text_format import read_texts
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.store import StoredRows
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Heads of the columns without unit."""
+
+CONSTANTS = {"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}
+"""Constants of JSON to the texts of Python."""
+
+
+class Row(TypedDict):
+    """Row of a case: its values as texts with all digits."""
+
+    values: dict[str, str]
+    engine: str
+    reason: str
+    seconds: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -51,8 +64,11 @@ class SweepTable:
     @property
     def failed(self) -> list[tuple[Case, str]]:
         """Return the failed cases with their error messages."""
-        pairs = zip(self.cases, self.results, strict=True)
-        return [(case, result.reason) for case, result in pairs if result.reason]
+        if isinstance(self.results, StoredRows):
+            numbers = np.flatnonzero(self.results.failed).tolist()
+        else:
+            numbers = [number for number, result in enumerate(self.results) if result.reason]
+        return [(self.cases[number], self.results[number].reason) for number in numbers]
 
     def paths(self) -> list[str]:
         """Return all modified parameter paths, in the order of first occurrence."""
@@ -60,16 +76,27 @@ class SweepTable:
 
     def text(self) -> str:
         """Return the table as CSV, units in the header; bitwise identical for equal cases."""
-        paths, file = self.paths(), io.StringIO()
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([INPUT, *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), ENGINE, REASON])
-        for case, result in zip(self.cases, self.results, strict=True):
-            changed = changes(case)
-            numbers = [repr(result.values[name]) if name in result.values else "" for name in self.units]
-            writer.writerow(
-                [case.source.name, *(changed.get(path, "") for path in paths), *numbers, result.engine, result.reason]
-            )
+        file = io.StringIO()
+        writer = TableWriter(file, self)
+        for case, row in zip(self.cases, self.rows(), strict=True):
+            writer.add(case, row)
         return file.getvalue()
+
+    def rows(self) -> Iterator[Row]:
+        """Return the rows with numbers as texts of all digits, which need no conversion; read when they are used."""
+        if isinstance(self.results, StoredRows):
+            numbers_as_texts = json.JSONDecoder(parse_float=str, parse_constant=CONSTANTS.__getitem__)
+            for number in range(len(self.results)):
+                yield numbers_as_texts.decode(self.results.row(number).decode())
+        else:
+            for result in self.results:
+                texts = {name: repr(value) for name, value in result.values.items()}
+                yield {
+                    "values": texts,
+                    "engine": result.engine,
+                    "reason": result.reason,
+                    "seconds": repr(result.seconds),
+                }
 
     def __repr__(self) -> str:
         """Return the numbers of runs and of failed runs, and the columns, in a line."""
@@ -83,18 +110,27 @@ class SweepTable:
         """
         return table_frame(self.text())
 
-    def write(self, folder: Path, computed: str = "") -> None:
-        """Write `table.csv`, `sweep.json` and `timing.csv`.
 
-        Args:
-            folder: folder of the files.
-            computed: last line of `timing.csv`; empty for none.
-        """
-        text = self.text()
-        write_text(folder / "table.csv", text)
-        write_json(folder / "sweep.json", {**self.made, "failed": [case.label for case, _ in self.failed]})
-        times = "case,seconds [s]\n" + "".join(f"{i},{r.seconds:.4f}\n" for i, r in enumerate(self.results))
-        write_text(folder / "timing.csv", times + (f"# {computed}\n" if computed else ""))
+class TableWriter:
+    """Writes a table of a sweep as CSV, row by row, units in the header.
+
+    Args:
+        file: the open file.
+        table: the table; only its cases and units are used.
+    """
+
+    def __init__(self, file: TextIO, table: SweepTable) -> None:
+        self.paths, self.names = table.paths(), list(table.units)
+        self._writer = csv.writer(file, lineterminator="\n")
+        heads = (f"{name} [{unit}]" for name, unit in table.units.items())
+        self._writer.writerow([INPUT, *self.paths, *heads, ENGINE, REASON])
+
+    def add(self, case: Case, row: Row) -> None:
+        """Write the row of a case."""
+        changed, values = changes(case), row["values"]
+        parameters = [changed.get(path, "") for path in self.paths]
+        numbers = [values.get(name, "") for name in self.names]
+        self._writer.writerow([case.source.name, *parameters, *numbers, row["engine"], row["reason"]])
 
 
 def changes(case: Case) -> dict[str, str]:
