@@ -58,6 +58,18 @@ class Peak:
         return {"peak": float(abs(run["seat_rail_acc_z"]).max())}
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Worker(Peak):
+    """Measure: number of the process that runs the case, and the time."""
+
+    @property
+    def units(self):
+        return {"process": "-", "time": "s"}
+
+    def __call__(self, run):
+        return {"process": float(os.getpid()), "time": time.time()}
+
+
 def threads():
     """Return a user-defined executor."""
     return ThreadPoolExecutor(2)

@@ -111,7 +111,7 @@ def drivings(cases: Sequence[Case]) -> Mapping[str, tuple[Driving, ...]]:
     # Thousands of cases share a few speeds; no other override changes the speed.
     combinations: dict[tuple[str, Path | None, tuple[str, ...]], None] = {}
     for case in cases:
-        speeds = tuple(text for text in case.overrides if text.partition("=")[0].strip().endswith("speed"))
+        speeds = tuple([text for text in case.overrides if "speed" in text])
         combinations[case.source.name, case.vehicle, speeds] = None
     states: dict[str, tuple[Driving, ...]] = {}
     for name, vehicle, speeds in combinations:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from pathlib import Path
 
 from vehicle.studies.sweeps.case import Case, Input, overrides_of
@@ -32,18 +33,27 @@ class Cases(LazySequence[Case]):
         self.changes = changes
         self.inputs = [(source, (*fixed, *overrides_of(source))) for source in inputs]
         self.engine, self.vehicle = engine, vehicle
+        self._length = len(self.inputs) * len(changes)
 
     def __len__(self) -> int:
         """Return the number of cases."""
-        return len(self.inputs) * len(self.changes)
+        return self._length
 
     def item(self, number: int) -> Case:
         """Make a case."""
         position, change = divmod(number, len(self.changes))
-        source, shared = self.inputs[position]
+        return self._case(*self.inputs[position], self.changes[change])
+
+    def __iter__(self) -> Iterator[Case]:
+        """Return the cases in their order."""
+        for source, shared in self.inputs:
+            for change in self.changes:
+                yield self._case(source, shared, change)
+
+    def _case(self, source: Input, shared: tuple[str, ...], change: tuple[str, ...]) -> Case:
         return Case(
             source=source,
-            overrides=shared + self.changes[change],
+            overrides=shared + change,
             engine=self.engine,
             vehicle=self.vehicle,
             shared=len(shared),
@@ -79,18 +89,22 @@ class Combinations(LazySequence[tuple[str, ...]]):
 
     def __init__(self, columns: Sequence[Sequence[str]]) -> None:
         self.columns = columns
+        # Number of combinations of the columns after each column: a text is repeated as often.
+        repeated = [math.prod(map(len, columns[position + 1 :])) for position in range(len(columns))]
+        self._repeated = list(zip(columns, repeated, strict=True))
+        self._length = math.prod(map(len, columns))
 
     def __len__(self) -> int:
         """Return the number of combinations."""
-        return math.prod(map(len, self.columns))
+        return self._length
 
     def item(self, number: int) -> tuple[str, ...]:
         """Return a combination."""
-        rest, texts = number, []
-        for column in reversed(self.columns):
-            rest, position = divmod(rest, len(column))
-            texts.append(column[position])
-        return tuple(reversed(texts))
+        return tuple([column[number // repeated % len(column)] for column, repeated in self._repeated])
+
+    def __iter__(self) -> Iterator[tuple[str, ...]]:
+        """Return the combinations in their order."""
+        return product(*self.columns)
 
 
 def table_cases(

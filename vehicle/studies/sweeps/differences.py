@@ -16,13 +16,13 @@ from itertools import islice
 from typing import TextIO
 
 import numpy as np
-import scipy
+from scipy.special import stdtrit
 
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.measure import WAVE_NAMES
-from vehicle.studies.sweeps.sweep_table import Row, SweepTable, changes
+from vehicle.studies.sweeps.sweep_table import Row, SweepTable
 
 DIFFERENCES = "differences.csv"
 """Name of the file in the folder of a sweep."""
@@ -40,7 +40,13 @@ HEADS = (
 )
 
 
-ROWS_AT_ONCE = 4096
+VALUES = ("comfort_overall", "comfort_error", *WAVE_NAMES)
+"""Names of the values of a row that the differences need."""
+
+Numbers = tuple[float, ...]
+"""The `VALUES` of a row."""
+
+ROWS_AT_ONCE = 1024
 """Number of rows whose errors are computed together."""
 
 
@@ -61,35 +67,39 @@ class DifferencesWriter:
 
     Args:
         file: the open file.
-        table: table with `has_differences`.
+        paths: the modified parameter paths of all cases.
     """
 
-    def __init__(self, file: TextIO, table: SweepTable) -> None:
-        self.cases, self.paths = table.cases, table.paths()
+    def __init__(self, file: TextIO, paths: Sequence[str]) -> None:
         self._writer = csv.writer(file, lineterminator="\n")
-        self._writer.writerow(["input", *self.paths, *HEADS])
-        self._factor = float(scipy.stats.t.ppf(0.975, 2 * WAVES))
-        self._first: dict[Input, list[float]] = {}
-        self._roads: dict[Input, str] = {}
-        self._seeds: dict[str, dict[tuple[str, ...], tuple[int, list[float]]]] = {}
-        self._waiting: list[tuple[Case, list[float]]] = []
-        self._number = 0
+        self._writer.writerow(["input", *paths, *HEADS])
+        self._factor = float(stdtrit(2 * WAVES, 0.975))
+        self._first: dict[Input, Numbers] = {}
+        self._seeds: dict[str, dict[tuple[str, ...], tuple[Sequence[str], list[float]]]] = {}
+        self._source: Input | None = None
+        self._base: Numbers = ()
+        self._road = ""
+        self._waiting: list[tuple[str, Sequence[str], Numbers, Numbers]] = []
 
-    def add(self, case: Case, row: Row) -> None:
+    def add(self, case: Case, parameters: Sequence[str], row: Row) -> None:
         """Add the row of a case.
 
         Args:
             case: the case, in the order of the table.
+            parameters: values of its parameters, see `parameter_cells`.
             row: its values.
         """
         values = row["values"]
-        numbers = [float(values.get(name, math.nan)) for name in ("comfort_overall", "comfort_error", *WAVE_NAMES)]
-        self._first.setdefault(case.source, numbers)
-        self._waiting.append((case, numbers))
-        if road := self._road(case.source):
-            cars = self._seeds.setdefault(road, {})
-            cars.setdefault(case.overrides, (self._number, []))[1].append(numbers[0])
-        self._number += 1
+        numbers = tuple([float(values.get(name, math.nan)) for name in VALUES])
+        if case.source is not self._source:
+            self._source, self._road = case.source, ""
+            self._base = self._first.setdefault(case.source, numbers)
+            if isinstance(case.source, RoadDrive) and case.source.tagged:
+                self._road = replace(case.source, tagged=False).name
+        self._waiting.append((case.source.name, parameters, numbers, self._base))
+        if self._road:
+            cars = self._seeds.setdefault(self._road, {})
+            cars.setdefault(case.overrides, (parameters, []))[1].append(numbers[0])
         if len(self._waiting) == ROWS_AT_ONCE:
             self._flush()
 
@@ -98,36 +108,29 @@ class DifferencesWriter:
         self._flush()
         for name, cars in self._seeds.items():
             base = np.array(next(iter(cars.values()))[1])
-            for number, listed in cars.values():
+            for parameters, listed in cars.values():
                 comfort = np.array(listed)
                 count, apart = len(comfort), comfort - base
                 error, spread = (float(np.std(values, ddof=1)) / math.sqrt(count) for values in (comfort, apart))
-                width = float(scipy.stats.t.ppf(0.975, count - 1)) * spread
+                width = float(stdtrit(count - 1, 0.975)) * spread
                 numbers = [float(np.mean(comfort)), error, float(np.mean(apart)), spread, width]
-                self._write(f"{name}, mean of {count} seeds", self.cases[number], SEEDS, numbers)
-
-    def _road(self, source: Input) -> str:
-        """Return the name of a road with two or more seeds; else empty."""
-        if source not in self._roads:
-            self._roads[source] = ""
-            if isinstance(source, RoadDrive) and source.tagged:
-                self._roads[source] = replace(source, tagged=False).name
-        return self._roads[source]
+                self._write(f"{name}, mean of {count} seeds", parameters, SEEDS, numbers)
 
     def _flush(self) -> None:
         """Write the waiting rows."""
         if not self._waiting:
             return
-        numbers = np.array([numbers for _, numbers in self._waiting])
-        base = np.array([self._first[case.source] for case, _ in self._waiting])
-        waves, base_waves = (rows[:, 2::2] + 1j * rows[:, 3::2] for rows in (numbers, base))
-        errors, comfort = difference_error(waves, base_waves), numbers[:, 0]
-        columns = [comfort, numbers[:, 1] * comfort, comfort - base[:, 0], errors, self._factor * errors]
-        for (case, _), row in zip(self._waiting, np.stack(columns, axis=1).tolist(), strict=True):
-            self._write(case.source.name, case, CLASS, row)
+        names, parameters, numbers, base = zip(*self._waiting, strict=True)
+        (comfort, relative, *waves), (base_comfort, _, *base_waves) = np.array(numbers).T, np.array(base).T
+        first, second = (
+            np.stack(parts[0::2], axis=1) + 1j * np.stack(parts[1::2], axis=1) for parts in (waves, base_waves)
+        )
+        errors = difference_error(first, second)
+        columns = [comfort, relative * comfort, comfort - base_comfort, errors, self._factor * errors]
+        for name, cells, row in zip(names, parameters, np.stack(columns, axis=1).tolist(), strict=True):
+            self._write(name, cells, CLASS, row)
         self._waiting.clear()
 
-    def _write(self, name: str, case: Case, population: str, numbers: Sequence[float]) -> None:
-        changed = changes(case)
+    def _write(self, name: str, parameters: Sequence[str], population: str, numbers: Sequence[float]) -> None:
         cells = [f"{number:.6g}" if math.isfinite(number) else "" for number in numbers]
-        self._writer.writerow([name, *(changed.get(path, "") for path in self.paths), population, *cells])
+        self._writer.writerow([name, *parameters, population, *cells])

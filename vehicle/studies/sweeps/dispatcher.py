@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import takewhile
 from queue import Empty, SimpleQueue
 
 import numpy as np
@@ -70,12 +71,14 @@ def in_groups(cases: Sequence[Case], numbers: Indices) -> Indices:
     groups: dict[object, int] = {}
     group = np.empty(len(numbers), dtype=np.int32)
     car = np.empty(len(numbers), dtype=np.int64)
-    for position, number in enumerate(numbers.tolist()):
-        case = cases[number]
+    for position, case in enumerate(cases if len(numbers) == len(cases) else map(cases.__getitem__, numbers.tolist())):
         group[position] = groups.setdefault((case.vehicle, case.engine), len(groups))
         car[position] = hash(case.overrides)
-    _, first, members = np.unique(car, return_index=True, return_inverse=True)
-    order: Indices = numbers[np.lexsort((first[members], group))]
+    by_car = np.argsort(car, kind="stable")
+    new = np.append(True, np.diff(car[by_car]) != 0)
+    first = np.empty(len(numbers), dtype=np.int32)
+    first[by_car] = by_car[new][np.cumsum(new, dtype=np.int32) - 1]
+    order: Indices = numbers[np.lexsort((first, group))]
     return order
 
 
@@ -187,8 +190,8 @@ class Dispatcher:
         finished: SimpleQueue[Future[Block]] = SimpleQueue()
         lost: list[Indices] = []
 
-        def submit(task: Indices) -> None:
-            future = self._submit([cases[number] for number in task.tolist()])
+        def submit(task: Indices, taken: Sequence[Case]) -> None:
+            future = self._submit(taken)
             flying[future] = task, clock.monotonic()
             # The queue has the order in which the tasks finish, and costs the same with any number of tasks.
             future.add_done_callback(finished.put)
@@ -197,9 +200,9 @@ class Dispatcher:
             workers = self._count_workers()
             at_once = UNKNOWN_WORKERS if workers is None else PER_WORKER * max(workers, 1)
             while waiting and len(flying) < at_once and not lost:
-                task = self._task(waiting, cases, size, at_once)
+                task, taken = self._task(waiting, cases, size, at_once)
                 try:
-                    submit(task)
+                    submit(task, taken)
                 except BrokenExecutor:
                     lost.append(task)
             if not flying:
@@ -222,7 +225,7 @@ class Dispatcher:
                     keep(task, self._failed(cases, task, reason))
                 else:
                     for single in np.split(task, len(task)):  # an error of one case: submit each case separately
-                        submit(single)
+                        submit(single, [cases[single[0]]])
         if lost:
             if self.make is None:
                 raise SimulationError(
@@ -257,19 +260,17 @@ class Dispatcher:
                 )
         return self._workers
 
-    def _task(self, waiting: Waiting, cases: Sequence[Case], size: int, at_once: int) -> Indices:
+    def _task(self, waiting: Waiting, cases: Sequence[Case], size: int, at_once: int) -> tuple[Indices, list[Case]]:
         """Remove the cases of a task from the waiting cases: one vehicle file and engine, about `TASK_S` of work."""
         first = cases[waiting.leading(1)[0]]
         if not size:
             size = self._size(waiting, cases, first, at_once)
-        task = waiting.leading(size)
-        for position, number in enumerate(task.tolist()):
-            case = cases[number]
-            if (case.vehicle, case.engine) != (first.vehicle, first.engine):
-                task = task[:position]
-                break
-        waiting.submitted += len(task)
-        return task
+        group = first.vehicle, first.engine
+        listed = map(cases.__getitem__, waiting.leading(size).tolist())
+        taken = list(takewhile(lambda case: (case.vehicle, case.engine) == group, listed))
+        task = waiting.leading(len(taken))
+        waiting.submitted += len(taken)
+        return task, taken
 
     def _size(self, waiting: Waiting, cases: Sequence[Case], first: Case, at_once: int) -> int:
         """Return the number of cases of the next task.
@@ -299,7 +300,7 @@ class Dispatcher:
                 size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
         return size
 
-    def _submit(self, task: list[Case]) -> Future[Block]:
+    def _submit(self, task: Sequence[Case]) -> Future[Block]:
         keys = [""] * len(task) if self.key_of is None else [self.key_of(case) for case in task]
         limit = None
         if self.time_limit is not None:

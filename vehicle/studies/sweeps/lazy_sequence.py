@@ -24,7 +24,7 @@ class LazySequence(Sequence[T]):
         """Return an item, or a list of the items of a slice."""
         if isinstance(number, slice):
             return [self.item(index) for index in range(len(self))[number]]
-        return self.item(range(len(self))[number])
+        return self.item(number if 0 <= number < len(self) else range(len(self))[number])
 
     def __iter__(self) -> Iterator[T]:
         """Return the items in their order."""

@@ -8,7 +8,7 @@ from typing import TextIO
 
 from vehicle.runs.output.folder import whole_file, write_json
 from vehicle.studies.sweeps.differences import DIFFERENCES, DifferencesWriter, has_differences
-from vehicle.studies.sweeps.sweep_table import SweepTable, TableWriter
+from vehicle.studies.sweeps.sweep_table import SweepTable, TableWriter, parameter_cells
 
 
 def write_table(table: SweepTable, folder: Path, computed: str) -> None:
@@ -29,14 +29,16 @@ def write_table(table: SweepTable, folder: Path, computed: str) -> None:
             path = files.enter_context(whole_file(folder / name))
             return files.enter_context(path.open("w", encoding="utf-8", newline=""))
 
-        rows, timing = TableWriter(opened("table.csv"), table), opened("timing.csv")
-        differences = DifferencesWriter(opened(DIFFERENCES), table) if has_differences(table) else None
+        paths, timing = table.paths(), opened("timing.csv")
+        rows = TableWriter(opened("table.csv"), paths, table.units)
+        differences = DifferencesWriter(opened(DIFFERENCES), paths) if has_differences(table) else None
         timing.write("case,seconds [s]\n")
         for number, (case, row) in enumerate(zip(table.cases, table.rows(), strict=True)):
-            rows.add(case, row)
+            parameters = parameter_cells(case, paths)
+            rows.add(case, parameters, row)
             timing.write(f"{number},{float(row['seconds']):.4f}\n")
             if differences is not None:
-                differences.add(case, row)
+                differences.add(case, parameters, row)
             if row["reason"]:
                 failed.append(case.label)
         if differences is not None:
