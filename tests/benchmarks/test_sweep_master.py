@@ -19,8 +19,8 @@ def test_the_benchmark_prints_time_and_memory():
     assert found["us_per_case"] > 0.0 and found["peak_mb"] >= found["before_mb"] > 0.0
 
 
-def test_a_case_takes_at_most_64_byte():
-    """A list of the cases would take 300 byte each: order of submission (8) and positions of the rows (13) remain."""
+def test_a_case_takes_at_most_100_byte():
+    """A list of the cases takes 300 byte each; positions of the rows (13) and arrays of the sort (about 50) remain."""
     tracemalloc.start()
     columns = [[f"{name}={value}" for value in range(100)] for name in ("a", "b")]
     cases = Cases(Combinations([*columns, ["c=1", "c=2"]]), [ShortRoad()])
@@ -28,4 +28,4 @@ def test_a_case_takes_at_most_64_byte():
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert len(order) == len(rows) == 20_000
-    assert peak / len(cases) < 64.0
+    assert peak / len(cases) < 100.0

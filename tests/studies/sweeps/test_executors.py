@@ -175,7 +175,7 @@ def test_a_full_disk_of_the_sweep_stops_it(tmp_path, monkeypatch):
     monkeypatch.setattr(store.os, "write", full)
     rows = StoredRows(tmp_path / "rows.jsonl", 1)
     with pytest.raises(OutputError, match=r"cannot be written after 0 rows: No space left.*continue with --resume"):
-        rows.add(np.arange(1), Block.of(many(1), [""], [Result()]))
+        rows.append(np.arange(1), Block.of(many(1), [""], [Result()]))
 
 
 def test_a_time_limit_needs_processes():

@@ -157,14 +157,14 @@ class Dispatcher:
                     # A single task, then single runs, so that only the run that kills its worker fails.
                     task = suspects.popleft()
                     began = clock.monotonic()
-                    if not self._round(Waiting(task), cases, keep, len(task)):
+                    if not self._run_waiting(Waiting(task), cases, keep, len(task)):
                         continue
                     if len(task) == 1:
                         keep(task, self._failed(cases, task, self._death(began)))
                     else:
                         suspects.extend(np.split(task, len(task)))
                 else:
-                    suspects.extend(self._round(waiting, cases, keep))
+                    suspects.extend(self._run_waiting(waiting, cases, keep))
         except CancelledError:
             raise SimulationError(
                 "the executor cancelled its runs (lost Dask scheduler?); finished rows are stored, continue with "
@@ -174,7 +174,7 @@ class Dispatcher:
             if self.make is not None:
                 _close(self.executor)
 
-    def _round(self, waiting: Waiting, cases: Sequence[Case], keep: Keep, size: int = 0) -> list[Indices]:
+    def _run_waiting(self, waiting: Waiting, cases: Sequence[Case], keep: Keep, size: int = 0) -> list[Indices]:
         """Run waiting cases until all are finished or a worker dies.
 
         Args:
@@ -190,8 +190,8 @@ class Dispatcher:
         finished: SimpleQueue[Future[Block]] = SimpleQueue()
         lost: list[Indices] = []
 
-        def submit(task: Indices, taken: Sequence[Case]) -> None:
-            future = self._submit(taken)
+        def submit_task(task: Indices, task_cases: Sequence[Case]) -> None:
+            future = self._submit(task_cases)
             flying[future] = task, clock.monotonic()
             # The queue has the order in which the tasks finish, and costs the same with any number of tasks.
             future.add_done_callback(finished.put)
@@ -200,9 +200,9 @@ class Dispatcher:
             workers = self._count_workers()
             at_once = UNKNOWN_WORKERS if workers is None else PER_WORKER * max(workers, 1)
             while waiting and len(flying) < at_once and not lost:
-                task, taken = self._task(waiting, cases, size, at_once)
+                task, task_cases = self._next_task(waiting, cases, size, at_once)
                 try:
-                    submit(task, taken)
+                    submit_task(task, task_cases)
                 except BrokenExecutor:
                     lost.append(task)
             if not flying:
@@ -225,7 +225,7 @@ class Dispatcher:
                     keep(task, self._failed(cases, task, reason))
                 else:
                     for single in np.split(task, len(task)):  # an error of one case: submit each case separately
-                        submit(single, [cases[single[0]]])
+                        submit_task(single, [cases[single[0]]])
         if lost:
             if self.make is None:
                 raise SimulationError(
@@ -260,17 +260,19 @@ class Dispatcher:
                 )
         return self._workers
 
-    def _task(self, waiting: Waiting, cases: Sequence[Case], size: int, at_once: int) -> tuple[Indices, list[Case]]:
+    def _next_task(
+        self, waiting: Waiting, cases: Sequence[Case], size: int, at_once: int
+    ) -> tuple[Indices, list[Case]]:
         """Remove the cases of a task from the waiting cases: one vehicle file and engine, about `TASK_S` of work."""
         first = cases[waiting.leading(1)[0]]
         if not size:
             size = self._size(waiting, cases, first, at_once)
         group = first.vehicle, first.engine
         listed = map(cases.__getitem__, waiting.leading(size).tolist())
-        taken = list(takewhile(lambda case: (case.vehicle, case.engine) == group, listed))
-        task = waiting.leading(len(taken))
-        waiting.submitted += len(taken)
-        return task, taken
+        task_cases = list(takewhile(lambda case: (case.vehicle, case.engine) == group, listed))
+        task = waiting.leading(len(task_cases))
+        waiting.submitted += len(task_cases)
+        return task, task_cases
 
     def _size(self, waiting: Waiting, cases: Sequence[Case], first: Case, at_once: int) -> int:
         """Return the number of cases of the next task.
@@ -295,7 +297,7 @@ class Dispatcher:
                     break
                 inputs += 1
             fill = FILL * inputs
-            # A single car cannot fill a vector; a task with very many inputs would store its rows too late.
+            # A single car cannot fill a vector; a task with very many inputs would store its rows too overran.
             if inputs < len(waiting) and fill <= LARGEST:
                 size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
         return size
@@ -316,8 +318,8 @@ class Dispatcher:
 
     def _death(self, began: float) -> str:
         """Return the reason of a run whose worker died; `began` is the time of its submission [s]."""
-        late = self.time_limit is not None and clock.monotonic() - began >= self.time_limit
-        return overdue(self.time_limit) if late and self.time_limit is not None else DIED
+        overran = self.time_limit is not None and clock.monotonic() - began >= self.time_limit
+        return overdue(self.time_limit) if overran and self.time_limit is not None else DIED
 
 
 def _drained(finished: SimpleQueue[Future[Block]]) -> list[Future[Block]]:

@@ -100,7 +100,7 @@ class StoredRows(LazySequence[Result]):
                 self._start[number], self._length[number] = starts[row], lengths[row]
                 self.failed[number] = failed[row]
 
-    def add(self, numbers: Indices, block: Block) -> None:
+    def append(self, numbers: Indices, block: Block) -> None:
         """Append the rows of cases to the file.
 
         Args:
@@ -113,9 +113,9 @@ class StoredRows(LazySequence[Result]):
         ends = np.flatnonzero(np.frombuffer(block.rows, dtype=np.uint8) == ord("\n")) + 1
         starts = np.concatenate([[0], ends[:-1]])
         try:
-            rest = memoryview(block.rows)
-            while rest:
-                rest = rest[os.write(self._descriptor, rest) :]
+            remaining = memoryview(block.rows)
+            while remaining:
+                remaining = remaining[os.write(self._descriptor, remaining) :]
             if self.path is not None and clock.monotonic() - self._synchronised > SYNCHRONISED_S:
                 self.synchronise()
         except OSError as error:

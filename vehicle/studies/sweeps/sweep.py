@@ -84,7 +84,7 @@ def sweep(
 
         def keep(numbers: Indices, block: Block) -> None:
             nonlocal done
-            rows.add(numbers, block)
+            rows.append(numbers, block)
             if progress is not None:
                 for _ in numbers:
                     done += 1

@@ -136,7 +136,7 @@ class TableWriter:
 
     def add(self, case: Case, parameters: Sequence[str], row: Row) -> None:
         """Write the row of a case; `parameters` are its values, see `parameter_cells`."""
-        # The csv module takes 10 us to look for a comma in 25 numbers, and only texts may contain one.
+        # The csv module takes 10 us for 25 numbers, in which it looks for commas; only texts may contain a comma.
         values = row["values"]
         numbers = "".join([f"{values.get(name, '')}," for name in self.names])
         begin = self._texts.writerow([case.source.name, *parameters, ""])[:-1]
