@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import math
+import os
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ import pytest
 
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
-from vehicle.studies.sweeps import dispatcher, executors, store, worker
+from vehicle.studies.sweeps import dispatcher, executors, worker
 from vehicle.studies.sweeps.case_keys import case_keys
 from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER, Dispatcher
@@ -172,7 +173,7 @@ def test_a_full_disk_of_the_sweep_stops_it(tmp_path, monkeypatch):
     def full(descriptor, content):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(store.os, "write", full)
+    monkeypatch.setattr(os, "write", full)
     rows = StoredRows(tmp_path / "rows.jsonl", 1)
     with pytest.raises(OutputError, match=r"cannot be written after 0 rows: No space left.*continue with --resume"):
         rows.append(np.arange(1), Block.of(many(1), [""], [Result()]))
