@@ -34,7 +34,7 @@ class Paced(Executor):
             future.set_exception(TypeError("no number"))
         else:
             results = [Result(values={"peak": 1.0}, seconds=self.pace)] * len(self.tasks[-1])
-            future.set_result(Block.of(*arguments[:2], results))
+            future.set_result(Block.of(arguments[0], arguments[1], results))
         return future
 
 

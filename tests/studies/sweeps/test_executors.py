@@ -44,7 +44,7 @@ class Slow(Executor):
         if self.quiet is not None:
             self.quiet.cancel()
         future: Future[Block] = Future()
-        self.held[future] = Block.of(*arguments[:2], [Result(values={"peak": 1.0})] * len(arguments[0]))
+        self.held[future] = Block.of(arguments[0], arguments[1], [Result(values={"peak": 1.0})] * len(arguments[0]))
         self.maximum = max(self.maximum, sum(not task.done() for task in self.held))
         self.quiet = Timer(0.5, self.finish)
         self.quiet.start()
@@ -103,10 +103,12 @@ class Cluster(Fails):
 
     def submit(self, function, /, *arguments, **named):
         future: Future[Block] = Future()
-        self.waiting.append((future, Block.of(*arguments[:2], [Result(values={"peak": 1.0})] * len(arguments[0]))))
+        self.waiting.append(
+            (future, Block.of(arguments[0], arguments[1], [Result(values={"peak": 1.0})] * len(arguments[0])))
+        )
         return future
 
-    def shutdown(self, wait=True):
+    def shutdown(self, wait=True, *, cancel_futures=False):
         pass
 
     def close(self):
