@@ -167,6 +167,12 @@ def executor_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--executor", metavar="WHERE", help=text)
 
 
+def time_limit_option(parser: argparse.ArgumentParser) -> None:
+    """Add --time-limit, the maximum computing time of a run."""
+    text = "maximum computing time of a run [s]; a run that takes longer is a failed row"
+    parser.add_argument("--time-limit", type=float, metavar="S", help=text)
+
+
 def _jobs(text: str) -> int:
     """Return the number of processes.
 
