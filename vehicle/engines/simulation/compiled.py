@@ -21,6 +21,7 @@ from vehicle.engines.simulation.kernel import damper_force, rewrite
 from vehicle.engines.simulation.record_pointers import at, packed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
+from vehicle.engines.simulation.sparse_rows import dense_rows, sparse_rows
 from vehicle.engines.simulation.step_records import Efc, Simulation, Ticket
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
@@ -83,11 +84,43 @@ def record_address(model, data, user_size, user_data, mark):  # type: ignore[no-
 
 
 @numba.njit
+def integers(address, size):  # type: ignore[no-untyped-def]
+    """Return an array of 32-bit integers at an address."""
+    return numba.carray(as_pointer(address), size, numba.int32)
+
+
+@numba.njit
+def jacobian_at(data, t, velocities):  # type: ignore[no-untyped-def]
+    """Return all columns of the rows: those of mjData if dense, else a copy."""
+    n, s = t.rows, t.sparse
+    if s.jacobian.shape[0] == 0:
+        return vector(words(data + t.efc[0], 1)[0], n * velocities).reshape(n, velocities)
+    counts, starts = integers(words(data + s.offsets[0], 1)[0], n), integers(words(data + s.offsets[1], 1)[0], n)
+    size = starts[n - 1] + counts[n - 1]
+    columns, values = integers(words(data + s.offsets[3], 1)[0], size), vector(words(data + s.offsets[4], 1)[0], size)
+    for row in range(n):
+        for entry in range(starts[row], starts[row] + counts[row]):
+            s.jacobian[row, columns[entry]] = values[entry]
+    return s.jacobian
+
+
+@numba.njit
+def store_sparse(data, s):  # type: ignore[no-untyped-def]
+    """Make MuJoCo use the nonzero columns of the rewritten rows."""
+    flat = s.jacobian.reshape(-1)
+    for entry in range(s.values.shape[0]):
+        s.values[entry] = flat[s.places[entry]]
+    for pointer in range(s.offsets.shape[0]):
+        words(data + s.offsets[pointer], 1)[0] = s.addresses[pointer]
+    integers(data + s.size, 1)[0] = s.values.shape[0]
+
+
+@numba.njit
 def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
     """Return the fields of mjData over the rows at their present addresses."""
     n, o = t.rows, t.efc
     return Efc(
-        vector(words(data + o[0], 1)[0], n * velocities).reshape(n, velocities),
+        jacobian_at(data, t, velocities),
         vector(words(data + o[1], 1)[0], 4 * n).reshape(n, 4),
         vector(words(data + o[2], 1)[0], n),
         vector(words(data + o[3], 1)[0], n),
@@ -124,6 +157,8 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
             simulation.weights,
             simulation.state,
         )
+        if simulation.ticket.sparse.jacobian.shape[0] > 0:
+            store_sparse(data, simulation.ticket.sparse)
 
     def gain(model: int, data: int, index: int) -> float:
         return 0.0
@@ -187,26 +222,36 @@ class CompiledRows:
         if model.nuserdata < USER_SIZE:
             raise SimulationError(f"the model has {model.nuserdata} user data, compiled callbacks need {USER_SIZE}")
         self.rows, self.model, self.offsets = rows, model, offsets()
-        efc = np.array([self.offsets.pointers[f"efc_{name}"] for name in Efc._fields], dtype=np.int64)
         located = self.offsets
-        self.ticket = Ticket(model._address, rows.layout.row_count, located.row_count, located.time, efc)
-        self.attached: list[tuple[mujoco.MjData, Simulation, npt.NDArray[np.int64]]] = []
+        self.attached: list[tuple[mujoco.MjData, Simulation, npt.NDArray[np.int64], tuple[object, ...]]] = []
         functions = _callbacks(located.user_size, located.pointers["userdata"], stamp())
         self.control, self.gain, self.bias = (function.ctypes for function in functions)
 
-    def attach(self, data: mujoco.MjData) -> None:
-        """Make the callbacks act on a state of the model, with the present state of the rows."""
-        rows = self.rows
-        simulation = Simulation(self.ticket, rows.fields(data), rows.layout, rows.weights, rows.state)
+    def attach(self, data: mujoco.MjData, *, sparse: bool = False) -> None:
+        """Make the callbacks act on a state of the model, with the present state of the rows.
+
+        Args:
+            data: the state.
+            sparse: let MuJoCo solve for the motion with sparse matrices until `detach`.
+        """
+        rows, model, located = self.rows, self.model, self.offsets
+        record, pattern = dense_rows(model), ()
+        if sparse:
+            model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
+            record, pattern = sparse_rows(model, rows.layout, located)
+        efc = np.array([located.pointers[f"efc_{name}"] for name in Efc._fields], dtype=np.int64)
+        ticket = Ticket(model._address, rows.layout.row_count, located.row_count, located.time, efc, record)
+        simulation = Simulation(ticket, rows.fields(data), rows.layout, rows.weights, rows.state)
         memory = packed(simulation)
         data.userdata[:USER_SIZE] = memory.ctypes.data, stamp()
         # Keep references: the memory contains addresses of these arrays.
-        self.attached.append((data, simulation, memory))
+        self.attached.append((data, simulation, memory, pattern))
 
     def detach(self) -> None:
-        """Clear the addresses in all attached states."""
-        for data, _, _ in self.attached:
+        """Clear the addresses in all attached states, and let MuJoCo store rows dense again."""
+        for data, *_ in self.attached:
             data.userdata[:USER_SIZE] = 0.0
+        self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
         self.attached.clear()
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:

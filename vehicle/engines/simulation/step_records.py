@@ -115,6 +115,26 @@ class State(NamedTuple):
     steps: Vector
 
 
+class SparseRows(NamedTuple):
+    """Constraint Jacobian of a run in MuJoCo's sparse format; see `vehicle.engines.simulation.sparse_rows`.
+
+    Attributes:
+        jacobian: all columns of the rows, as the laws write them; (rows, nv), or (0, nv) where MuJoCo's are dense.
+        values: nonzero values, row by row; (nJ,).
+        places: index of each value in the flat `jacobian`; (nJ,).
+        offsets: byte offsets in mjData of the pointers to counts, starts, supernodes, columns and values; (5,).
+        addresses: addresses of the arrays of this car in that order; (5,).
+        size: byte offset of `nJ` in mjData.
+    """
+
+    jacobian: Table
+    values: Vector
+    places: Index
+    offsets: Index
+    addresses: Index
+    size: int
+
+
 class Ticket(NamedTuple):
     """Addresses with which a compiled callback finds and checks its state.
 
@@ -123,6 +143,7 @@ class Ticket(NamedTuple):
         rows: number of constraint rows in the records.
         row_count, time: byte offsets of `nefc` and `time` in mjData.
         efc: byte offsets of the pointers of `Efc`, in its order; (8,).
+        sparse: Jacobian in MuJoCo's sparse format.
     """
 
     model: int
@@ -130,6 +151,7 @@ class Ticket(NamedTuple):
     row_count: int
     time: int
     efc: Index
+    sparse: SparseRows
 
 
 class Simulation(NamedTuple):
