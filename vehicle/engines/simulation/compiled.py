@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import ctypes
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import mujoco
@@ -18,10 +19,11 @@ from llvmlite import ir
 
 from vehicle.compiler import OPTIONS, numba_module, stamp
 from vehicle.engines.simulation.kernel import damper_force, rewrite
+from vehicle.engines.simulation.predicted_acceleration import predict
 from vehicle.engines.simulation.record_pointers import at, packed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
-from vehicle.engines.simulation.sparse_rows import dense_rows, sparse_rows
+from vehicle.engines.simulation.sparse_rows import Mask, nonzero_columns, solution_of, sparse_rows
 from vehicle.engines.simulation.step_records import Efc, Simulation, Ticket
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
@@ -131,6 +133,17 @@ def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
     )
 
 
+@contextmanager
+def vector_operations() -> Iterator[None]:
+    """Let the compiler join the four sums of a tile to vector operations: half the time of the factorisation."""
+    before = numba.config.SLP_VECTORIZE
+    numba.config.SLP_VECTORIZE = 1
+    try:
+        yield
+    finally:
+        numba.config.SLP_VECTORIZE = before
+
+
 @functools.cache
 def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any]:
     """Compile `mjcb_control`, `mjcb_act_gain` and `mjcb_act_bias` as C functions.
@@ -157,7 +170,8 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
             simulation.weights,
             simulation.state,
         )
-        if simulation.ticket.sparse.jacobian.shape[0] > 0:
+        if simulation.solution.size > 0:
+            predict(simulation.fields, efc, simulation.layout, simulation.state, simulation.solution)
             store_sparse(data, simulation.ticket.sparse)
 
     def gain(model: int, data: int, index: int) -> float:
@@ -172,11 +186,12 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
 
     word = types.intp
     law = types.float64(word, word, types.int32)
-    return (
-        numba.cfunc(types.void(word, word), cache=True, **OPTIONS)(control),
-        numba.cfunc(law, cache=True, **OPTIONS)(gain),
-        numba.cfunc(law, cache=True, **OPTIONS)(bias),
-    )
+    with vector_operations():
+        return (
+            numba.cfunc(types.void(word, word), cache=True, **OPTIONS)(control),
+            numba.cfunc(law, cache=True, **OPTIONS)(gain),
+            numba.cfunc(law, cache=True, **OPTIONS)(bias),
+        )
 
 
 @functools.cache
@@ -232,16 +247,19 @@ class CompiledRows:
 
         Args:
             data: the state.
-            sparse: let MuJoCo solve for the motion with sparse matrices until `detach`.
+            sparse: until `detach`, store the rows in MuJoCo's sparse format and solve for the acceleration of each
+                step; for runs. Otherwise MuJoCo's rows are dense, for code that reads them.
         """
         rows, model, located = self.rows, self.model, self.offsets
-        record, pattern = dense_rows(model), ()
+        nonzero: Mask | None = None
         if sparse:
             model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
-            record, pattern = sparse_rows(model, rows.layout, located)
+            nonzero = nonzero_columns(model, rows.layout)
+        record, pattern = sparse_rows(nonzero, located)
+        solution = solution_of(model, rows.layout, nonzero)
         efc = np.array([located.pointers[f"efc_{name}"] for name in Efc._fields], dtype=np.int64)
         ticket = Ticket(model._address, rows.layout.row_count, located.row_count, located.time, efc, record)
-        simulation = Simulation(ticket, rows.fields(data), rows.layout, rows.weights, rows.state)
+        simulation = Simulation(ticket, rows.fields(data), rows.layout, rows.weights, rows.state, solution)
         memory = packed(simulation)
         data.userdata[:USER_SIZE] = memory.ctypes.data, stamp()
         # Keep references: the memory contains addresses of these arrays.

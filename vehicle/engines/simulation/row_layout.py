@@ -66,6 +66,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
     rolling = [name for name in names if f"rolling/{name}" in numbers]
     spins = {name: _spin(model, ends[name]) for name in rolling}
+
     def modal_at(name: str) -> range:
         return range(0) if numeric(model, f"shape/{name}") is None else modal
 

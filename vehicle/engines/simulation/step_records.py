@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vehicle.engines.simulation.element_records import Index, Layout, Table, Vector
+from vehicle.engines.simulation.element_records import Index, Indices, Layout, Table, Vector
 
 
 class Fields(NamedTuple):
@@ -19,6 +19,10 @@ class Fields(NamedTuple):
     cdof: Table
     qfrc_applied: Vector
     actuator_velocity: Vector
+    qfrc_passive: Vector
+    qfrc_bias: Vector
+    qacc_warmstart: Vector
+    M: Vector
 
 
 class Efc(NamedTuple):
@@ -154,6 +158,37 @@ class Ticket(NamedTuple):
     sparse: SparseRows
 
 
+class Solution(NamedTuple):
+    """Equations of a step in tiles of 4 x 4; see `vehicle.engines.simulation.predicted_acceleration`.
+
+    Attributes:
+        size: number of velocity coordinates nv; n is the next multiple of 4.
+        inertia: row and column of each number of the mass matrix; (m, 2).
+        groups: rows with the same columns: first row, number of rows (3 or 1), first and end index in `columns`.
+        columns: tile columns of the groups.
+        singles: rows with a single column, and that column; (k, 2). frictions: the friction rows among them; (f, 2).
+        starts, tiles: tile columns of each row of tiles, ascending, the last on the diagonal; (n / 4 + 1,).
+        matrix: H, factorised after the solution; (n, n).
+        right, acceleration: right-hand side without friction rows, solution; (n,).
+        weight: D of the rows within their limits, else zero; (rows,).
+        limited: sign of the force of each friction row at its limit, else zero; (f,).
+    """
+
+    size: int
+    inertia: Indices
+    groups: Indices
+    columns: Index
+    singles: Indices
+    frictions: Indices
+    starts: Index
+    tiles: Index
+    matrix: Table
+    right: Vector
+    acceleration: Vector
+    weight: Vector
+    limited: Vector
+
+
 class Simulation(NamedTuple):
     """Records of a compiled callback."""
 
@@ -162,3 +197,4 @@ class Simulation(NamedTuple):
     layout: Layout
     weights: Weights
     state: State
+    solution: Solution
