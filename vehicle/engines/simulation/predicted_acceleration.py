@@ -107,7 +107,7 @@ def assemble(h: Table, mass: Vector, jacobian: Table, weight: Vector, s: Solutio
 
 @jitable
 def factorise(h: Table, s: Solution) -> None:
-    """Replace the lower triangle of H by D L of H = L' D L, L having a diagonal of one, from the last row to the first."""
+    """Replace the lower triangle of H by D L of H = L' D L, L with ones on its diagonal; the last row comes first."""
     for block in range(s.starts.shape[0] - 2, -1, -1):
         row, first, last = TILE * block, s.starts[block], s.starts[block + 1]
         u0, u1, u2, u3 = h[row], h[row + 1], h[row + 2], h[row + 3]
@@ -140,7 +140,7 @@ def factorise(h: Table, s: Solution) -> None:
 
 @jitable
 def solve(h: Table, b: Vector, s: Solution) -> None:
-    """Replace the right-hand side b by the solution of H x = b, H being factorised; b has as many numbers as rows of H."""
+    """Replace the right-hand side b, (n,), by the solution of H x = b; `h` contains the factor."""
     for block in range(s.starts.shape[0] - 2, -1, -1):
         row = TILE * block
         u0, u1, u2, u3 = h[row], h[row + 1], h[row + 2], h[row + 3]

@@ -37,8 +37,8 @@ SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc
 POINTERS = (*(f"efc_{name}" for name in Efc._fields), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""
 
-PROBE = """<mujoco><size nuserdata="2"/><option jacobian="sparse"/><worldbody><body><joint type="free" frictionloss="1"/><geom size=".1"/></body>
-</worldbody></mujoco>"""
+PROBE = """<mujoco><size nuserdata="2"/><option jacobian="sparse"/><worldbody><body>
+<joint type="free" frictionloss="1"/><geom size=".1"/></body></worldbody></mujoco>"""
 """A model with user data and six constraint rows in sparse format."""
 
 
