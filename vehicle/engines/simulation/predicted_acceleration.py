@@ -10,7 +10,7 @@ steps; otherwise the system is solved again with the new ones. MuJoCo evaluates 
 iterates from there if it exceeds the tolerance of the solver: the result is that of its own solver.
 
 H = L' L is factorised from the last coordinate to the first, so that the body, which all parts act on, comes last.
-The nonzero numbers of H and L, known from the model, are in tiles of 4 x 4 numbers; all others are zero.
+H and L are stored in tiles of 4 x 4 numbers, and all tiles outside the pattern of the model are zero.
 Source: George, Liu, Computer Solution of Large Sparse Positive Definite Systems (1981), chapter 5.
 """
 
@@ -173,7 +173,7 @@ def solve(h: Table, b: Vector, s: Solution) -> None:
 
 @jitable
 def right_side(d: Fields, efc: Efc, e: Layout, c: State, s: Solution) -> None:
-    """Write Q + J' D aref of the equality rows: all forces that do not depend on the acceleration."""
+    """Write Q + J' D aref of the equality rows: the explicit forces."""
     total = s.right
     total[:] = 0.0
     for dof in range(s.size):

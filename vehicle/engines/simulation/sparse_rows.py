@@ -1,13 +1,13 @@
 """Pattern of the rows of a run in MuJoCo's sparse format, with the columns of the body modes, and of their equations.
 
 A suspension moves few coordinates: its own and those of the body. So most of J and of H = M + J' D J is zero. With
-the body eliminated last the factor of H has hardly more numbers than H: 2 500 of 12 800 with four wheels. The time of a
-step then grows with the number of parts, that of dense matrices up to the third power.
+the body eliminated last the factor of H has hardly more numbers than H: 2 500 of 6 400 with four wheels. The cost of a
+step then is proportional to the number of parts, that of a dense factor to its third power.
 
 MuJoCo's own sparse rows contain the coordinates above the two bodies of a connection and no modes, which are bodies of
-their own. The compiled callback therefore copies these rows into a full matrix, writes the laws there as in the dense
-format, and gives MuJoCo the nonzero columns of this car, modes included, in arrays of its own. MuJoCo sets the pointers
-anew in every step. Equations and tolerance of the solver are those of the dense format.
+their own. The compiled callback copies these rows into a full matrix, writes the laws there as in the dense format, and
+gives MuJoCo the nonzero columns, modes included, in arrays of its own; MuJoCo resets its pointers in every step.
+Equations and tolerance of the solver are those of the dense format.
 """
 
 from __future__ import annotations
