@@ -38,8 +38,20 @@ def driven(car: Car, *, sparse: bool) -> tuple[np.ndarray, np.ndarray, int]:
             velocities.append(data.qvel.copy())
             forces.append(data.efc_force.copy())
             iterations += int(data.solver_niter[0])
+    # MuJoCo's own rows are back, without modal columns.
     assert model.opt.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
+    assert data.nJ == len(data.efc_J) != 0
+    assert not sparse or data.nJ == data.efc_J_rowadr[-1] + data.efc_J_rownnz[-1]
+    assert not sparse or data.nJ <= np.count_nonzero(nonzero_columns_of(model, rows))
     return np.array(velocities), np.array(forces), iterations
+
+
+def nonzero_columns_of(model: mujoco.MjModel, rows: Rows) -> np.ndarray:
+    """Return where the rows may be nonzero; the format of the model stays dense."""
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
+    nonzero = nonzero_columns(model, rows.layout)
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    return nonzero
 
 
 @pytest.mark.parametrize("name", ["focus", "focus_road", "sedan"])
@@ -59,10 +71,9 @@ def test_the_factor_solves_the_equations_of_a_step() -> None:
     """H x = b of random rows on the columns of the car, against a dense solution."""
     car = Car.load("focus")
     model, space = run_model(car.model)
-    layout = Rows(model, car.model.static.preload, space).layout
-    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
-    nonzero = nonzero_columns(model, layout)
-    solution = solution_of(model, layout, nonzero)
+    rows = Rows(model, car.model.static.preload, space)
+    nonzero = nonzero_columns_of(model, rows)
+    solution = solution_of(model, rows.layout, nonzero)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     random = np.random.default_rng(5)

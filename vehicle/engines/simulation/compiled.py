@@ -24,7 +24,7 @@ from vehicle.engines.simulation.record_pointers import at, packed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
 from vehicle.engines.simulation.sparse_rows import Mask, nonzero_columns, solution_of, sparse_rows
-from vehicle.engines.simulation.step_records import Efc, Simulation, Ticket
+from vehicle.engines.simulation.step_records import Efc, Simulation, SparseRows, Ticket
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
 
@@ -113,8 +113,10 @@ def store_sparse(data, s):  # type: ignore[no-untyped-def]
     for entry in range(s.values.shape[0]):
         s.values[entry] = flat[s.places[entry]]
     for pointer in range(s.offsets.shape[0]):
-        words(data + s.offsets[pointer], 1)[0] = s.addresses[pointer]
-    integers(data + s.size, 1)[0] = s.values.shape[0]
+        place = words(data + s.offsets[pointer], 1)
+        s.replaced[pointer], place[0] = place[0], s.addresses[pointer]
+    size = integers(data + s.size, 1)
+    s.replaced[-1], size[0] = size[0], s.values.shape[0]
 
 
 @numba.njit
@@ -221,6 +223,15 @@ def _loop(mark: int) -> Any:
     return numba.njit(word(word, word, word, word), cache=True, nogil=True, **OPTIONS)(advance)
 
 
+def restore_rows(data: mujoco.MjData, s: SparseRows) -> None:
+    """Return MuJoCo's own rows to a state after a run; the arrays of the car may be deleted then."""
+    places = [ctypes.c_int64.from_address(data._address + int(offset)) for offset in s.offsets]
+    if places and [place.value for place in places] == s.addresses.tolist():
+        for place, address in zip(places, s.replaced[:-1], strict=True):
+            place.value = int(address)
+        ctypes.c_int32.from_address(data._address + s.size).value = int(s.replaced[-1])
+
+
 class CompiledRows:
     """Compiled callbacks of a simulation, working on the records of its rows.
 
@@ -267,8 +278,9 @@ class CompiledRows:
 
     def detach(self) -> None:
         """Clear the addresses in all attached states, and let MuJoCo store rows dense again."""
-        for data, *_ in self.attached:
+        for data, simulation, *_ in self.attached:
             data.userdata[:USER_SIZE] = 0.0
+            restore_rows(data, simulation.ticket.sparse)
         self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
         self.attached.clear()
 

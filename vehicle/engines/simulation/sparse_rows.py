@@ -49,7 +49,7 @@ def sparse_rows(nonzero: Mask | None, offsets: Offsets) -> tuple[SparseRows, tup
     """
     if nonzero is None:
         none = np.zeros(0, dtype=np.int64)
-        return SparseRows(np.zeros((0, 0)), np.zeros(0), none, none, none, 0), ()
+        return SparseRows(np.zeros((0, 0)), np.zeros(0), none, none, none, none, 0), ()
     counts = np.count_nonzero(nonzero, axis=1).astype(np.int32)
     starts = np.cumsum([0, *counts[:-1]], dtype=np.int32)
     # Number of following rows with the same columns.
@@ -65,6 +65,7 @@ def sparse_rows(nonzero: Mask | None, offsets: Offsets) -> tuple[SparseRows, tup
         places=rows * jacobian.shape[1] + columns,
         offsets=np.array([offsets.pointers[name] for name in SPARSE], dtype=np.int64),
         addresses=np.array([array.ctypes.data for array in pattern], dtype=np.int64),
+        replaced=np.zeros(len(SPARSE) + 1, dtype=np.int64),
         size=offsets.nonzeros,
     )
     return record, pattern

@@ -128,6 +128,7 @@ class SparseRows(NamedTuple):
         places: index of each value in the flat `jacobian`; (nJ,).
         offsets: byte offsets in mjData of the pointers to counts, starts, supernodes, columns and values; (5,).
         addresses: addresses of the arrays of this car in that order; (5,).
+        replaced: MuJoCo's own addresses of the present step and its `nJ`; (6,).
         size: byte offset of `nJ` in mjData.
     """
 
@@ -136,6 +137,7 @@ class SparseRows(NamedTuple):
     places: Index
     offsets: Index
     addresses: Index
+    replaced: Index
     size: int
 
 
