@@ -51,7 +51,7 @@ def parser() -> Parser:
         type=float,
         metavar="S",
         help="length of the Hann windows that the measured responses were averaged over [s]; the simulated "
-        "responses are estimated in the same way; by default a local rational model of the whole record",
+        "responses are estimated in the same way; by default on the whole record",
     )
     responses.add_argument(
         "--bands",
