@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
-from vehicle.engines.simulation.predicted_acceleration import assemble, factorise, solve
+from vehicle.engines.simulation.predicted_acceleration import assemble_matrix, factorise_matrix, solve_factorised
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
 from vehicle.engines.simulation.sparse_rows import nonzero_columns, solution_of
@@ -86,8 +86,8 @@ def test_the_factor_solves_the_equations_of_a_step() -> None:
     right = np.zeros(len(solution.matrix))
     right[: model.nv] = random.normal(size=model.nv)
     expected = np.linalg.solve(mass + part.T @ (weight[:, None] * part), right[: model.nv])
-    assemble(solution.matrix, data.M, jacobian, weight, solution)
-    factorise(solution.matrix, solution)
-    solve(solution.matrix, right, solution)
+    assemble_matrix(solution.matrix, data.M, jacobian, weight, solution)
+    factorise_matrix(solution.matrix, solution)
+    solve_factorised(solution.matrix, right, solution)
     np.testing.assert_allclose(right[: model.nv], expected, rtol=0.0, atol=1e-9 * np.max(np.abs(expected)))
     assert len(solution.tiles) < 0.9 * (len(solution.starts) - 1) * len(solution.starts) / 2

@@ -19,7 +19,7 @@ from llvmlite import ir
 
 from vehicle.compiler import OPTIONS, numba_module, stamp
 from vehicle.engines.simulation.kernel import damper_force, rewrite
-from vehicle.engines.simulation.predicted_acceleration import predict
+from vehicle.engines.simulation.predicted_acceleration import predict_acceleration
 from vehicle.engines.simulation.record_pointers import at, packed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
@@ -86,7 +86,7 @@ def record_address(model, data, user_size, user_data, mark):  # type: ignore[no-
 
 
 @numba.njit
-def integers(address, size):  # type: ignore[no-untyped-def]
+def integers_at(address, size):  # type: ignore[no-untyped-def]
     """Return an array of 32-bit integers at an address."""
     return numba.carray(as_pointer(address), size, numba.int32)
 
@@ -97,9 +97,12 @@ def jacobian_at(data, t, velocities):  # type: ignore[no-untyped-def]
     n, s = t.rows, t.sparse
     if s.jacobian.shape[0] == 0:
         return vector(words(data + t.efc[0], 1)[0], n * velocities).reshape(n, velocities)
-    counts, starts = integers(words(data + s.offsets[0], 1)[0], n), integers(words(data + s.offsets[1], 1)[0], n)
+    counts, starts = integers_at(words(data + s.offsets[0], 1)[0], n), integers_at(words(data + s.offsets[1], 1)[0], n)
     size = starts[n - 1] + counts[n - 1]
-    columns, values = integers(words(data + s.offsets[3], 1)[0], size), vector(words(data + s.offsets[4], 1)[0], size)
+    columns, values = (
+        integers_at(words(data + s.offsets[3], 1)[0], size),
+        vector(words(data + s.offsets[4], 1)[0], size),
+    )
     for row in range(n):
         for entry in range(starts[row], starts[row] + counts[row]):
             s.jacobian[row, columns[entry]] = values[entry]
@@ -115,7 +118,7 @@ def store_sparse(data, s):  # type: ignore[no-untyped-def]
     for pointer in range(s.offsets.shape[0]):
         place = words(data + s.offsets[pointer], 1)
         s.replaced[pointer], place[0] = place[0], s.addresses[pointer]
-    size = integers(data + s.size, 1)
+    size = integers_at(data + s.size, 1)
     s.replaced[-1], size[0] = size[0], s.values.shape[0]
 
 
@@ -173,7 +176,7 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
             simulation.state,
         )
         if simulation.solution.size > 0:
-            predict(simulation.fields, efc, simulation.layout, simulation.state, simulation.solution)
+            predict_acceleration(simulation.fields, efc, simulation.layout, simulation.state, simulation.solution)
             store_sparse(data, simulation.ticket.sparse)
 
     def gain(model: int, data: int, index: int) -> float:

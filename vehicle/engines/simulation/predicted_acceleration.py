@@ -63,7 +63,7 @@ def take_rows(
 
 
 @jitable
-def clear(h: Table, s: Solution) -> None:
+def clear_tiles(h: Table, s: Solution) -> None:
     """Set the tiles of the matrix to zero, and its diagonal beyond the coordinates of the car to one."""
     for block in range(s.starts.shape[0] - 1):
         for tile in range(s.starts[block], s.starts[block + 1]):
@@ -76,7 +76,7 @@ def clear(h: Table, s: Solution) -> None:
 
 
 @jitable
-def assemble(h: Table, mass: Vector, jacobian: Table, weight: Vector, s: Solution) -> None:
+def assemble_matrix(h: Table, mass: Vector, jacobian: Table, weight: Vector, s: Solution) -> None:
     """Write the lower triangle of M + J' D J in its tiles.
 
     Args:
@@ -86,7 +86,7 @@ def assemble(h: Table, mass: Vector, jacobian: Table, weight: Vector, s: Solutio
         weight: D of each row, zero for rows at their limits; (rows,).
         s: pattern of the matrix.
     """
-    clear(h, s)
+    clear_tiles(h, s)
     for k in range(mass.shape[0]):
         h[s.inertia[k, 0], s.inertia[k, 1]] = mass[k]
     for group in range(s.groups.shape[0]):
@@ -106,7 +106,7 @@ def assemble(h: Table, mass: Vector, jacobian: Table, weight: Vector, s: Solutio
 
 
 @jitable
-def factorise(h: Table, s: Solution) -> None:
+def factorise_matrix(h: Table, s: Solution) -> None:
     """Replace the lower triangle of H by D L of H = L' D L, L with ones on its diagonal; the last row comes first."""
     for block in range(s.starts.shape[0] - 2, -1, -1):
         row, first, last = TILE * block, s.starts[block], s.starts[block + 1]
@@ -139,7 +139,7 @@ def factorise(h: Table, s: Solution) -> None:
 
 
 @jitable
-def solve(h: Table, b: Vector, s: Solution) -> None:
+def solve_factorised(h: Table, b: Vector, s: Solution) -> None:
     """Replace the right-hand side b, (n,), by the solution of H x = b; `h` contains the factor."""
     for block in range(s.starts.shape[0] - 2, -1, -1):
         row = TILE * block
@@ -192,7 +192,7 @@ def right_side(d: Fields, efc: Efc, e: Layout, c: State, s: Solution) -> None:
 
 
 @jitable
-def predict(d: Fields, efc: Efc, e: Layout, c: State, s: Solution) -> None:
+def predict_acceleration(d: Fields, efc: Efc, e: Layout, c: State, s: Solution) -> None:
     """Write the acceleration of the step where MuJoCo's solver starts; call this after `rewrite`."""
     h, a, weight = s.matrix, s.acceleration, s.weight
     right_side(d, efc, e, c, s)
@@ -205,9 +205,9 @@ def predict(d: Fields, efc: Efc, e: Layout, c: State, s: Solution) -> None:
             else:
                 weight[row] = 0.0
                 a[dof] += efc.J[row, dof] * s.limited[k] * efc.frictionloss[row]
-        assemble(h, d.M, efc.J, weight, s)
-        factorise(h, s)
-        solve(h, a, s)
+        assemble_matrix(h, d.M, efc.J, weight, s)
+        factorise_matrix(h, s)
+        solve_factorised(h, a, s)
         changed = False
         for k in range(s.frictions.shape[0]):
             row, dof = s.frictions[k, 0], s.frictions[k, 1]
