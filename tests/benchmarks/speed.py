@@ -158,7 +158,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
         native = compiled_rows(rows) if form == "native" else None
         with installed(rows, native):
             if native is not None:
-                native.attach(data)
+                native.attach(data, sparse=True)
             spent = go()
     if parts is not None:
         mujoco.set_mjcb_time(None)
