@@ -126,7 +126,7 @@ def parser() -> Parser:
         type=float,
         metavar="S",
         help="length of the Hann windows of measured FRFs [s]; those of the model are estimated in the same way; by "
-        "default a local rational model of the whole record",
+        "default the whole record is evaluated",
     )
     responses.add_argument(
         "--averages",

@@ -43,7 +43,7 @@ def tuning_page(
         ("Residuals", "residuals", _residuals(tuned)),
         ("How to repeat the fit", "repeat", joined([tag("pre", command), tag("pre", tuned.settings)])),
     ]
-    return document(f"{vehicle.name} fitted to {names}", f"tyres {vehicle.driving.words}", parts)
+    return document(f"{vehicle.name} fitted to {names}", (f"tyres {vehicle.driving.words}",), parts)
 
 
 def _values(tuned: TunedCar) -> Markup:
