@@ -83,10 +83,7 @@ def _job(options: argparse.Namespace) -> None:
     travels = _travels(options.travel)
     load = np.array([*_vector("--contact-force", options.contact_force), *_vector("--moment", options.moment)])
     folder = None if options.output is None else output_folder_of(options, options.output)
-    car = Car.load(options.vehicle, options.overrides)
-    if car.vehicle.driving.rolling:
-        # The axle does not drive on its rig: the wheel is fixed to the hub there.
-        car = Car.load(options.vehicle, [*options.overrides, "driving.speed=0"])
+    car = car_at_rest(Car.load(options.vehicle, options.overrides))
     statics = axle_statics(car, options.axle, ideal=options.ideal, standing=options.tyre == "standing")
     rates = design_slopes(statics, opposite=options.opposite, load=load)
     poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
@@ -97,27 +94,6 @@ def _job(options: argparse.Namespace) -> None:
         print(json.dumps({"axle": options.axle, "rates": rates, "rows": rows}, indent=2, allow_nan=False))
     else:
         print(_report(options, poses, rates))
-
-
-def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
-    """Return the kinematics model of an axle.
-
-    Args:
-        car: the car.
-        name: table of the axle in the vehicle file.
-        ideal: True replaces all bushings by ideal ball joints.
-        standing: True for tyres that stand, see `AxleStatics`.
-
-    Raises:
-        ConfigurationError: the table has no wheel.
-    """
-    from vehicle.engines.simulation.axle_statics import AxleStatics
-
-    wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == name]
-    if not wheels:
-        axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
-        raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {', '.join(axles)}")
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
 
 
 def _travels(text: str) -> list[float]:

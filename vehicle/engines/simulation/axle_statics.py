@@ -60,6 +60,27 @@ class WheelPose:
     strut_length_m: float
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class AxlePosition:
+    """Position of an axle; left wheels are not mirrored.
+
+    Attributes:
+        centres: wheel centres [m], (wheels, 3).
+        frames: rotation matrices of the wheels, (wheels, 3, 3).
+        steering_axes: lower and upper points of the steering axes [m], (wheels, 2, 3); nan for wheels without one.
+        springs: lengths of the springs between two points [m], in the order of the parts.
+        dampers: positions of the dampers [m], extension positive, in the order of the parts.
+        mass_moment: sum of mass times height over the parts of the axle [kg m], ().
+    """
+
+    centres: Vector
+    frames: Vector
+    steering_axes: Vector
+    springs: Vector
+    dampers: Vector
+    mass_moment: Vector
+
+
 class AxleStatics:
     """Static equilibrium of an axle of a compiled car, over wheel travel and loads."""
 
@@ -89,9 +110,34 @@ class AxleStatics:
         mujoco.mj_forward(model, self.data)
         self.at_rest = [(np.array(wheel.center), np.array(wheel.patch)) for wheel in wheels]
         self.offsets = [
-            [self.data.xmat[number].reshape(3, 3).T @ (point - self.data.xpos[number]) for point in points]
+            [self._offset(number, point) for point in points]
             for number, points in zip(self.wheels, self.at_rest, strict=True)
         ]
+        self.axis_ends = [
+            [(model.body(part).id, self._offset(model.body(part).id, at)) for part, at in wheel.steering_axis or ()]
+            for wheel in wheels
+        ]
+
+    def _offset(self, body: int, point: Sequence[float]) -> Vector:
+        """Return a point [m] in the frame of a body in the design position."""
+        return np.asarray(self.data.xmat[body].reshape(3, 3).T @ (np.asarray(point) - self.data.xpos[body]))
+
+    def position(self) -> AxlePosition:
+        """Return the present position, after `solve`."""
+        data, model = self.data, self.model
+        axes = np.full((len(self.wheels), 2, 3), np.nan)
+        for index, ends in enumerate(self.axis_ends):
+            for end, (body, offset) in enumerate(ends):
+                axes[index, end] = data.xpos[body] + data.xmat[body].reshape(3, 3) @ offset
+        bodies = sorted(self.parts.bodies)
+        return AxlePosition(
+            centres=np.array([self.places(index)[0] for index in range(len(self.wheels))]),
+            frames=np.array([data.xmat[wheel].reshape(3, 3) for wheel in self.wheels]),
+            steering_axes=axes,
+            springs=np.array([self._length(spring)[0] for spring in self.parts.springs]),
+            dampers=np.array([data.qpos[model.jnt_qposadr[strut.joint]] for strut in self.parts.struts]),
+            mass_moment=np.asarray(model.body_mass[bodies] @ data.xipos[bodies, 2]),
+        )
 
     def solve(self, travel: Sequence[float], loads: Vector | None = None) -> list[WheelPose]:
         """Solve the equilibrium for a travel of each wheel, starting from the last solution.
