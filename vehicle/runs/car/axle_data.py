@@ -75,6 +75,8 @@ class AxleData:
         spring_ratio: compression of the spring per wheel travel [-].
         spring_at_wheel_n_per_m: sum of k i^2 of the springs of one side.
         damper_ratio: compression of the damper per wheel travel [-].
+        damper_n_s_per_m: damping constant of the modes with sliding dampers: the smallest slope of the law.
+        curved_damper: True if the law of the damper has other slopes too.
         tyre_n_per_m: vertical stiffness of the tyre.
         ride_rate_n_per_m: wheel rate and tyre in series.
         ride_frequency_hz: see the module.
@@ -99,6 +101,8 @@ class AxleData:
     spring_ratio: float | None
     spring_at_wheel_n_per_m: float | None
     damper_ratio: float | None
+    damper_n_s_per_m: float | None
+    curved_damper: bool
     tyre_n_per_m: float
     ride_rate_n_per_m: float
     ride_frequency_hz: float | None
@@ -153,6 +157,7 @@ def axle_data(car: Car, name: str) -> AxleData:
         for strut, ratio in zip(moving.parts.struts, motion.dampers, strict=True)
         if right.side * moving.data.xanchor[strut.joint][1] > 0.0
     ]
+    own_damper = next((one for one in vehicle.composition.dampers if one.name.endswith(f"_{right.name}")), None)
     ride = rate * tyre / (rate + tyre)
     return AxleData(
         name=name,
@@ -170,6 +175,10 @@ def axle_data(car: Car, name: str) -> AxleData:
         spring_ratio=springs[0][1] if springs else None,
         spring_at_wheel_n_per_m=sum(stiffness * ratio**2 for stiffness, ratio in springs) if springs else None,
         damper_ratio=dampers[0] if dampers else None,
+        damper_n_s_per_m=None
+        if own_damper is None
+        else float(car.matrices.viscous[vehicle.composition.dampers.index(own_damper)]),
+        curved_damper=own_damper is not None and own_damper.law.viscous_law != "linear",
         tyre_n_per_m=tyre,
         ride_rate_n_per_m=ride,
         ride_frequency_hz=math.sqrt(2.0 * ride / sprung) / (2.0 * math.pi) if sprung > 0.0 < ride else None,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -106,6 +107,15 @@ class CarData:
 
         return car_text(self)
 
+    def summary(self) -> dict[str, Any]:
+        """Return all values as plain numbers and texts, for JSON; None for a value that is not defined."""
+        plain = _plain(dataclasses.asdict(self))
+        for entry, axle in zip(plain["axles"], self.axles, strict=True):
+            entry["roll"] |= {"suspension": axle.roll.suspension, "total": axle.roll.total}
+            percent = self.support_percent(axle) or (None, None)
+            entry |= {"brake_support_percent": percent[0], "drive_support_percent": percent[1]}
+        return {**plain, "front_share": _plain(self.front_share), "roll_share": self.roll_share}
+
     @property
     def front_share(self) -> float:
         """Share of the first axle in the static loads [-]."""
@@ -139,6 +149,15 @@ class CarData:
             return None
         first, second = (axle.roll.total for axle in self.axles)
         return first / (first + second)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value with lists for tuples, and None for a number that is not finite."""
+    if isinstance(value, Mapping):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 @one_blas_thread()
@@ -240,6 +259,11 @@ def _notes(car: Car, axles: Sequence[AxleData]) -> Iterator[str]:
             yield (
                 f"{axle.name}: ideal joints would lock this axle, so its geometry, motion ratios and unsprung mass are "
                 "those with its bushings"
+            )
+        if axle.curved_damper:
+            yield (
+                f"{axle.name}: modes with sliding dampers have the smallest slope of the damper's law, that of fast "
+                "motion; in slower motion damping is larger"
             )
         if math.isnan(axle.geometry.caster_deg):
             yield f"{axle.name}: not steered; its template {axle.template} has no steering_axis"
