@@ -126,19 +126,15 @@ def wheel_motions(
     rate = position_rate(axle, travels, opposite=opposite, loads=loads)
     axle.solve(travels, loads)
     now, motions = axle.position(), []
-    for index, (centre, patch) in enumerate(axle.at_rest):
+    for index, (centre, _) in enumerate(axle.at_rest):
         frame = now.frames[index]
         turn = rate.frames[index] @ frame.T
         axis = None if np.isnan(now.steering_axes[index]).any() else now.steering_axes[index]
-        # The wheel is a thin disc with its axis along y in the design position; its lowest point is on the ground.
-        spin = frame[:, 1]
-        down = spin[2] * spin - np.array([0.0, 0.0, 1.0])
-        contact = now.centres[index] + (centre[2] - patch[2]) * down / np.linalg.norm(down)
         motions.append(
             WheelMotion(
                 side=float(np.sign(centre[1])),
                 centre=now.centres[index],
-                contact=contact + (patch - centre) * [1.0, 1.0, 0.0],
+                contact=axle.lowest_point(index),
                 velocity=rate.centres[index],
                 rotation=0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]),
                 steering_axis=axis,
