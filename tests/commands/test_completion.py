@@ -39,7 +39,7 @@ def completed(script, line):
     ("line", "words"),
     [
         ("vehicle ", list(COMMANDS)),
-        ("vehicle s", ["shaker", "sweep"]),
+        ("vehicle s", ["shaker", "sweep", "show"]),
         ("vehicle --v", ["--version"]),
         ("vehicle --print-completion ", ["bash", "zsh"]),
         ("vehicle shaker --eng", ["--engine"]),

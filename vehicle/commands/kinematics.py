@@ -27,7 +27,9 @@ MOST_POSITIONS = 2001
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("kinematics", "Camber, toe, loads, roll centre and steering axis of an axle over wheel travel and load.")
+    parser = command_parser(
+        "kinematics", "Camber, toe, loads, roll centre and steering axis of an axle over wheel travel and load."
+    )
     vehicle_options(parser)
     parser.add_argument(
         "--axle", default="front", metavar="NAME", help="table of the vehicle file; %(default)s by default"
@@ -177,8 +179,8 @@ def _report(
         + ("; left wheel opposite" if options.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
         *_rows(HEADS, [dataclasses.asdict(pose) for pose in poses]),
-        "roll centre above the ground; swing arms inwards and towards the middle of the car; support angles of brake and "
-        "drive forces",
+        "roll centre above the ground; swing arms: inwards and towards the middle of the car +; support angles of "
+        "brake and drive forces: against dive, lift and squat +",
         *_rows(
             {"wheel_travel_m": HEADS["wheel_travel_m"], **GEOMETRY_HEADS},
             [

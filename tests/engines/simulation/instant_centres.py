@@ -28,7 +28,7 @@ class Centres(NamedTuple):
     drive: float
 
 
-def rod(points: Mapping[str, Sequence[float]], first: str, second: str) -> Line:
+def rod(points: Mapping[str, npt.ArrayLike], first: str, second: str) -> Line:
     """Line of a rod of the right side."""
     p, q = (np.array(points[f"{name}"], dtype=float) for name in (first, second))
     return p, (q - p) / np.linalg.norm(q - p)
@@ -83,7 +83,7 @@ def meeting(velocity: Vector, rotation: Vector, first: Vector, second: Vector, p
 
 
 def rod_axle(
-    points: Mapping[str, Sequence[float]], rods: Sequence[tuple[str, str]], height: float
+    points: Mapping[str, npt.ArrayLike], rods: Sequence[tuple[str, str]], height: float
 ) -> Callable[[str], Vector]:
     """Position of the points of a knuckle on five rods whose wheel centre is lifted by a height [m]."""
     p = {name: np.array(value, dtype=float) for name, value in points.items()}

@@ -94,7 +94,9 @@ def test_macpherson_struts(cars, name, travel):
         SUBJECT, f"{words}: caster trail and scrub radius",
         np.array([found.caster_trail_m, found.scrub_radius_m]), (contact - ground)[:2], abs=1e-6, unit="m", source=OWN,
     )  # fmt: skip
-    angles = np.degrees([math.atan2(top[0] - ball[0], top[2] - ball[2]), math.atan2(ball[1] - top[1], top[2] - ball[2])])
+    angles = np.degrees(
+        [math.atan2(top[0] - ball[0], top[2] - ball[2]), math.atan2(ball[1] - top[1], top[2] - ball[2])]
+    )
     validated(
         SUBJECT, f"{words}: caster and kingpin inclination",
         np.array([found.caster_deg, found.kingpin_inclination_deg]), angles, abs=6e-5, unit="deg", source=OWN,
@@ -115,7 +117,9 @@ def test_five_links(cars, travel):
     contact = centre + (p["wheel_center"][2] - p["tyre_patch"][2]) * down / np.linalg.norm(down)
     screw = motion([rod(now, *pair) for pair in rods], centre)
     found = computed(cars["focus_road"], "rear", travel)
-    require_centres(f"five links of focus_road at {1e3 * travel:g} mm", found, centres(screw, screw, centre, contact, -1.0))
+    require_centres(
+        f"five links of focus_road at {1e3 * travel:g} mm", found, centres(screw, screw, centre, contact, -1.0)
+    )
     assert math.isnan(found.caster_deg) and math.isnan(found.scrub_radius_m)
 
 
@@ -179,7 +183,7 @@ def arm_planes(p: dict[str, Any]) -> tuple[Vector, Vector]:
         ball, front, rear = (np.array(p[f"{arm}_{end}"]) for end in ("ball", "front", "rear"))
         normals.append(np.cross(front - ball, rear - ball))
         levels.append(normals[-1] @ ball)
-    direction = np.cross(*normals)
+    direction = np.cross(normals[0], normals[1])
     start = np.linalg.lstsq(np.array(normals), np.array(levels), rcond=None)[0]
     return start, direction / np.linalg.norm(direction)
 

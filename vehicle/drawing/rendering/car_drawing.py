@@ -90,8 +90,8 @@ def _side_view(axes: Axes, wire: CarWireframe, data: Any) -> None:
             end = _arm(axes, at, centre)
             ends.append(float(end[0]))
             angle = f"brake support {geometry.brake_support_deg:.1f}°"
-            axes.annotate(angle, end, (0.0, 6.0), textcoords="offset points", color=CONSTRUCTION, ha="center",
-                          fontsize=8)  # fmt: skip
+            axes.annotate(angle, (end[0], end[1]), (0.0, 6.0), textcoords="offset points", color=CONSTRUCTION,
+                          ha="center", fontsize=8)  # fmt: skip
         load = f"{axle.name} {sum(axle.load_n.values()):.0f} N"
         axes.annotate(load, (axle.x_m, level), (-6.0 * towards, -3.0), textcoords="offset points", fontsize=8,
                       ha="right" if axle.front else "left", color=INK)  # fmt: skip
@@ -123,7 +123,7 @@ def _axle_view(axes: Axes, wire: CarWireframe, data: Any, axle: Any) -> None:
         for side in (1.0, -1.0):
             _arm(axes, np.array([side * half, ground]), centre, whole=True)
         axes.plot(*centre, "o", color=CENTRE, markersize=6)
-        axes.annotate(f"roll centre {1e3 * geometry.roll_centre_height_m:.0f}", centre, (0.0, 9.0),
+        axes.annotate(f"roll centre {1e3 * geometry.roll_centre_height_m:.0f}", (centre[0], centre[1]), (0.0, 9.0),
                       textcoords="offset points", ha="center", color=CENTRE, fontsize=8)  # fmt: skip
     if math.isfinite(geometry.caster_deg):
         for side in (1.0, -1.0):
@@ -148,7 +148,14 @@ def _cog(axes: Axes, x: float, z: float) -> None:
 
 
 def _arm(axes: Axes, start: Vector, centre: Vector, *, whole: bool = False) -> Vector:
-    """Draw the line from a contact point to a swing centre or to the roll centre, shortened to `ARM`; return its end."""
+    """Draw the line from a contact point to a swing centre or to the roll centre, and return its end.
+
+    Args:
+        axes: axes of the view.
+        start: contact point.
+        centre: the centre.
+        whole: True to draw the whole line; otherwise it is shortened to `ARM`.
+    """
     away = centre - start
     length = float(np.linalg.norm(away))
     end = centre if whole or length < ARM else start + away * ARM / length
@@ -161,7 +168,9 @@ def _arm(axes: Axes, start: Vector, centre: Vector, *, whole: bool = False) -> V
 def _steering(axes: Axes, foot: Vector, top: Vector, name: str) -> None:
     """Draw a steering axis from the ground upwards, with a name at its upper end."""
     axes.plot(*np.stack([foot, top], axis=1), color=STEERING, linewidth=1.0)
-    axes.annotate(name, top, (0.0, 3.0), textcoords="offset points", ha="center", color=STEERING, fontsize=8)
+    axes.annotate(
+        name, (top[0], top[1]), (0.0, 3.0), textcoords="offset points", ha="center", color=STEERING, fontsize=8
+    )
 
 
 def _dimension(axes: Axes, first: tuple[float, float], second: tuple[float, float], text: str) -> None:

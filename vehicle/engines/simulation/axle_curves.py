@@ -84,10 +84,10 @@ def opposite_rates(axle: AxleStatics) -> tuple[float, float]:
     hinges = {joint for joint in joints if axle.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE}
     axle.parts = replace(parts, joints=tuple(joint for joint in joints if joint not in hinges))
     try:
-        alone = design_slopes(axle, opposite=True)["wheel_rate_n_per_m"] or math.nan
+        without = design_slopes(axle, opposite=True)["wheel_rate_n_per_m"] or math.nan
     finally:
         axle.parts = parts
-    return alone, both - alone
+    return without, both - without
 
 
 def geometry_curve(
@@ -103,8 +103,8 @@ def geometry_curve(
     geometry = {}
     for part in ([z for z in travels[::-1] if z < 0.0], [z for z in travels if z >= 0.0]):
         for z in part:
-            here = _travels(z, opposite)
-            rolling, bouncing = (wheel_motions(axle, here, opposite=way, loads=loads) for way in (True, False))
+            both = _travels(z, opposite)
+            rolling, bouncing = (wheel_motions(axle, both, opposite=way, loads=loads) for way in (True, False))
             geometry[z] = wheel_geometry(rolling, bouncing, towards)
     return [geometry[z] for z in travels]
 

@@ -7,9 +7,10 @@ The position q of the parts of the axle satisfies
 with the forces f_e of bushings, springs and the stabilizer at large displacements (r and angle in the axes of the
 carrier, which turn with it), forces F and moments M on the wheels at their contact points, the ideal joints c, and the
 vertical loads N that hold the wheel centres at their heights. The contact point of a freely rolling tyre is the lowest
-point of its wheel, which stays below the wheel centre; that of a standing tyre is fixed to the wheel. Newton's method with K = sum of J' K_e J: omitting the
-geometric stiffness costs iterations, not accuracy. With ideal connections all connections are joints, and the solution
-is the minimum-norm motion that satisfies the constraints, independent of forces.
+point of its wheel, which stays below the wheel centre; that of a standing tyre is fixed to the wheel.
+Newton's method with K = sum of J' K_e J: omitting the geometric stiffness costs iterations, not accuracy. With ideal
+connections all connections are joints, and the solution is the minimum-norm motion that satisfies the constraints,
+independent of forces.
 """
 
 from __future__ import annotations
@@ -120,7 +121,7 @@ class AxleStatics:
             for wheel in wheels
         ]
 
-    def _offset(self, body: int, point: Sequence[float]) -> Vector:
+    def _offset(self, body: int, point: npt.ArrayLike) -> Vector:
         """Return a point [m] in the frame of a body in the design position."""
         return np.asarray(self.data.xmat[body].reshape(3, 3).T @ (np.asarray(point) - self.data.xpos[body]))
 

@@ -85,7 +85,7 @@ def wheel_geometry(rolling: Sequence[WheelMotion], bouncing: Sequence[WheelMotio
     Args:
         rolling: motions of both wheels, right and left, if the body rolls: opposite travel.
         bouncing: motions of both wheels for equal travel.
-        towards: +1 if the middle of the car is behind the axle, -1 if it is in front.
+        towards: +1 for a front axle, -1 for a rear axle.
 
     Returns:
         The geometry.

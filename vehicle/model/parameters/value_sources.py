@@ -42,7 +42,7 @@ def comments(text: str) -> dict[str, str]:
     Args:
         text: text of a TOML file that was parsed without an error.
     """
-    found: dict[str, str] = {}
+    sources: dict[str, str] = {}
     prefix, statement = "", ""
     for line in text.splitlines():
         statement = f"{statement}\n{line}" if statement else line
@@ -58,6 +58,6 @@ def comments(text: str) -> dict[str, str]:
             _, sign, _ = bare[last:].partition("#")
             comment = statement[last + bare[last:].index("#") + 1 :].strip() if sign else ""
             if comment := _UNIT.sub("", comment, count=1) if _UNIT.match(comment) else comment:
-                found[prefix + match[1].strip("\"'")] = comment
+                sources[prefix + match[1].strip("\"'")] = comment
         statement = ""
-    return found
+    return sources

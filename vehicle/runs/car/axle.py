@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -10,21 +10,18 @@ import numpy.typing as npt
 from vehicle.engines.simulation.axle_statics import AxleStatics
 from vehicle.errors import ConfigurationError
 
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
 
-
-def axle_names(car: Car) -> list[str]:
+def axle_names(car: Any) -> list[str]:
     """Return the names of the axles with wheels, in the order of the vehicle file."""
     return list(dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels))
 
 
-def car_at_rest(car: Car) -> Car:
+def car_at_rest(car: Any) -> Any:
     """Return the car with standing tyres: on its rig an axle does not drive, and its wheels are fixed to the hubs."""
     return car.varied(["driving.speed=0"]) if car.vehicle.driving.rolling else car
 
 
-def axle_statics(car: Car, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
+def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
     """Return the kinematics model of an axle.
 
     Args:
@@ -43,15 +40,15 @@ def axle_statics(car: Car, name: str, *, ideal: bool, standing: bool = False) ->
     return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
 
 
-def mass_and_cog(car: Car) -> tuple[float, npt.NDArray[np.float64]]:
+def mass_and_cog(car: Any) -> tuple[float, npt.NDArray[np.float64]]:
     """Return the mass of the whole car [kg] and its centre of gravity [m], (3,), in the frame of the hardpoints."""
     matrices = car.matrices
     masses = np.array([matrices.body_masses[body][0, 0] for body in matrices.body_centres])
     return float(masses.sum()), masses @ np.array(list(matrices.body_centres.values())) / masses.sum()
 
 
-def direction_to_middle(car: Car, name: str) -> float:
-    """Return +1 for an axle in front of the centre of gravity of the car, -1 for an axle behind it.
+def direction_to_middle(car: Any, name: str) -> float:
+    """Return +1 for an axle ahead of the centre of gravity of the car, otherwise -1.
 
     Args:
         car: the car.

@@ -8,9 +8,9 @@ other. All else follows from them:
     roll stiffness     K = k_opposite t_c t_p / 2 of the suspension, k_t t_p^2 / 2 of the tyres, both in series
     ride frequency     sqrt(2 k_r / m_s) / 2 pi, with the sprung mass m_s that the axle carries
 
-with the tracks t_c of the wheel centres and t_p of the contact points. Unsprung mass of an axle: sum of m dz / dz_w, the
-mass that rises with both wheels, so an arm counts by the travel of its centre of gravity. Geometry, motion ratios and
-unsprung mass are those of ideal joints.
+with the tracks t_c of the wheel centres and t_p of the contact points. The unsprung mass of an axle is the sum of
+m dz / dz_w, the mass that rises with both wheels: an arm counts by the travel of its centre of gravity. Geometry,
+motion ratios and unsprung mass are those of ideal joints.
 """
 
 from __future__ import annotations
@@ -18,16 +18,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 from vehicle.engines.simulation.axle_curves import design_slopes, geometry_curve, opposite_rates, position_rate
 from vehicle.engines.simulation.axle_statics import AxleStatics
 from vehicle.engines.simulation.wheel_geometry import WheelGeometry
 from vehicle.errors import SimulationError
 from vehicle.runs.car.axle import axle_statics, direction_to_middle
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -118,7 +115,7 @@ class AxleData:
         )
 
 
-def axle_data(car: Car, name: str) -> AxleData:
+def axle_data(car: Any, name: str) -> AxleData:
     """Compute the data of an axle.
 
     Args:
@@ -157,7 +154,7 @@ def axle_data(car: Car, name: str) -> AxleData:
         for strut, ratio in zip(moving.parts.struts, motion.dampers, strict=True)
         if right.side * moving.data.xanchor[strut.joint][1] > 0.0
     ]
-    own_damper = next((one for one in vehicle.composition.dampers if one.name.endswith(f"_{right.name}")), None)
+    own_damper = next((damper for damper in vehicle.composition.dampers if damper.name.endswith(f"_{right.name}")), None)
     ride = rate * tyre / (rate + tyre)
     return AxleData(
         name=name,

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,9 +18,6 @@ from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.threads import one_blas_thread
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car import Car
 
 STATES = ("stuck", "sliding")
 """States of the dampers."""
@@ -161,7 +158,7 @@ def _plain(value: Any) -> Any:
 
 
 @one_blas_thread()
-def car_data(car: Car) -> CarData:
+def car_data(car: Any) -> CarData:
     """Compute the data of a car.
 
     Args:
@@ -201,14 +198,14 @@ def car_data(car: Car) -> CarData:
     )
 
 
-def car_parameters(car: Car) -> tuple[Parameter, ...]:
+def car_parameters(car: Any) -> tuple[Parameter, ...]:
     """Return all parameters of a car, see `parameter_list`."""
     origin = car.origin["file"]
     default = FOCUS_FILE if car.vehicle.name == FOCUS_FILE.parent.name and FOCUS_FILE.is_file() else None
     return parameter_list(car.vehicle, default if origin is None else Path(origin), car.folder)
 
 
-def _inertia(car: Car, cog: npt.NDArray[np.float64]) -> tuple[float, float, float, float]:
+def _inertia(car: Any, cog: npt.NDArray[np.float64]) -> tuple[float, float, float, float]:
     """Return Ixx, Iyy, Izz and the integral of z x of the whole car about its centre of gravity [kg m2]."""
     total = np.zeros((3, 3))
     for body, centre in car.matrices.body_centres.items():
@@ -217,7 +214,7 @@ def _inertia(car: Car, cog: npt.NDArray[np.float64]) -> tuple[float, float, floa
     return float(total[0, 0]), float(total[1, 1]), float(total[2, 2]), float(-total[2, 0])
 
 
-def _modes(car: Car, axles: Sequence[str]) -> Iterator[MotionMode]:
+def _modes(car: Any, axles: Sequence[str]) -> Iterator[MotionMode]:
     """Yield the mode with the largest share of each motion, for both states of the dampers."""
     for state in STATES:
         modes = [mode for mode in car.modes(state) if not mode.grows]
@@ -246,7 +243,7 @@ def _largest(modes: Sequence[Mode], shares: Sequence[float], motion: str, state:
     )
 
 
-def _notes(car: Car, axles: Sequence[AxleData]) -> Iterator[str]:
+def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:
     """Yield sentences about quantities that are not defined for a car."""
     if len(axles) != 2:
         supports = ", ".join(car.static.support_load)

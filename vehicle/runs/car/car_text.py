@@ -183,7 +183,13 @@ def parameter_table(parameters: Sequence[Parameter], *, shortened: bool = True) 
         return text if not shortened or len(text) <= width else text[: width - 4] + " ..."
 
     rows = tuple(
-        (entry.path, cut(value_text(entry.value), 28), entry.unit, cut(entry.range, 28), cut(entry.source, SOURCE_WIDTH))
+        (
+            entry.path,
+            cut(value_text(entry.value), 28),
+            entry.unit,
+            cut(entry.range, 28),
+            cut(entry.source, SOURCE_WIDTH),
+        )
         for entry in parameters
     )
     return TextTable(title="Parameters", heads=("parameter", "value", "unit", "range", "source"), rows=rows)
