@@ -53,7 +53,7 @@ def comments(text: str) -> dict[str, str]:
             continue
         if head := _HEAD.fullmatch(bare):
             prefix = head[1].strip() + "."
-        elif match := _KEY.match(bare):
+        elif _KEY.match(bare) and (match := _KEY.match(statement)):
             last = bare.rfind("\n") + 1
             _, sign, _ = bare[last:].partition("#")
             comment = statement[last + bare[last:].index("#") + 1 :].strip() if sign else ""

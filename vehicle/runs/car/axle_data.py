@@ -154,7 +154,9 @@ def axle_data(car: Any, name: str) -> AxleData:
         for strut, ratio in zip(moving.parts.struts, motion.dampers, strict=True)
         if right.side * moving.data.xanchor[strut.joint][1] > 0.0
     ]
-    own_damper = next((damper for damper in vehicle.composition.dampers if damper.name.endswith(f"_{right.name}")), None)
+    own_damper = next(
+        (damper for damper in vehicle.composition.dampers if damper.name.endswith(f"_{right.name}")), None
+    )
     ride = rate * tyre / (rate + tyre)
     return AxleData(
         name=name,
