@@ -11,6 +11,7 @@ COMMANDS = (
     "road",
     "inspect",
     "loads",
+    "spectra",
     "body",
     "compare",
     "report",

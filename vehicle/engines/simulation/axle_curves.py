@@ -82,6 +82,8 @@ def opposite_rates(axle: AxleStatics) -> tuple[float, float]:
     parts, joints = axle.parts, axle.parts.joints
     both = design_slopes(axle, opposite=True)["wheel_rate_n_per_m"] or math.nan
     hinges = {joint for joint in joints if axle.model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE}
+    if not hinges:
+        return both, 0.0
     axle.parts = replace(parts, joints=tuple(joint for joint in joints if joint not in hinges))
     try:
         without = design_slopes(axle, opposite=True)["wheel_rate_n_per_m"] or math.nan
