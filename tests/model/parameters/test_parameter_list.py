@@ -32,7 +32,7 @@ def test_comments_by_path():
 
 def test_every_value_of_a_shipped_car_has_its_source():
     for name in CARS:
-        vehicle, file = load_vehicle(name), vehicle_file(name)
+        vehicle, file = load_vehicle(vehicle_file(name)), vehicle_file(name)
         parameters = {one.path: one for one in parameter_list(vehicle, file)}
         assert len(parameters) > 150
         without = [path for path, one in parameters.items() if not one.source]

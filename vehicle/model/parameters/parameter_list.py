@@ -106,7 +106,7 @@ def flattened(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
 
 
 def _single(paths: Iterable[str]) -> list[str]:
-    """Return the paths that are not those of one side."""
+    """Return the paths without those of a single side."""
     return [path for path in paths if not {"right", "left"} & set(path.split("."))]
 
 

@@ -1,4 +1,4 @@
-"""What an engineer asks of a car first: masses, loads, stiffnesses, frequencies, geometry and parameters."""
+"""Masses, loads, stiffnesses, frequencies, geometry and parameters of a car."""
 
 from __future__ import annotations
 

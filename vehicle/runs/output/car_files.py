@@ -34,7 +34,7 @@ def write_car(folder: Path, car: Car, data: CarData, *, force: bool = False) -> 
 
 
 def parameters_csv(parameters: tuple[Parameter, ...]) -> str:
-    """Return parameters as CSV text, one in each row."""
+    """Return parameters as CSV text, a row for each parameter."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(["path", "value", "unit", "range", "meaning", "source"])
