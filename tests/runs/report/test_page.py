@@ -67,6 +67,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
         "Result",
         "Findings",
         "Car, signal, engine",
+        "The car",
         "Frequency responses",
         "Time histories",
         "Dampers",
@@ -75,7 +76,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
         "Modes",
     ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
-    assert reported.text.count("<svg ") == 4  # bands of the comfort, FRFs, time histories, spectra
+    assert reported.text.count("<svg ") == 5  # car, bands of the comfort, FRFs, time histories, spectra
 
 
 def test_the_page_says_the_numbers_of_the_summary(reported, outline):
