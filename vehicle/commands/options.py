@@ -53,9 +53,13 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
     return group
 
 
-def set_option(group: argparse._ActionsContainer) -> None:
-    """Add --set, which changes parameters of the car."""
-    group.add_argument(
+def set_option(parser: argparse._ActionsContainer) -> None:
+    """Add --set, which changes the car.
+
+    Args:
+        parser: parser of the command, or a group of it.
+    """
+    parser.add_argument(
         "--set",
         dest="overrides",
         action="append",
