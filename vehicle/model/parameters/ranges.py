@@ -103,11 +103,11 @@ def parsed_variation(option: str, text: str) -> Variation:
         text: value of the option.
 
     Raises:
-        ConfigurationError: another form, bounds that do not ascend, or a number of values below 2.
+        ConfigurationError: an unknown form, descending bounds, or a number of values below 2.
     """
     typed = f"{option} {text}"
     path, separator, content = (part.strip() for part in text.partition("="))
-    # A comma within brackets belongs to a vector.
+    # Commas within brackets separate the components of a vector.
     items = tuple(item.strip() for item in re.split(r",(?![^\[]*\])", content))
     if not separator or not path or not all(items):
         raise ConfigurationError(

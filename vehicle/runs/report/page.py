@@ -107,12 +107,12 @@ def _of_run(run: FinishedRun, modes: Modes, *, with_car: bool) -> list[tuple[str
     ]
 
 
-def document(title: str, about: Sequence[str], parts: Sequence[tuple[str, str, Markup]], *, modes: str = "") -> str:
+def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, str, Markup]], *, modes: str = "") -> str:
     """Return an HTML document; its security policy blocks external content and scripts.
 
     Args:
         title: title of the page.
-        about: lines below the title.
+        subtitles: lines below the title.
         parts: title, anchor and content of each section.
         modes: moving modes as JSON; empty for a page without them.
     """
@@ -122,7 +122,7 @@ def document(title: str, about: Sequence[str], parts: Sequence[tuple[str, str, M
         f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src 'sha256-{allowed}'"
     )
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
-    top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in about))
+    top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in subtitles))
     pages = {"responses", "time", "modes", "comparison"}
     body = joined(
         section(name, anchor, content, class_="page" if anchor in pages else None) for name, anchor, content in parts

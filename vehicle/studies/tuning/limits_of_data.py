@@ -10,7 +10,7 @@ from vehicle.studies.tuning.fit_result import TuningResult
 
 CORRELATED = 0.9
 """Minimum correlation of a pair that is named: at 0.9 the standard error of each value is 1 / sqrt(1 - 0.9^2) = 2.3
-times the one with the other value known."""
+times the standard error for a fixed second value."""
 
 UNSURE = 0.1
 """Minimum relative standard error of a value that is named [-]: the tolerance of a damper or a bushing in series
@@ -18,7 +18,7 @@ production, so that the fit would not distinguish it from another specimen."""
 
 
 def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
-    """Return a sentence for each parameter or pair that the data do not determine; empty if all are determined.
+    """Return a message for each undetermined parameter or pair; empty if the data determine all parameters.
 
     For values a and b with relative standard errors s_a, s_b and correlation rho, the relative standard error of a / b
     (rho > 0) or a b (rho < 0) is sqrt(s_a^2 + s_b^2 - 2 |rho| s_a s_b).

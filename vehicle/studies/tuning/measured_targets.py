@@ -40,7 +40,7 @@ periods of the body bounce near 2 Hz."""
 class MeasuredTarget:
     """Target of a fit with the plate signal of the measurement and the notices on the file.
 
-    The signal is None for FRFs of the linear car, measured at a level at which the dampers stick.
+    Stuck dampers, whose FRFs are those of the linear car, need no signal.
     """
 
     target: FrfTarget | RecordTarget

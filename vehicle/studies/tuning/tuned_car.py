@@ -32,7 +32,7 @@ class Agreement:
     Attributes:
         measurement: name of the measurement.
         channel: channel.
-        measure: what the numbers are: "magnitude", "phase" or "history".
+        measure: quantity: "magnitude", "phase" or "history".
         unit: dB, deg, or % of the RMS of the measured history.
         before, after: RMS of the error over the fitted frequencies or times.
     """

@@ -19,7 +19,7 @@ VEHICLE, NUMBERS, REPORT = "vehicle.toml", "tune.json", "report.html"
 
 
 def figures_of(tuned: TunedCar, posteriors: Sequence[NamedPosterior] = ()) -> dict[str, Callable[[Path], None]]:
-    """Return the name of each picture, and the function that writes it to a path."""
+    """Return the name of each picture with the function that writes the picture to a path."""
     figures: dict[str, Callable[[Path], None]] = {}
     for number, measurement in enumerate(tuned.measurements, 1):
         target = measurement.target

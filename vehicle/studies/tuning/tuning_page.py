@@ -1,4 +1,4 @@
-"""Report of a fit: values, what the data leave open, before and after beside the measurement, how to repeat it."""
+"""Report of a fit: values, undetermined parameters, errors and figures before and after, command line."""
 
 from __future__ import annotations
 
