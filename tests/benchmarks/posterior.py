@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from vehicle.errors import SimulationError
 from vehicle.model.parameters.paths import overrides_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
@@ -144,12 +145,20 @@ def laws(cars: int) -> list[dict[str, Any]]:
             for coherence in (0.999, 0.99, 0.95, 0.8, 0.5):
                 noise = float(np.sqrt((1.0 - coherence) / (2.0 * coherence * AVERAGES)) / np.sqrt(5.0))
                 data = cells + random.standard_normal(cells.size) * np.hypot(noise, DISCREPANCY)
-                fits = {}
-                for each, rival in emulated.items():
-                    noisy = replace(rival, cells=replace(rival.cells, noise=np.full(cells.size, noise)))
-                    fits[each] = posterior_of(noisy, data=data, discrepancy=DISCREPANCY, seed=number)
-                words = verdict(("friction", fits["friction"]), ("degressive", fits["degressive"]))
-                right = "undecided" if words.startswith("undecided") else str(words.startswith(name))
+                try:
+                    fits = {
+                        each: posterior_of(
+                            replace(rival, cells=replace(rival.cells, noise=np.full(cells.size, noise))),
+                            data=data,
+                            discrepancy=DISCREPANCY,
+                            seed=number,
+                        )
+                        for each, rival in emulated.items()
+                    }
+                    words = verdict(("friction", fits["friction"]), ("degressive", fits["degressive"]))
+                    right = "undecided" if words.startswith("undecided") else str(words.startswith(name))
+                except SimulationError as error:  # R-hat above its limit: no result
+                    words, right = str(error), "no result"
                 rows.append({"hidden": name, "coherence": coherence, "right": right, "words": words})
                 print(rows[-1], flush=True)
     return rows
