@@ -54,7 +54,7 @@ ROOMS: dict[str, set[str]] = {
     | {"rendering", "simulation", "threads"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
-    | {"reduced", "simulation", "threads"},
+    | {"reduced", "rendering", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
