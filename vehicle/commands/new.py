@@ -1,4 +1,4 @@
-"""`python -m vehicle new`: a new car from a template car and the numbers that every engineer knows."""
+"""`python -m vehicle new`: make a car from a template car and stated numbers."""
 
 from __future__ import annotations
 
@@ -58,7 +58,9 @@ def parser() -> Parser:
                 help=f"{declared['meaning']}{unit}",
             )  # fmt: skip
     inertia = field_quantity(StatedNumbers, "inertia")
-    parser.add_argument("--inertia", choices=inertia["choices"], help=f"{inertia['meaning']}; {inertia['default']} by default")
+    parser.add_argument(
+        "--inertia", choices=inertia["choices"], help=f"{inertia['meaning']}; {inertia['default']} by default"
+    )
     parser.add_argument("--json", action="store_true", help="print the checks as JSON")
     parser.add_argument("--force", action="store_true", help=FORCE_HELP)
     message_options(parser)
@@ -81,37 +83,40 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"NAME {name}: is the name of a shipped car, which --vehicle would read; take another")
     stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia")})
     source = vehicle_file(options.source)
-    folder = named(options.held, options.folder, force=options.force, protect=(source,))
-    made = new_car(name, options.source, stated)
+    try:
+        folder = named(options.held, options.folder, force=options.force, protect=(source,))
+    except ConfigurationError as error:
+        raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
+    result = new_car(name, options.source, stated)
     with output_folder(folder, force=options.force) as temporary:
-        write_whole(temporary / "vehicle.toml", lambda file: file.write_text(made.text, encoding="utf-8"))
-        for file in template_files(source, made.car):
+        write_whole(temporary / "vehicle.toml", lambda file: file.write_text(result.text, encoding="utf-8"))
+        for file in template_files(source, result.car):
             content = file.read_bytes()
             write_whole(temporary / file.name, lambda path, content=content: path.write_bytes(content))  # type: ignore[misc]
     file = folder / "vehicle.toml"
-    print(json.dumps(_checks(made, file), indent=2) if options.json else _report(made, file))
+    print(json.dumps(_checks(result, file), indent=2) if options.json else _report(result, file))
 
 
-def _report(made: NewCar, file: Path) -> str:
+def _report(result: NewCar, file: Path) -> str:
     """Return the checks as text: each number, its stated value and the value of the car."""
-    lines = [f"{file}: {made.car.vehicle.name}", f"{'':<34}{'stated':>10}{'car':>12}{'deviation':>12}"]
-    for check in made.checks:
+    lines = [f"{file}: {result.car.vehicle.name}", f"{'':<34}{'stated':>10}{'car':>12}{'deviation':>12}"]
+    for check in result.checks:
         unit = f" [{check.unit}]" if check.unit != "-" else ""
         stated = "-" if check.stated is None else f"{check.stated:.6g}"
         deviation = "" if check.stated is None else f"{100.0 * check.deviation:z.3f} %"
         lines.append(f"{check.name.replace('_', ' ') + unit:<34}{stated:>10}{check.value:>12.6g}{deviation:>12}")
-    lines += [f"note: {text}" for text in made.notes]
+    lines += [f"note: {text}" for text in result.notes]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 
 
-def _checks(made: NewCar, file: Path) -> dict[str, Any]:
+def _checks(result: NewCar, file: Path) -> dict[str, Any]:
     """Return the checks for JSON."""
     rows = {
         check.name: {"unit": check.unit, "stated": check.stated, "value": check.value, "deviation": check.deviation}
-        for check in made.checks
+        for check in result.checks
     }
-    return {"file": str(file), "checks": rows, "notes": list(made.notes)}
+    return {"file": str(file), "checks": rows, "notes": list(result.notes)}
 
 
 main = command(parser, _job)

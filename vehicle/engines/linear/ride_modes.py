@@ -1,7 +1,7 @@
 """Frequencies of the modes in which the body pitches most and the wheels of an axle hop most.
 
-A mode is chosen by its share of the kinetic energy in that motion: pitch of the body about its centre of gravity, or the
-vertical motion of both wheels of an axle in phase. The dampers slide; the frequency is |s| / 2 pi, as
+A mode is chosen by its share of the kinetic energy in that motion: pitch of the body about its centre of gravity, or
+the vertical motion of both wheels of an axle in phase. The dampers slide; the frequency is |s| / 2 pi, as
 `python -m vehicle modes --damper sliding` prints it.
 """
 

@@ -63,7 +63,7 @@ def axle_ride(car: CarModel, axle: str) -> AxleRide:
     """Compute the ride numbers of an axle.
 
     Args:
-        car: trimmed car whose tyres are at rest.
+        car: trimmed car with standing tyres.
         axle: table of the axle in the vehicle file, with two wheels.
 
     Returns:
@@ -108,7 +108,7 @@ def axle_dampers(car: CarModel, axle: str) -> list[PlacedDamper]:
 
 
 def damper_constant(damper: PlacedDamper) -> float:
-    """Return the secant constant of a damper at `DAMPER_VELOCITY`, mean of bump and rebound, without friction [N s/m]."""
+    """Return the secant constant of a damper at `DAMPER_VELOCITY`, mean of bump and rebound [N s/m]."""
     rebound, bump = damper_curve(damper.law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
     return float(rebound - bump) / (2.0 * DAMPER_VELOCITY)
 

@@ -117,9 +117,7 @@ def as_table(instance: Any) -> dict[str, Any]:
     }
 
 
-def write_text(
-    instance: Any, header: str = "", describe: Callable[[str], Mapping[str, Any]] | None = None
-) -> str:
+def write_text(instance: Any, header: str = "", describe: Callable[[str], Mapping[str, Any]] | None = None) -> str:
     """Return the TOML text of a parameter object, with unit and meaning of each value as a comment.
 
     Args:
@@ -131,9 +129,8 @@ def write_text(
         The text; `build(type(instance), tomllib.loads(text))` returns an equal object.
     """
     lines = [f"# {line}".rstrip() for line in header.splitlines()]
-    if describe is None:
-        describe = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
-    _write(as_table(instance), "", lines, describe)
+    declared = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
+    _write(as_table(instance), "", lines, describe or declared)
     return "\n".join(lines).strip() + "\n"
 
 

@@ -1,1 +1,1 @@
-"""Design of a new car from a template car and numbers that every engineer knows: masses, lengths, frequencies."""
+"""Design of a new car from a template car and stated masses, lengths and frequencies."""

@@ -34,7 +34,9 @@ def sources_of(file: Path) -> dict[str, str]:
     return sources
 
 
-def vehicle_text(vehicle: Vehicle, header: str, sources: Mapping[str, str], template: str, before: Mapping[str, str]) -> str:
+def vehicle_text(
+    vehicle: Vehicle, header: str, sources: Mapping[str, str], template: str, before: Mapping[str, str]
+) -> str:
     """Return the text of a vehicle file whose comments contain unit and source of each value.
 
     Args:
@@ -48,8 +50,8 @@ def vehicle_text(vehicle: Vehicle, header: str, sources: Mapping[str, str], temp
     def describe(path: str) -> dict[str, Any]:
         unit = vehicle.quantity_of(path).get("unit", "-")
         parents = [path.rsplit(".", count)[0] for count in range(path.count(".") + 1)]
-        if own := next((sources[parent] for parent in parents if parent in sources), None):
-            return {"unit": unit, "meaning": own}
+        if source := next((sources[parent] for parent in parents if parent in sources), None):
+            return {"unit": unit, "meaning": source}
         earlier = next((before[parent] for parent in parents if parent in before), "")
         return {"unit": unit, "meaning": f"template {template}" + (f": {earlier}" if earlier else "")}
 

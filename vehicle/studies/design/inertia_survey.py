@@ -4,9 +4,9 @@
     Iyy = i_y m a b           a, b: distance of the CoG from front and rear axle (dynamic index in pitch k_y^2 / a b)
     Izz = i_z m a b
 
-i_x = 0.409, i_y = 1.042, i_z = 1.091 are the means of the 73 passenger cars without ballast of NHTSA's inertial parameter database (Heydinger et
-al., SAE 1999-01-1336), evaluated in "Estimating vehicle inertia and centre-of-gravity height using the NHTSA light
-vehicle inertial parameter database" (kktse.github.io, October 2020). The index of roll is k_x / t there.
+i_x = 0.409, i_y = 1.042, i_z = 1.091 are the means of the 73 passenger cars without ballast in NHTSA's inertial
+parameter database (Heydinger et al., SAE 1999-01-1336), evaluated in "Estimating vehicle inertia and centre-of-gravity
+height using the NHTSA light vehicle inertial parameter database" (kktse.github.io, October 2020).
 """
 
 from __future__ import annotations
@@ -54,7 +54,11 @@ class AxleGeometry:
             indices: i_x, i_y, i_z [-].
         """
         roll, pitch, yaw = indices
-        return mass * (roll * self.track) ** 2, pitch * mass * self.front * self.rear, yaw * mass * self.front * self.rear
+        return (
+            mass * (roll * self.track) ** 2,
+            pitch * mass * self.front * self.rear,
+            yaw * mass * self.front * self.rear,
+        )
 
     def indices(self, mass: float, moments: Sequence[float]) -> tuple[float, float, float]:
         """Return i_x, i_y, i_z of a car [-], the inverse of `inertia`."""

@@ -8,19 +8,18 @@ and I_b is then taken about c_b. The parts are those of the compiled model: axle
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.load_mass import Load
+from vehicle.model.flexbody.mass_properties import MassProperties
+from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
-from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
 from vehicle.studies.design.moved_points import Sources
 from vehicle.studies.design.stated_numbers import StatedNumbers, option
@@ -34,55 +33,6 @@ ROUND_OFF = 1e-9
 """Product of inertia, as a share of the sum of the moments, that counts as zero."""
 LOAD_AGREES = 1e-6
 """Deviation of an axle load, as a share of it, at which the position of the centre of gravity is settled."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class MassProperties:
-    """Mass [kg], centre of gravity [m] and inertia tensor about it [kg m2] of a group of parts."""
-
-    mass: float
-    cog: Vector
-    inertia: Vector
-
-    def without(self, parts: MassProperties) -> MassProperties:
-        """Return what is left of this group without some of its parts."""
-        mass = self.mass - parts.mass
-        cog = (self.mass * self.cog - parts.mass * parts.cog) / mass
-        inertia = self.about(cog) - parts.about(cog)
-        return MassProperties(mass=mass, cog=cog, inertia=inertia)
-
-    def about(self, point: Vector) -> Vector:
-        """Return the inertia tensor about a point [kg m2]."""
-        arm = self.cog - point
-        return self.inertia + self.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-
-
-def mass_properties(car: CarModel, *, of_body: bool = True) -> MassProperties:
-    """Return the mass properties of a car in its design position, without its loads.
-
-    Args:
-        car: compiled car.
-        of_body: False to leave out the trimmed body.
-    """
-    model, data = car.model, mujoco.MjData(car.model)
-    mujoco.mj_forward(model, data)
-    skipped = {part.name for part in car.vehicle.composition.parts if isinstance(part.numbers, Load)}
-    if not of_body:
-        skipped.add("body")
-    names = [str(model.body(number).name) for number in range(model.nbody)]
-    bodies = [
-        number
-        for number in range(1, model.nbody)
-        if model.body_mocapid[number] < 0 and names[number] not in skipped and not names[number].startswith("mode_")
-    ]
-    masses = model.body_mass[bodies]
-    cog = masses @ data.xipos[bodies] / masses.sum()
-    inertia = np.zeros((3, 3))
-    for number in bodies:
-        frame, arm = data.ximat[number].reshape(3, 3), data.xipos[number] - cog
-        inertia += frame @ np.diag(model.body_inertia[number]) @ frame.T
-        inertia += model.body_mass[number] * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    return MassProperties(mass=float(masses.sum()), cog=cog, inertia=inertia)
 
 
 def kerb_model(table: Mapping[str, Any], template: TemplateCar) -> CarModel:
@@ -109,7 +59,7 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
         ConfigurationError: a car that cannot be: lighter than its parts, centre of gravity outside the wheelbase,
             moments of inertia below those of the parts.
     """
-    before = mass_properties(template_model := kerb_model(template.table, template))
+    before = car_masses(template_model := kerb_model(template.table, template))
     loads = axle_loads(template_model, template)
     share = loads["rear"] / sum(loads.values())
     mass, front, rear = stated.kerb_mass, stated.front_axle_load, stated.rear_axle_load
@@ -123,12 +73,14 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
     elif stated.cog_x is not None:
         share = stated.cog_x / wheelbase
     if not 0.0 < share < 1.0:
-        given = [name for name in ("front_axle_load", "rear_axle_load", "cog_x") if getattr(stated, name) is not None]
+        stated_names = [
+            name for name in ("front_axle_load", "rear_axle_load", "cog_x") if getattr(stated, name) is not None
+        ]
         raise ConfigurationError(
-            f"{', '.join(option(name) for name in given)}: the centre of gravity would be {share * wheelbase:.3f} m "
+            f"{', '.join(map(option, stated_names))}: the centre of gravity would be {share * wheelbase:.3f} m "
             f"behind the front axle, must be inside the wheelbase of {wheelbase:g} m (kerb mass {mass:g} kg)"
         )
-    parts = mass_properties(kerb_model(table, template), of_body=False)
+    parts = car_masses(kerb_model(table, template), body=False)
     if mass - parts.mass < LIGHTEST_BODY:
         raise ConfigurationError(
             f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts of {template.name} already "
@@ -144,7 +96,7 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
         cog[0] = along
         whole = MassProperties(mass=mass, cog=cog, inertia=_inertia(template, stated, before, mass, share))
         body = whole.without(parts)
-        put(table, _body_numbers(template, body))
+        put(table, _body_numbers(body))
         achieved = axle_loads(kerb_model(table, template), template)
         error = achieved["rear"] / sum(achieved.values()) - share
         # Tyres with a rotational stiffness support a part of the moment.
@@ -158,18 +110,14 @@ def template_indices(template: TemplateCar, before: MassProperties) -> tuple[flo
     """Return the indices i_x, i_y, i_z of the template car [-]; `before`: its mass properties."""
     front = float(before.cog[0]) - template.front_x
     geometry = AxleGeometry(track=template.mean_track, front=front, rear=template.wheelbase - front)
-    return geometry.indices(before.mass, np.diag(before.inertia))
+    return geometry.indices(before.mass, np.diag(before.inertia).tolist())
 
 
-def _inertia(
-    template: TemplateCar, stated: StatedNumbers, before: MassProperties, mass: float, share: float
-) -> Vector:
+def _inertia(template: TemplateCar, stated: StatedNumbers, before: MassProperties, mass: float, share: float) -> Vector:
     """Return the inertia tensor of the new car about its CoG: stated or estimated moments; products of the template."""
     tracks = [stated.of_axle("track", word) or template.track(word) for word in template.wheels]
     wheelbase = stated.wheelbase or template.wheelbase
-    geometry = AxleGeometry(
-        track=float(np.mean(tracks)), front=share * wheelbase, rear=(1.0 - share) * wheelbase
-    )
+    geometry = AxleGeometry(track=float(np.mean(tracks)), front=share * wheelbase, rear=(1.0 - share) * wheelbase)
     of_survey = [index.mean for index in SURVEY.values()]
     indices = of_survey if stated.inertia == "survey" else template_indices(template, before)
     names = ("roll_inertia", "pitch_inertia", "yaw_inertia")
@@ -178,26 +126,26 @@ def _inertia(
     return mass / before.mass * (before.inertia - np.diag(np.diag(before.inertia))) + np.diag(moments)
 
 
-def _body_numbers(template: TemplateCar, body: MassProperties) -> dict[str, Any]:
+def _body_numbers(body: MassProperties) -> dict[str, Any]:
     """Return the parameters of the trimmed body by path.
 
     Raises:
-        ConfigurationError: a moment of inertia that no body has.
+        ConfigurationError: a moment of inertia is not physical.
     """
     moments = np.diag(body.inertia)
     for axis, (name, moment) in enumerate(zip(("roll", "pitch", "yaw"), moments, strict=True)):
         others = moments.sum() - moment
         if not 0.0 < moment < others:
             raise ConfigurationError(
-                f"{option(f'{name}_inertia')}: leaves I{'xyz'[axis] * 2} = {moment:.0f} kg m2 for the trimmed body, "
-                f"must be above 0 and below the sum of the two others ({others:.0f} kg m2); the parts of "
-                f"{template.name} have the rest"
+                f"the trimmed body would have I{'xyz'[axis] * 2} = {moment:.0f} kg m2, must be above 0 and below the "
+                f"sum of the two others ({others:.0f} kg m2): check {option(f'{name}_inertia')} and the other moments, "
+                f"{option('cog_height')} and {option('kerb_mass')}"
             )
     ixx, iyy, izz = (float(f"{value:.9g}") for value in moments)
     inertia = {"about": "cog", "ixx": ixx, "iyy": iyy, "izz": izz}
-    for name, place in (("ixy", (0, 1)), ("izx", (2, 0)), ("iyz", (1, 2))):
-        if abs(body.inertia[place]) > ROUND_OFF * moments.sum():
-            inertia[name] = -float(f"{body.inertia[place]:.9g}")
+    for name, entry in (("ixy", (0, 1)), ("izx", (2, 0)), ("iyz", (1, 2))):
+        if abs(body.inertia[entry]) > ROUND_OFF * moments.sum():
+            inertia[name] = -float(f"{body.inertia[entry]:.9g}")
     return {
         "body.mass": float(f"{body.mass:.9g}"),
         "body.cog": [round(float(value), 9) + 0.0 for value in body.cog],
@@ -205,34 +153,39 @@ def _body_numbers(template: TemplateCar, body: MassProperties) -> dict[str, Any]
     }
 
 
-def _sources(
-    template: TemplateCar, stated: StatedNumbers, parts: float, of_template: Sequence[float]
-) -> Sources:
+def _sources(template: TemplateCar, stated: StatedNumbers, parts: float, of_template: Sequence[float]) -> Sources:
     """Return the sources of the numbers of the trimmed body."""
     as_template = f"template {template.name}"
 
     def source(*names: str, otherwise: str = as_template) -> str:
         return ", ".join(stated.stated(name) for name in names if getattr(stated, name) is not None) or otherwise
 
-    position = source("front_axle_load", "rear_axle_load", "cog_x", otherwise=f"axle loads in the ratio of {as_template}")
+    position = source(
+        "front_axle_load", "rear_axle_load", "cog_x", otherwise=f"axle loads in the ratio of {as_template}"
+    )
+    masses = source("kerb_mass", "front_axle_load", "rear_axle_load")
     height = source("cog_height", otherwise=f"CoG height of {as_template}")
     estimates = []
-    for (word, index), own in zip(SURVEY.items(), of_template, strict=True):
+    for (word, index), template_index in zip(SURVEY.items(), of_template, strict=True):
         cars = "73 cars of NHTSA's database (SAE 1999-01-1336)"
         if stated.inertia == "survey":
             estimates.append(f"estimated: {word} = {index.mean}, mean of {cars}")
         else:
             span = f"{index.least} to {index.most} in {cars}"
-            estimates.append(f"estimated: {word} = {own:.3f} as in {as_template}; {span}")
+            estimates.append(f"estimated: {word} = {template_index:.3f} as in {as_template}; {span}")
     sources = {
-        "body.mass": f"{source('kerb_mass', 'front_axle_load', 'rear_axle_load')}, less {parts:.2f} kg of the other parts",
+        "body.mass": f"{masses}, less {parts:.2f} kg of the other parts",
         "body.cog": f"{position}; {height}; less the other parts",
         "body.flexible": "rigid: no shapes of this body are known",
         "body.attachment_flexibility": "rigid: likewise",
         "body.inertia.about": "about the centre of gravity",
     }
-    for axis, (name, estimate) in zip(("ixx", "iyy", "izz"), zip(("roll", "pitch", "yaw"), estimates, strict=True), strict=True):
+    for axis, (name, estimate) in zip(
+        ("ixx", "iyy", "izz"), zip(("roll", "pitch", "yaw"), estimates, strict=True), strict=True
+    ):
         sources[f"body.inertia.{axis}"] = f"{source(f'{name}_inertia', otherwise=estimate)}; less the other parts"
     for product in ("ixy", "izx", "iyz"):
-        sources[f"body.inertia.{product}"] = f"products of {as_template}, in proportion to the mass; less the other parts"
+        sources[f"body.inertia.{product}"] = (
+            f"products of {as_template}, in proportion to the mass; less the other parts"
+        )
     return sources

@@ -1,8 +1,8 @@
 """Hardpoints of a new car: the axles of the template moved to another wheelbase, track and tyre radius.
 
 An axle moves as a whole: along x by the change of the wheelbase, each side outwards by half the change of the track. So
-the kinematics of a wheel against its body points are those of the template. Points of the body keep their share of the
-wheelbase behind the front axle. Another tyre radius lowers or raises the ground under the car.
+the kinematics of a wheel against its body points are those of the template. The distance of a body point from the
+front axle is scaled with the wheelbase. Another tyre radius lowers or raises the ground under the car.
 """
 
 from __future__ import annotations
@@ -91,5 +91,5 @@ def _reason(stated: StatedNumbers, word: str, template: str) -> str:
     """Return the source of a moved point of an axle."""
     names = ["wheelbase"] if word == "rear" else []
     names += [f"track_{word}", "tyre_radius"]
-    given = ", ".join(stated.stated(name) for name in names if getattr(stated, name) is not None)
-    return f"template {template}, moved with its axle: {given}"
+    lengths = ", ".join(stated.stated(name) for name in names if getattr(stated, name) is not None)
+    return f"template {template}, moved with its axle: {lengths}"

@@ -1,4 +1,4 @@
-"""A new car from a template car and stated numbers, its vehicle file and the checks that the numbers are met."""
+"""Make a new car from a template car and stated numbers, write its vehicle file, check the stated numbers."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import value_at
@@ -17,7 +18,7 @@ from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
 from vehicle.studies.design.car_file import sources_of, vehicle_text
 from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
-from vehicle.studies.design.mass_balance import MassProperties, axle_loads, balanced, kerb_model, mass_properties
+from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_model
 from vehicle.studies.design.moved_points import Sources, moved_points
 from vehicle.studies.design.ride_solution import Target, new_car_of, quantities, solved, targets_of
 from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers
@@ -57,8 +58,8 @@ class NewCar:
     Attributes:
         car: the car, ready to run.
         text: its vehicle file.
-        checks: values of the car beside the stated ones.
-        notes: sentences on estimates and on what the template has and the new car has not.
+        checks: each number of the car with its stated value.
+        notes: sentences on the estimates, and on parts of the template that the new car does not have.
     """
 
     car: Car
@@ -124,15 +125,15 @@ def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers)
         if (file := stated.of_axle("damper_curve", word)) is None:
             continue
         for path in template.element_paths(word)["damper"]:
-            kept = {k: v for k, v in value_at(table, path).items() if k not in ("viscous", "velocity", "force")}
-            kept |= {"viscous_law": "table", "curve": str(Path(file).absolute())}
-            put(table, {path: kept})  # type: ignore[dict-item]
+            numbers = {k: v for k, v in value_at(table, path).items() if k not in ("viscous", "velocity", "force")}
+            numbers |= {"viscous_law": "table", "curve": str(Path(file).absolute())}
+            put(table, {path: numbers})  # type: ignore[dict-item]
             sources |= {f"{path}.{key}": f"given: {Path(file).name}" for key in ("viscous_law", "velocity", "force")}
     return sources
 
 
 def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: TemplateCar) -> Sources:
-    """Return the sources of the parameters that meet the targets."""
+    """Return the sources of the solved parameters."""
     sources = Sources()
     for target in targets:
         if getattr(stated, target.name) is not None:
@@ -149,9 +150,9 @@ def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: 
 
 
 def _checks(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
-    """Return all numbers of the new car beside the stated ones."""
+    """Return all numbers of the new car, each with its stated value."""
     kerb = kerb_model(car.vehicle.table, template)
-    whole, loads = mass_properties(kerb), axle_loads(kerb, template)
+    whole, loads = car_masses(kerb), axle_loads(kerb, template)
     wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
     front, rear = ([wheels[wheel.name] for wheel in template.wheels[word]] for word in AXLES)
     values = {
@@ -186,25 +187,25 @@ def _require_met(checks: tuple[Check, ...]) -> None:
         if abs(check.deviation) > (LOADS_MET if check.name in exact else FREQUENCIES_MET):
             raise SimulationError(
                 f"{check.name}: stated {check.stated:g} {check.unit}, the car has {check.value:g}; this combination of "
-                "numbers is not met: leave out one that is estimated"
+                "numbers is not met: leave one of them out"
             )
 
 
 def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str, ...]:
-    """Return sentences on the inertia against the survey, and on what the template alone has."""
+    """Return the notes: inertia outside the survey, values of the template, parts left out."""
     kerb = kerb_model(car.vehicle.table, template)
-    whole: MassProperties = mass_properties(kerb)
+    whole = car_masses(kerb)
     wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
     pairs = [[wheels[wheel.name] for wheel in template.wheels[word]] for word in AXLES]
     track = float(np.mean([right.center[1] - left.center[1] for right, left in pairs]))
     behind, ahead = float(whole.cog[0]) - pairs[0][0].center[0], pairs[1][0].center[0] - float(whole.cog[0])
-    indices = AxleGeometry(track=track, front=behind, rear=ahead).indices(whole.mass, np.diag(whole.inertia))
+    indices = AxleGeometry(track=track, front=behind, rear=ahead).indices(whole.mass, np.diag(whole.inertia).tolist())
     notes = []
     for (word, index), value in zip(SURVEY.items(), indices, strict=True):
         if not index.least <= value <= index.most:
             notes.append(
                 f"{word} is {value:.3f}, outside the range of 73 measured cars, {index.least} to {index.most}: check "
-                "inertia, pitch frequency and axle loads"
+                "inertia, pitch frequency and axle loads, or take --inertia survey"
             )
     notes.append(
         f"as in {template.name}: parts of axles and engine, bushings, mounts, damper friction, tyre slip; these values "

@@ -1,10 +1,10 @@
 """Springs, tyres, bars and pitch inertia of a new car from its frequencies, by Newton's method on the model itself.
 
 Unknown factors x on the parameters of the table, one for each target: springs for the ride frequencies, tyres for the
-wheel hop, bars for the roll stiffness, dampers for the damping ratio, pitch inertia of the body for the pitch frequency. Residuals are the relative
-deviations q(x) / q_target - 1 of the quantities of the assembled car, so wheel kinematics, bushings, preloads and the
-coupling of the modes are part of the solution. The Jacobian is taken by differences once and then updated by Broyden's
-formula.
+wheel hop, bars for the roll stiffness, dampers for the damping ratios, pitch inertia of the body for the pitch
+frequency. Residuals are the relative deviations q(x) / q_target - 1 of the quantities of the assembled car, so wheel
+kinematics, bushings, preloads and the coupling of the modes are part of the solution. The Jacobian is taken by
+differences once and then updated by Broyden's formula.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.engines.linear.ride_modes import RideModes
 from vehicle.engines.simulation.axle_ride import axle_ride
@@ -26,6 +27,8 @@ from vehicle.runs.car import Car
 from vehicle.studies.design.stated_numbers import AXLES, StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar
 
+Vector = npt.NDArray[np.float64]
+
 DIFFERENCE = 0.02
 """Relative step of the differences for the Jacobian."""
 SOLVED = 1e-5
@@ -35,7 +38,7 @@ MOST_STEPS = 40
 LARGEST_STEP = 4.0
 """Largest factor by which one step may change a parameter."""
 LEAST = 1e-3
-"""Factor on a parameter of the template below which it counts as negative: no positive value meets the target."""
+"""Factor on a parameter of the template below which the target requires a negative value."""
 
 MODES = ("pitch_frequency", "wheel_hop_front", "wheel_hop_rear")
 """Quantities that need the modes of the car."""
@@ -49,7 +52,7 @@ KEPT = ("ride_frequency", "damping_ratio")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Target:
-    """Quantity of the car and the parameters that meet it.
+    """Target value of a quantity, and the parameters to be solved for.
 
     Attributes:
         name: name of the quantity, a field of `StatedNumbers`.
@@ -90,12 +93,12 @@ def new_car_of(table: Mapping[str, Any], template: TemplateCar) -> Car:
 
 
 def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
-    """Return the stated quantities, and ride frequencies and damping ratios of the template where none is stated.
+    """Return the targets: the stated quantities, by default ride frequencies and damping ratios of the template.
 
     Raises:
-        ConfigurationError: the template has no part that could meet a target, or a controlled damper.
+        ConfigurationError: the template lacks the part that a target needs, or has a controlled damper.
     """
-    kept = quantities(new_car_of(template.table, template), template, modes=False)
+    template_values = quantities(new_car_of(template.table, template), template, modes=False)
     targets = []
     for word in AXLES:
         for name, paths in _parameters(template, word).items():
@@ -110,12 +113,12 @@ def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
                     "or start from a car that has such a part"
                 )
             if present:
-                targets.append(Target(name=name, value=value or kept[name], paths=present))
+                targets.append(Target(name=name, value=value or template_values[name], paths=present))
     if stated.pitch_frequency is not None:
         # A long body is long in pitch and yaw: the estimate of the yaw inertia follows.
         moments = ("iyy",) if stated.yaw_inertia is not None else ("iyy", "izz")
-        paths = tuple(f"body.inertia.{moment}" for moment in moments)
-        targets.append(Target(name="pitch_frequency", value=stated.pitch_frequency, paths=paths))
+        followed = tuple(f"body.inertia.{moment}" for moment in moments)
+        targets.append(Target(name="pitch_frequency", value=stated.pitch_frequency, paths=followed))
     return targets
 
 
@@ -149,15 +152,19 @@ def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Ta
         targets: quantities to be met.
 
     Raises:
-        ConfigurationError: no positive parameter meets a target, or the springs cannot support the car.
+        ConfigurationError: a target requires a negative parameter, or the springs cannot support the car.
         SimulationError: the iteration does not converge.
     """
     modes = any(target.name in MODES for target in targets)
 
-    def deviation(factors: Sequence[float]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    def deviation(factors: Vector) -> Vector:
         changed = scaled(table, targets, factors)
         _require_inertia(changed, targets)
-        values = quantities(new_car_of(changed, template), template, modes=modes)
+        try:
+            values = quantities(new_car_of(changed, template), template, modes=modes)
+        except ConfigurationError as error:
+            values_text = ", ".join(f"{option(target.name)} {target.value:.4g}" for target in targets)
+            raise ConfigurationError(f"with {values_text}: {error}") from None
         return np.array([values[target.name] / target.value - 1.0 for target in targets])
 
     factors = np.ones(len(targets))
@@ -185,7 +192,7 @@ def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Ta
 
 
 def _require_inertia(table: Mapping[str, Any], targets: Sequence[Target]) -> None:
-    """Raise an error if the pitch frequency needs moments of inertia that no body has."""
+    """Raise an error if the pitch frequency needs moments of inertia that are not physical."""
     for target in targets:
         if target.name == "pitch_frequency":
             ixx, iyy, izz = (table["body"]["inertia"][key] for key in ("ixx", "iyy", "izz"))
@@ -197,17 +204,17 @@ def _require_inertia(table: Mapping[str, Any], targets: Sequence[Target]) -> Non
                 )
 
 
-def _require_positive(factors: Any, targets: Sequence[Target], residual: Any) -> None:
-    """Raise an error for a target that no positive parameter meets."""
+def _require_positive(factors: Vector, targets: Sequence[Target], residual: Vector) -> None:
+    """Raise an error for a target that requires a negative parameter."""
     for factor, target, deviation in zip(factors, targets, residual, strict=True):
         if factor < LEAST:
             raise ConfigurationError(
-                f"{option(target.name)} {target.value:g}: needs a negative {target.paths[0]}; with that parameter near "
-                f"zero the other parts of the car still give {target.value * (1.0 + deviation):.3g}; state a higher value"
+                f"{option(target.name)} {target.value:g}: needs a negative {target.paths[0]}; with it near zero the "
+                f"other parts of the car still give {target.value * (1.0 + deviation):.3g}; state a higher value"
             )
 
 
-def scaled(table: Mapping[str, Any], targets: Sequence[Target], factors: Sequence[float]) -> dict[str, Any]:
+def scaled(table: Mapping[str, Any], targets: Sequence[Target], factors: Vector) -> dict[str, Any]:
     """Return a vehicle table with the parameters of the targets multiplied by their factors."""
     changed = dict(table)
     for target, factor in zip(targets, factors, strict=True):
@@ -224,8 +231,8 @@ def _multiply(table: dict[str, Any], path: str, factor: float) -> None:
         put(table, {path.removesuffix(".z"): vector})  # type: ignore[dict-item]
         return
     value = value_at(table, path)
-    many = isinstance(value, list | tuple)
-    put(table, {path: [_rounded(factor * item) for item in value] if many else _rounded(factor * value)})  # type: ignore[dict-item]
+    numbers = [_rounded(factor * item) for item in (value if isinstance(value, list | tuple) else [value])]
+    put(table, {path: numbers if isinstance(value, list | tuple) else numbers[0]})  # type: ignore[dict-item]
 
 
 def _rounded(value: float) -> float:

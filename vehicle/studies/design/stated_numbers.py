@@ -1,4 +1,4 @@
-"""Numbers of a car that its engineer knows, all optional: what is not stated is that of the template car."""
+"""Stated numbers of a new car; all are optional, and the template car supplies the others."""
 
 from __future__ import annotations
 
@@ -16,37 +16,82 @@ from vehicle.model.parameters.toml_file import build, read_table
 AXLES = ("front", "rear")
 """Words for the two axles in the names of the numbers."""
 
-FREQUENCY: dict[str, Any] = {"at_least": 0.2, "at_most": 50.0, "why": "a car rides at 1 to 2 Hz, its wheels hop at 8 to 16 Hz"}  # fmt: skip
+BODY: dict[str, Any] = {
+    "at_least": 0.3,
+    "at_most": 8.0,
+    "why": "bodies of cars move at 1 to 2 Hz, of race cars up to 6 Hz",
+}
+HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StatedNumbers:
-    """Numbers of a car; None for a number that is not stated. `option` returns its name on a command line."""
+    """Numbers of a car; None: not stated. `option` returns its name on a command line."""
 
-    kerb_mass: float | None = quantity("kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None)  # fmt: skip
-    front_axle_load: float | None = quantity("kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4, default=None)  # fmt: skip
-    rear_axle_load: float | None = quantity("kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4, default=None)  # fmt: skip
-    cog_x: float | None = quantity("m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, default=None)  # fmt: skip
+    kerb_mass: float | None = quantity(
+        "kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None
+    )
+    front_axle_load: float | None = quantity(
+        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+    )
+    rear_axle_load: float | None = quantity(
+        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+    )
+    cog_x: float | None = quantity(
+        "m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, default=None
+    )
     cog_height: float | None = quantity("m", "centre of gravity above the ground", above=0.0, at_most=3.0, default=None)
     wheelbase: float | None = quantity("m", "distance of the axles", above=0.0, default=None)
     track_front: float | None = quantity("m", "distance of the front wheels", above=0.0, default=None)
     track_rear: float | None = quantity("m", "distance of the rear wheels", above=0.0, default=None)
     tyre_radius: float | None = quantity("m", "loaded radius: wheel centre above the ground", above=0.0, default=None)
-    roll_inertia: float | None = quantity("kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0, default=None)  # fmt: skip
-    pitch_inertia: float | None = quantity("kg m2", "Iyy of the car about its centre of gravity, without [load]", above=0.0, default=None)  # fmt: skip
-    yaw_inertia: float | None = quantity("kg m2", "Izz of the car about its centre of gravity, without [load]", above=0.0, default=None)  # fmt: skip
-    inertia: str = quantity("-", "where the moments that are not stated come from: radii of gyration of the template in proportion to track and axle distances, or the means of 73 measured cars", choices=("template", "survey"), default="template")  # fmt: skip
-    ride_frequency_front: float | None = quantity("Hz", "ride frequency of the front axle", default=None, **FREQUENCY)
-    ride_frequency_rear: float | None = quantity("Hz", "ride frequency of the rear axle", default=None, **FREQUENCY)
-    pitch_frequency: float | None = quantity("Hz", "pitch mode of the car, dampers sliding; gives the pitch inertia", default=None, **FREQUENCY)  # fmt: skip
-    wheel_hop_front: float | None = quantity("Hz", "hop mode of the front wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **FREQUENCY)  # fmt: skip
-    wheel_hop_rear: float | None = quantity("Hz", "hop mode of the rear wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **FREQUENCY)  # fmt: skip
-    damping_ratio_front: float | None = quantity("-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None)  # fmt: skip
-    damping_ratio_rear: float | None = quantity("-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None)  # fmt: skip
-    damper_curve_front: str | None = quantity("-", "damper test of the front axle: table of velocity and force", is_file=True, default=None)  # fmt: skip
-    damper_curve_rear: str | None = quantity("-", "damper test of the rear axle: table of velocity and force", is_file=True, default=None)  # fmt: skip
-    roll_stiffness_front: float | None = quantity("N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0, default=None)  # fmt: skip
-    roll_stiffness_rear: float | None = quantity("N m/deg", "roll stiffness of the rear axle without the tyres; gives the stabilizer or the torsion beam", above=0.0, default=None)  # fmt: skip
+    roll_inertia: float | None = quantity(
+        "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0, default=None
+    )
+    pitch_inertia: float | None = quantity(
+        "kg m2", "Iyy of the car about its centre of gravity, without [load]", above=0.0, default=None
+    )
+    yaw_inertia: float | None = quantity(
+        "kg m2", "Izz of the car about its centre of gravity, without [load]", above=0.0, default=None
+    )
+    inertia: str = quantity(
+        "-",
+        "moments that are not stated: radii of gyration in proportion to those of the template, or means of 73 cars",
+        choices=("template", "survey"),
+        default="template",
+    )
+    ride_frequency_front: float | None = quantity("Hz", "ride frequency of the front axle", default=None, **BODY)
+    ride_frequency_rear: float | None = quantity("Hz", "ride frequency of the rear axle", default=None, **BODY)
+    pitch_frequency: float | None = quantity(
+        "Hz", "pitch mode of the car, dampers sliding; gives the pitch inertia", default=None, **BODY
+    )
+    wheel_hop_front: float | None = quantity(
+        "Hz", "hop mode of the front wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **HOP
+    )
+    wheel_hop_rear: float | None = quantity(
+        "Hz", "hop mode of the rear wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **HOP
+    )
+    damping_ratio_front: float | None = quantity(
+        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
+    )
+    damping_ratio_rear: float | None = quantity(
+        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
+    )
+    damper_curve_front: str | None = quantity(
+        "-", "damper test of the front axle: table of velocity and force", is_file=True, default=None
+    )
+    damper_curve_rear: str | None = quantity(
+        "-", "damper test of the rear axle: table of velocity and force", is_file=True, default=None
+    )
+    roll_stiffness_front: float | None = quantity(
+        "N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0, default=None
+    )
+    roll_stiffness_rear: float | None = quantity(
+        "N m/deg",
+        "roll stiffness of the rear axle without the tyres; gives the stabilizer, or the torsion of the beam",
+        above=0.0,
+        default=None,
+    )
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def __post_init__(self) -> None:
@@ -61,11 +106,16 @@ class StatedNumbers:
             if getattr(self, first) is not None and getattr(self, second) is not None:
                 raise ConfigurationError(f"{option(first)} and {option(second)}: {why}; leave one of the two out")
         mass, front, rear = self.kerb_mass, self.front_axle_load, self.rear_axle_load
-        if mass is not None and front is not None and rear is not None and abs(front + rear - mass) > LOADS_AGREE * mass:
+        if (
+            mass is not None
+            and front is not None
+            and rear is not None
+            and abs(front + rear - mass) > LOADS_AGREE * mass
+        ):
             raise ConfigurationError(
                 f"{option('front_axle_load')} {front:g} kg and {option('rear_axle_load')} {rear:g} kg: together "
                 f"{front + rear:g} kg, must be the kerb mass of {mass:g} kg; leave one of the three out"
-            )  # fmt: skip
+            )
         for name, load in self.load.items():
             build(Load, {key: value for key, value in load.items() if key not in ("at", "on")}, f"load.{name}")
 
@@ -96,7 +146,7 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
 
     Args:
         file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None for none.
-        more: numbers by name; None is left out.
+        more: numbers by name, which may be None.
 
     Raises:
         ConfigurationError: an unknown name, a value out of range, or numbers that contradict each other.

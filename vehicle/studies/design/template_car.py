@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ class TemplateCar:
         table: its parameters, with a rigid body, without [load] and without the names of other files of its folder.
         vehicle: the same, composed.
         wheels: wheels by the word of their axle, "front" or "rear"; right and left.
-        left_out: sentences on what of the template the new car does not have.
+        left_out: sentences on parts of the template that the new car does not have.
     """
 
     name: str
@@ -82,10 +82,10 @@ class TemplateCar:
     def element_paths(self, word: str) -> dict[str, list[str]]:
         """Return the paths of the springs, bars and dampers of an axle, by "spring", "bar", "damper"."""
         car, axle = self.vehicle.composition, f"{self.axle(word)}."
-        elements = {"spring": car.springs, "bar": car.joint_springs, "damper": car.dampers}
+        elements: dict[str, Sequence[Any]] = {"spring": car.springs, "bar": car.joint_springs, "damper": car.dampers}
         return {
-            kind: list(dict.fromkeys(entry.path for entry in entries if entry.path.startswith(axle)))
-            for kind, entries in elements.items()
+            word_of_type: list(dict.fromkeys(entry.path for entry in entries if entry.path.startswith(axle)))
+            for word_of_type, entries in elements.items()
         }
 
 
