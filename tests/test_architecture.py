@@ -31,14 +31,14 @@ WINGS = {
 DATA = {"inputs", "templates", "vehicles"}
 """Rooms that hold no modules."""
 
-BELOW = EVERYWHERE | {"compiler", "threads"}
+BELOW = EVERYWHERE | {"compiler", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
     "parameters": {"records"},
     "laws": {"compiler", "parameters"},
     "records": {"analysis"},
-    "excitation": {"records"},
+    "excitation": {"analysis", "records"},
     "flexbody": {"analysis", "parameters", "records"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
@@ -48,7 +48,7 @@ ROOMS: dict[str, set[str]] = {
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
     "comparison": {"analysis", "car", "linear", "notebook", "records", "rendering", "threads"},
-    "notebook": {"analysis", "rendering", "simulation"},
+    "notebook": {"analysis", "records", "rendering", "simulation"},
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
@@ -59,17 +59,29 @@ ROOMS: dict[str, set[str]] = {
     "tuning": {"analysis", "car", "excitation", "parameters", "records", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
-    "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation"},
+    "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation", "version"},
     "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "linear"}
-    | {"optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
-    | {"sweeps", "threads"},
+    | {
+        "optimisation",
+        "output",
+        "parameters",
+        "records",
+        "rendering",
+        "replication",
+        "report",
+        "simulation",
+        "sweeps",
+        "threads",
+        "version",
+    },
     "threads": set(),
+    "version": set(),
     "compiler": set(),
     "errors": set(),
     "names": set(),
     "__init__": {"car", "comparison", "excitation", "optimisation", "output", "parameters", "records", "replication"}
     | {"report", "sweeps", "tuning"},
-    "__main__": {"commands"},
+    "__main__": {"commands", "version"},
     **{name: {"commands"} for name in OLDER},
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
