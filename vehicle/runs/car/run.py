@@ -115,8 +115,8 @@ class Run:
 
         Args:
             channels: names; all acceleration channels by default.
-            window: length of averaged Hann windows [s] for the H1 estimate; by default the local rational model of
-                the whole record, without leakage.
+            window: length of averaged Hann windows [s] for the H1 estimate; by default the whole record is evaluated
+                without leakage, by its periods if the input is periodic, else by local rational models.
             wheel: wheel of the plate; `self.wheel` by default.
 
         Returns:
