@@ -198,7 +198,7 @@ def test_the_command_line_takes_precedence_over_the_file(tmp_path):
         ("--roll-stiffness-rear 100", "--roll-stiffness-rear 100: needs a negative rear.beam_torsion"),
         ("--track-front 0.8", "--track-front 0.8 m: front.hardpoints.arm_front would be 5 mm beyond the middle"),
         ("--pitch-frequency 1.2", "--pitch-frequency 1.2 Hz: with these ride frequencies it needs Iyy"),
-        ("--roll-inertia 200", "the trimmed body would have I.*check --yaw-inertia"),
+        ("--roll-inertia 200", "the body would have I.*check --yaw-inertia"),
         ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, must be at most 30.0"),
         ("--pitch-frequency 2 --pitch-inertia 3000", "either gives the other; leave one of the two out"),
         ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv: no such file"),

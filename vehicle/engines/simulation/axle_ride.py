@@ -63,7 +63,7 @@ def axle_ride(car: CarModel, axle: str) -> AxleRide:
     """Compute the ride numbers of an axle.
 
     Args:
-        car: trimmed car with standing tyres.
+        car: car in static equilibrium, with standing tyres.
         axle: table of the axle in the vehicle file, with two wheels.
 
     Returns:

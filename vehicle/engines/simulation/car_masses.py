@@ -15,7 +15,7 @@ def car_masses(car: CarModel, *, body: bool = True) -> MassProperties:
 
     Args:
         car: compiled car, with a rigid body.
-        body: False to leave out the trimmed body.
+        body: False to leave out the body.
     """
     model, data = car.model, mujoco.MjData(car.model)
     mujoco.mj_forward(model, data)

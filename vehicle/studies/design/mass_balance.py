@@ -1,4 +1,4 @@
-"""Trimmed body of a new car: what is left of the stated car after all other parts.
+"""Body of a new car: what is left of the stated car after all other parts.
 
     m_b = m - sum m_i,   m_b c_b = m c - sum m_i c_i,   I_b = I - sum (I_i + m_i (|r_i|^2 1 - r_i r_i'))   about c,
 
@@ -28,7 +28,7 @@ from vehicle.studies.design.template_car import TemplateCar
 Vector = npt.NDArray[np.float64]
 
 LIGHTEST_BODY = 100.0
-"""Smallest mass of a trimmed body [kg], see `TrimmedBody`."""
+"""Smallest mass of a body [kg], see `TrimmedBody`."""
 ROUND_OFF = 1e-9
 """Product of inertia, as a share of the sum of the moments, that counts as zero."""
 LOAD_AGREES = 1e-6
@@ -48,7 +48,7 @@ def axle_loads(car: CarModel, template: TemplateCar) -> dict[str, float]:
 
 
 def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
-    """Return the vehicle table with the trimmed body of the stated masses, and the sources of its numbers.
+    """Return the vehicle table with the body of the stated masses, and the sources of its numbers.
 
     Args:
         table: vehicle table with the lengths of the new car.
@@ -127,7 +127,7 @@ def _inertia(template: TemplateCar, stated: StatedNumbers, before: MassPropertie
 
 
 def _body_numbers(body: MassProperties) -> dict[str, Any]:
-    """Return the parameters of the trimmed body by path.
+    """Return the parameters of the body by path.
 
     Raises:
         ConfigurationError: a moment of inertia is not physical.
@@ -137,7 +137,7 @@ def _body_numbers(body: MassProperties) -> dict[str, Any]:
         others = moments.sum() - moment
         if not 0.0 < moment < others:
             raise ConfigurationError(
-                f"the trimmed body would have I{'xyz'[axis] * 2} = {moment:.0f} kg m2, must be above 0 and below the "
+                f"the body would have I{'xyz'[axis] * 2} = {moment:.0f} kg m2, must be above 0 and below the "
                 f"sum of the two others ({others:.0f} kg m2): check {option(f'{name}_inertia')} and the other moments, "
                 f"{option('cog_height')} and {option('kerb_mass')}"
             )
@@ -154,7 +154,7 @@ def _body_numbers(body: MassProperties) -> dict[str, Any]:
 
 
 def _sources(template: TemplateCar, stated: StatedNumbers, parts: float, of_template: Sequence[float]) -> Sources:
-    """Return the sources of the numbers of the trimmed body."""
+    """Return the sources of the numbers of the body."""
     as_template = f"template {template.name}"
 
     def source(*names: str, otherwise: str = as_template) -> str:

@@ -36,7 +36,7 @@ class Check:
     Attributes:
         name: name of the number, a field of `StatedNumbers`.
         unit: its unit.
-        stated: stated value; None for a value that is only reported.
+        stated: stated value; None without a statement.
         value: value of the new car.
     """
 
@@ -59,7 +59,7 @@ class NewCar:
         car: the car, ready to run.
         text: its vehicle file.
         checks: each number of the car with its stated value.
-        notes: sentences on the estimates, and on parts of the template that the new car does not have.
+        notes: messages about estimates and about parts of the template that are left out.
     """
 
     car: Car
@@ -150,7 +150,7 @@ def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: 
 
 
 def _checks(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
-    """Return all numbers of the new car, each with its stated value."""
+    """Return all numbers of the new car with their stated values."""
     kerb = kerb_model(car.vehicle.table, template)
     whole, loads = car_masses(kerb), axle_loads(kerb, template)
     wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}

@@ -109,8 +109,8 @@ def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
             present = tuple(path for path in paths if value_at(template.table, path) not in (None, 0.0))
             if value is not None and not present:
                 raise ConfigurationError(
-                    f"{option(name)}: the {word} axle of {template.name} has no part that could give it; leave it out, "
-                    "or start from a car that has such a part"
+                    f"{option(name)}: the {word} axle of {template.name} has no part for it; leave it out, or "
+                    "start from another car"
                 )
             if present:
                 targets.append(Target(name=name, value=value or template_values[name], paths=present))
@@ -123,7 +123,7 @@ def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
 
 
 def _parameters(template: TemplateCar, word: str) -> dict[str, list[str]]:
-    """Return the parameters that give each quantity of an axle; some may be absent from the vehicle file.
+    """Return the parameters of each quantity of an axle; some may be absent from the vehicle file.
 
     Raises:
         ConfigurationError: a controlled damper, which has no fixed damping ratio.
@@ -199,7 +199,7 @@ def _require_inertia(table: Mapping[str, Any], targets: Sequence[Target]) -> Non
             if not abs(izz - ixx) < iyy < ixx + izz:
                 raise ConfigurationError(
                     f"{option(target.name)} {target.value:g} Hz: with these ride frequencies it needs Iyy = {iyy:.0f} "
-                    f"kg m2 of the trimmed body, must be between {abs(izz - ixx):.0f} and {ixx + izz:.0f} kg m2 (Ixx "
+                    f"kg m2 of the body, must be between {abs(izz - ixx):.0f} and {ixx + izz:.0f} kg m2 (Ixx "
                     f"{ixx:.0f}, Izz {izz:.0f}); check it against the ride frequencies, or leave it out"
                 )
 

@@ -124,7 +124,7 @@ class StatedNumbers:
         return getattr(self, f"{name}_{axle}")
 
     def stated(self, name: str) -> str:
-        """Return a number for a sentence: "kerb mass 1450 kg (given)"."""
+        """Return the text of a number: "kerb mass 1450 kg (given)"."""
         unit = self.__dataclass_fields__[name].metadata["unit"]
         unit = "" if unit == "-" else f" {unit}"
         return f"{name.replace('_', ' ')} {getattr(self, name):g}{unit} (given)"
@@ -145,7 +145,7 @@ def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
     """Return the numbers of a TOML file and of a command line, which takes precedence.
 
     Args:
-        file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None for none.
+        file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None without a file.
         more: numbers by name, which may be None.
 
     Raises:

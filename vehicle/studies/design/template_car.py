@@ -29,7 +29,7 @@ class TemplateCar:
         table: its parameters, with a rigid body, without [load] and without the names of other files of its folder.
         vehicle: the same, composed.
         wheels: wheels by the word of their axle, "front" or "rear"; right and left.
-        left_out: sentences on parts of the template that the new car does not have.
+        left_out: messages about parts of the template that are left out.
     """
 
     name: str
@@ -45,37 +45,37 @@ class TemplateCar:
 
     @property
     def front_x(self) -> float:
-        """Position of the front axle [m]."""
+        """Return the position of the front axle [m]."""
         return self.wheels["front"][0].center[0]
 
     @property
     def wheelbase(self) -> float:
-        """Distance of the axles [m]."""
+        """Return the distance of the axles [m]."""
         return self.wheels["rear"][0].center[0] - self.front_x
 
     @property
     def tyre_radius(self) -> float:
-        """Height of the front wheel centres above the ground [m]."""
+        """Return the height of the front wheel centres above the ground [m]."""
         return self.wheels["front"][0].center[2] - self.ground
 
     @property
     def ground(self) -> float:
-        """Height of the plates under the front wheels [m]."""
+        """Return the height of the plates under the front wheels [m]."""
         return self.wheels["front"][0].patch[2]
 
     def track(self, word: str) -> float:
-        """Distance of the wheels of an axle [m]."""
+        """Return the distance of the wheels of an axle [m]."""
         right, left = self.wheels[word]
         return right.center[1] - left.center[1]
 
     @property
     def mean_track(self) -> float:
-        """Mean track of both axles [m]."""
+        """Return the mean track of both axles [m]."""
         return float(np.mean([self.track(word) for word in AXLES]))
 
     @property
     def tyre_paths(self) -> dict[str, str]:
-        """Path of the table of the tyres by the word of their axle."""
+        """Return the path of the table of the tyres by the word of their axle."""
         by_plate = {link.carrier: link.path for link in self.vehicle.composition.connections if link.ground}
         return {word: by_plate[wheels[0].plate] for word, wheels in self.wheels.items()}
 
