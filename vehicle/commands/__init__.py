@@ -18,6 +18,7 @@ COMMANDS = (
     "drive",
     "optimise",
     "tune",
+    "new",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 
