@@ -1,4 +1,4 @@
-"""Time step of eight cars at once: their poles, then their damper forces.
+"""Time step of the cars in a vector: their poles, then their damper forces.
 
 A pole is integrated as the difference y from its static value on the plates, xi = y - (b_z/s) z:
 
@@ -8,8 +8,7 @@ The differences stay small even on hilly roads, so single precision is sufficien
 by its ends and its mean. A damper force has the mean f_n over step n. If the damper is stuck in this step and the last,
 the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. In sliding it is constant, except for the
 damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
-are solved by Gauss-Seidel iterations over the dampers, each by its inverse law
-(`vehicle.engines.reduced.batch_tables`).
+are solved by Gauss-Seidel iterations over the dampers, each by its inverse law (`vehicle.engines.reduced.car_table`).
 
 This module imports numba at the top, so only runs that compile import it.
 """
@@ -20,18 +19,21 @@ from collections.abc import Callable
 from typing import Any
 
 from vehicle.compiler import OPTIONS, numba_module
-from vehicle.engines.reduced.batch_layout import ELEMENT, LANES, TableRows
+from vehicle.engines.reduced.feedback import Feedback, demanded_excess, read_sensors, slope_force
 from vehicle.engines.reduced.simd_vector import (
     add_scaled,
     broadcast,
+    filled,
     less,
     load,
     load_tuple,
     maximum,
     minimum,
+    of_cars,
     store,
     weighted_sum,
 )
+from vehicle.engines.reduced.table_layout import TableRows
 from vehicle.model.laws.damper import friction_limit
 
 numba = numba_module()
@@ -50,12 +52,8 @@ def compiled_once(function: Callable[..., Any]) -> Any:
     return numba.njit(no_cpython_wrapper=True, _nrt=False, **EXACT)(function)
 
 
-ITERATIONS = 2
-"""Gauss-Seidel iterations over the dampers; see `batch_factors.LARGEST_COUPLING` for the remaining error."""
-
-
 @inlined
-def solve_batch_dampers(t: Any, r: TableRows, dampers: Any) -> None:
+def solve_dampers(t: Any, r: TableRows, dampers: Any) -> None:
     """Solve for damper velocities and forces of a step; the work space begins with the velocities without forces."""
     count = len(dampers)
     step, old = r.work + count, r.inputs
@@ -63,6 +61,7 @@ def solve_batch_dampers(t: Any, r: TableRows, dampers: Any) -> None:
     width = 3 * nodes
     kept = step + count  # forces of the last step
     work = kept + count  # nodes of each inverse law: velocity without forces, 1/length, force, rise of force
+    zeros, ones = filled(t, 0.0), filled(t, 1.0)
     for i in range(count):
         force = load(t, old + i)
         store(t, kept + i, force)
@@ -77,13 +76,12 @@ def solve_batch_dampers(t: Any, r: TableRows, dampers: Any) -> None:
             store(t, at + 4 * j, load(t, law + 3 * j) + diagonal * node_force)
             store(t, at + 4 * j + 2, node_force)
         for j in range(r.pieces):
-            store(t, at + 4 * j + 1, broadcast(ELEMENT(1.0)) / (load(t, at + 4 * j + 4) - load(t, at + 4 * j)))
+            store(t, at + 4 * j + 1, ones / (load(t, at + 4 * j + 4) - load(t, at + 4 * j)))
             store(t, at + 4 * j + 3, load(t, at + 4 * j + 6) - load(t, at + 4 * j + 2))
         for j in range(count):
             arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + i * count + j) * load(t, old + j)
         store(t, r.work + i, arriving)
-    zeros, ones = broadcast(ELEMENT(0.0)), broadcast(ELEMENT(1.0))
-    for iteration in range(ITERATIONS):
+    for iteration in range(r.iterations):
         for i in range(count):
             arriving = load(t, r.work + i)
             for j in range(count):
@@ -100,7 +98,7 @@ def solve_batch_dampers(t: Any, r: TableRows, dampers: Any) -> None:
                 hold = hold + (load(t, law + 3 * j + 4) - load(t, law + 3 * j + 1)) * share
             store(t, r.velocity + i, arriving - load(t, step + i) * force)
             store(t, old + i, zeros - force - load(t, r.hold + i))
-            if iteration == ITERATIONS - 1:
+            if iteration == r.iterations - 1:
                 store(t, step + i, hold)
     for i in range(count):
         stick = load(t, r.stick + i)
@@ -113,31 +111,76 @@ def solve_batch_dampers(t: Any, r: TableRows, dampers: Any) -> None:
 
 
 @inlined
-def advance_batch(
-    t: Any, r: TableRows, x: Any, before: int, at: int, rates: Any, laws: Any, step: int, inputs: Any, dampers: Any
-) -> None:
-    """Advance the poles and damper forces of eight cars by a step.
+def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, step: int, dampers: Any) -> None:
+    """Set the inputs of the next step, its friction limits and the coefficients of controlled dampers.
 
     Args:
-        t, r, rates, laws, inputs, dampers: see `vehicle.engines.reduced.batch_stepping.step_batch`.
+        t, r, feedback, rates, laws, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
+        step: index of the step.
+    """
+    count, plates = len(dampers), rates.shape[1] // 3
+    row = r.inputs + 2 * count
+    for k in range(2 * plates):
+        store(t, row + k, broadcast(rates[step, k]))
+    row += 2 * plates
+    for i in range(feedback.past.shape[0]):
+        store(t, row + i, filled(t, slope_force(feedback, i, rates[step, plates + i])))
+    for i in range(feedback.heights):
+        store(t, row + feedback.past.shape[0] + i, broadcast(rates[step, 2 * plates + i]))
+    for k in range(feedback.dampers.shape[0]):
+        i, nodes = feedback.dampers[k], r.pieces + 1
+        half = filled(t, 0.5 * demanded_excess(feedback, k))
+        store(t, r.hold + i, half * load(t, r.velocity + i))
+        for j in range(3 * i * nodes, 3 * (i + 1) * nodes, 3):
+            store(t, r.law + j + 1, half * load(t, r.law + j))
+    for i in range(count):
+        # Extrapolate the velocity to the middle of the step from both ends of the last step.
+        now = load(t, r.velocity + i)
+        if laws.shape[0] > 0:
+            store(t, r.limit + i, now + filled(t, 0.5) * (now - load(t, r.earlier + i)))
+            for lane in range(laws.shape[1]):
+                t[r.limit + i, lane] = friction_limit(laws[i, lane], t[r.limit + i, lane])
+            if laws.shape[1] == 1:
+                store(t, r.limit + i, broadcast(t[r.limit + i, 0]))
+        store(t, r.earlier + i, now)
+
+
+@inlined
+def advance(
+    t: Any,
+    r: TableRows,
+    x: Any,
+    before: int,
+    at: int,
+    rates: Any,
+    laws: Any,
+    feedback: Feedback,
+    step: int,
+    inputs: Any,
+    sums: Any,
+    dampers: Any,
+) -> None:
+    """Advance the poles and damper forces of the cars by a step.
+
+    Args:
+        t, r, rates, laws, feedback, inputs, sums, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
         x: states of samples; the poles are changed in place.
         before, at: first rows of the poles at the beginning and at the end of the step.
         step: index of the step.
     """
-    count, plates = len(dampers), rates.shape[1] // 2
-    size = len(inputs)
-    pair_rows, real_rows = 2 + 2 * size + 2 * count, 1 + size + count
-    for k in range(plates):
-        store(t, r.inputs + 2 * count + k, broadcast(rates[step, k]))
-        store(t, r.inputs + 2 * count + plates + k, broadcast(rates[step, plates + k]))
-    for i in range(count):
-        arriving = broadcast(ELEMENT(0.0))
-        for k in range(plates):
-            arriving = arriving + load(t, r.slip + i * plates + k) * broadcast(rates[step + 1, k])
+    count, plates = len(dampers), rates.shape[1] // 3
+    size, width = len(inputs), len(sums)
+    pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
+    set_inputs(t, r, feedback, rates, laws, step, dampers)
+    for i in range(width):
+        arriving = filled(t, 0.0)
+        if i < count:
+            for k in range(plates):
+                arriving = arriving + load(t, r.slip + i * plates + k) * broadcast(rates[step + 1, k])
         store(t, r.work + i, arriving)
-        store(t, r.work + count + i, broadcast(ELEMENT(0.0)))
+        store(t, r.work + width + i, filled(t, 0.0))
     u = load_tuple(t, r.inputs, inputs)
-    w, imaginary_sums = load_tuple(t, r.work, dampers), load_tuple(t, r.work + count, dampers)
+    w, imaginary_sums = load_tuple(t, r.work, sums), load_tuple(t, r.work + width, sums)
     for p in range(r.pairs):
         row = p * pair_rows
         a, b, decay, rotation = load(x, before + 2 * p), load(x, before + 2 * p + 1), load(t, row), load(t, row + 1)
@@ -146,20 +189,13 @@ def advance_batch(
         store(x, at + 2 * p, real)
         store(x, at + 2 * p + 1, imaginary)
         w = add_scaled(t, row + 2 + 2 * size, real, w)
-        imaginary_sums = add_scaled(t, row + 2 + 2 * size + count, imaginary, imaginary_sums)
+        imaginary_sums = add_scaled(t, row + 2 + 2 * size + width, imaginary, imaginary_sums)
     for q in range(r.reals):
         row, pole_row = r.real + q * real_rows, 2 * r.pairs + q
         real = weighted_sum(t, row + 1, u, load(t, row) * load(x, before + pole_row))
         store(x, at + pole_row, real)
         w = add_scaled(t, row + 1 + size, real, w)
-    for i in range(count):
-        store(t, r.work + i, w[i] + imaginary_sums[i])
-    if laws.shape[0] > 0:
-        for i in range(count):
-            # Extrapolate the velocity to the middle of the step from both ends of the last step.
-            now = load(t, r.velocity + i)
-            store(t, r.limit + i, now + broadcast(ELEMENT(0.5)) * (now - load(t, r.earlier + i)))
-            store(t, r.earlier + i, now)
-            for lane in range(LANES):
-                t[r.limit + i, lane] = friction_limit(laws[i, lane], t[r.limit + i, lane])
-    solve_batch_dampers(t, r, dampers)
+    for i in range(width):
+        store(t, r.work + i if i < count else r.sensors + i - count, of_cars(w[i] + imaginary_sums[i]))
+    solve_dampers(t, r, dampers)
+    read_sensors(t, r, feedback, rates, step + 1, count)

@@ -1,4 +1,4 @@
-"""Outputs of eight cars from the states at samples: channels and peaks.
+"""Outputs of the cars in a vector from the states at samples: channels and peaks.
 
 An output is a sum over all states, and its weights do not fit in the L1 cache. Therefore a tile of outputs is computed
 at several samples together: each weight is loaded once for all of them.
@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from vehicle.engines.reduced.batch_layout import PAST, TILE, OutputTiles
-from vehicle.engines.reduced.batch_step import compiled_once, inlined
-from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, store
+from vehicle.engines.reduced.table_layout import PAST, TILE, OutputTiles
+from vehicle.engines.reduced.time_step import compiled_once, inlined
+from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, of_cars, store
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 TOGETHER = 4
@@ -48,7 +48,7 @@ def read_tile(
     """Return a tile of outputs at four samples, or of their differences from the previous samples.
 
     Args:
-        tiles: weights, (rows, LANES).
+        tiles: weights, (rows, lanes).
         row: first row of the tile.
         x: states of the samples, beginning with the sample before the first.
         states: number of states.
@@ -92,10 +92,10 @@ def read_tile(
 
 @inlined
 def store_tile(y: Any, row: int, values: Any) -> None:
-    """Store a tile of outputs in rows."""
-    store(y, row, values[0])
-    store(y, row + 1, values[1])
-    store(y, row + 2, values[2])
+    """Store a tile of outputs of the cars in rows."""
+    store(y, row, of_cars(values[0]))
+    store(y, row + 1, of_cars(values[1]))
+    store(y, row + 2, of_cars(values[2]))
 
 
 @compiled_once
@@ -138,7 +138,8 @@ def fill_outputs(
 @inlined
 def largest_rotation(values: Any, previous: Any) -> Any:
     """Return the maximum of the square of a rotation and its previous maximum."""
-    return maximum(values[0] * values[0] + values[1] * values[1] + values[2] * values[2], previous)
+    x, y, z = of_cars(values[0]), of_cars(values[1]), of_cars(values[2])
+    return maximum(x * x + y * y + z * z, previous)
 
 
 @compiled_once
@@ -162,11 +163,11 @@ def update_peaks(
         reading: output tiles.
         x, states, plate_z, done, zero, size, y, width: see `fill_outputs`.
         first_check: first sample that is checked.
-        first: first row of the levels in a sample of the outputs; the levels end at a multiple of a tile.
-        peaks: see `vehicle.engines.reduced.batch_stepping.step_batch`; changed in place.
+        first: first row of the levels in a sample of the outputs.
+        peaks: see `vehicle.engines.reduced.time_stepping.step_cars`; changed in place.
     """
     weights = (states + plate_z.shape[1] // 2) * TILE
-    bodies, levels = reading.rotations.shape[0] // weights, reading.levels.shape[0] // weights * TILE
+    bodies = reading.rotations.shape[0] // weights
     for sample in range(first_check, size, TOGETHER * reading.every):
         samples = sample_group(sample, reading.every, size)
         for body in range(bodies):
@@ -176,7 +177,7 @@ def update_peaks(
     for sample in range(0 if reading.always else first_check, size, 1 if reading.always else reading.every):
         # Tyre loads come first and are checked with the rotations.
         is_check = (sample - first_check) % reading.every == 0
-        for k in range(0 if is_check else reading.loads, levels):
+        for k in range(0 if is_check else reading.loads, reading.watched):
             value, low = load(y, (PAST + sample) * width + first + k), bodies + 2 * k
             store(peaks, low, minimum(value, load(peaks, low)))
             store(peaks, low + 1, maximum(value, load(peaks, low + 1)))
