@@ -81,9 +81,9 @@ def simulate_batch(
 ) -> BatchRuns:
     """Simulate a batch of cars of one topology on the same plates with the reduced engine.
 
-    The values of a car are bitwise independent of the other cars. Cars with rolling tyres, controlled or strongly
-    coupled dampers, or a pole near zero are simulated one at a time in double precision: the bits of `simulate_reduced`
-    at the same step.
+    The values of a car are bitwise independent of the other cars. Cars with controlled or strongly coupled dampers,
+    or with a pole near zero, are simulated one at a time in double precision: the bits of `simulate_reduced` at the
+    same step.
 
     Args:
         models: pole models of the cars, with the same wheels, dampers, bodies and channels.
@@ -125,7 +125,7 @@ def simulate_batch(
         cars = ordered_cars[first : first + LANES]
         started = clock.perf_counter()
         parts = [[values[car] for car in cars] for values in (models, factors, dampers, tyre_load)]
-        group = GroupRun(*parts, signal, interval, every, SINGLE)
+        group = GroupRun(*parts, signal, interval, every, SINGLE, present_load=models[0].slope.shape[1] > 0)
         validities = group.fill(table, cars, channels)
         time_of_car = (clock.perf_counter() - started) / len(cars)
         for car, validity in zip(cars, validities, strict=True):
@@ -149,13 +149,13 @@ def _single_precision(
         timestep: time step [s].
         columns: indices of the driven plates.
     """
-    # Round-off is noise in the small lateral motion of a rolling car.
     suitable = [
         car
         for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
-        if not model.slope.shape[1]
-        and not any(law.controlled for law in laws)
-        and np.min(np.abs(model.poles)) >= SLOWEST
+        if not any(law.controlled for law in laws) and np.min(np.abs(model.poles)) >= SLOWEST
     ]
-    factors = car_factors([models[car] for car in suitable], timestep, columns, exact=False)
+    rolling = models[0].slope.shape[1] > 0
+    factors = car_factors(
+        [models[car] for car in suitable], timestep, columns, exact=False, present_load=rolling
+    )
     return {car: own for car, own in zip(suitable, factors, strict=True) if own.coupling <= LARGEST_COUPLING}

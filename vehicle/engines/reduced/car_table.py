@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import ITERATIONS, CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, TILE, TableRows, aligned_table
 from vehicle.model.laws.curve import BEYOND
@@ -20,7 +21,6 @@ from vehicle.model.laws.damper import RECORD, damper_curve, pack
 from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
 Table = npt.NDArray[Any]
 
 
@@ -53,7 +53,7 @@ class CarTable:
         dampers: damper laws of each car.
         start: (z, z') of the driven plates at the first instant; (2, m).
         element: number type.
-        sensors: rows of the sensors of the car over its poles; (s, n).
+        sensors: sensors of each car, see `vehicle.engines.reduced.feedback.sensor_outputs`.
 
     Attributes:
         plates: number m of driven plates.
@@ -72,7 +72,7 @@ class CarTable:
         dampers: Sequence[Sequence[Damper]],
         start: Vector,
         element: np.dtype[Any],
-        sensors: Complex,
+        sensors: Sequence[Outputs],
     ) -> None:
         self.element, lanes = element, aligned_table(1, element).shape[1]
         split = lanes if element == DOUBLE else 1
@@ -83,18 +83,21 @@ class CarTable:
         d, m = len(dampers[0]), start.shape[1]
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m)
-        self.inputs, self.sums = cars[0].step.shape[1] - 1, d + len(sensors)
+        count = len(sensors[0].poles)
+        self.inputs, self.sums = cars[0].step.shape[1] - 1, d + count
         damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
         node_count = max(len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car)
         sizes = {"pair": pairs * 2 * (1 + self.inputs + self.sums), "real": reals * (1 + self.inputs + self.sums)}
         sizes |= {"slip": d * m, "gain": d * d, "ramp": d * d, "law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
-        sizes |= {"sensors": len(sensors), "work": d * (4 + 4 * node_count) + 2 * self.sums + TILE}
+        sizes |= {"sensors": count, "past": count, "direct": count * 2 * (d + m)}
+        sizes |= {"work": d * (4 + 4 * node_count) + 2 * self.sums + TILE}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         self.table, self.initial = (aligned_table(rows, element) for rows in (section_ends[-1], self.states - m))
         self.initial[-m:] = start[1][:, None]
-        record, rows_of_cars = np.zeros((d, lanes), dtype=RECORD), [car.rows(sensors) for car in cars]
+        record = np.zeros((d, lanes), dtype=RECORD)
+        rows_of_cars = [car.rows(own.poles) for car, own in zip(cars, sensors, strict=True)]
         for lane, (car, part) in enumerate(self.lanes):
             record[:, lane] = [array for array, _, _ in damper_data[car]]
             # Repeating the last node gives segments of zero length.
@@ -105,6 +108,9 @@ class CarTable:
             # Sums over the poles are added over the parts of a car, with the contribution of the plates once.
             values["slip"] = slip if part.start == 0 else 0.0 * slip
             values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
+            own, columns = sensors[car], cars[car].columns
+            values["direct"] = cars[car].weights_of(own)[:, cars[car].states :]
+            values["sensors"] = own.height[:, columns] @ start[0] + own.velocity[:, columns] @ start[1]
             values["full"] = np.array([full for _, full, _ in damper_data[car]])
             for name, array in values.items():
                 self.table[first_rows[name] :, lane][: array.size] = array.ravel()

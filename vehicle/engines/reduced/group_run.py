@@ -81,9 +81,14 @@ class GroupRun:
         steps = int(np.floor(signal.duration / interval + 1e-6)) * every
         self.plates = plate_samples(signal, self.timestep, steps, AHEAD * every)
         start = self.plates[:1].reshape(-1, 2).T
-        sensors = sensor_outputs(models[0], dampers[0], factors[0].columns, tyre_load[0] if present_load else None)
-        self.feedback = feedback_at_rest(factors[0], dampers[0], sensors, start, self.timestep)
-        self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors.poles)
+        columns = factors[0].columns
+        sensors = [
+            sensor_outputs(model, laws, columns, static if present_load else None)
+            for model, laws, static in zip(models, dampers, tyre_load, strict=True)
+        ]
+        tyres = len(columns) if present_load else 0
+        self.feedback = feedback_at_rest(dampers[0], tyres, factors[0].heights, self.timestep)
+        self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
         """Simulate the cars and fill their rows of the table.
@@ -185,6 +190,7 @@ class GroupRun:
 
         stepping, cars, every = compiled_stepping(), self.cars, self.every
         m, x = cars.plates, aligned_table((INNER_BLOCK + 1) * cars.states, self.element)
+        changes = aligned_table((INNER_BLOCK + 1) * (2 * cars.rows.pairs + cars.rows.reals), self.element)
         x[: len(cars.initial)] = cars.initial
         lengths = tuple((0.0,) * count for count in (cars.inputs, cars.sums, len(self.dampers[0])))
         constant, indices = (cars.table, cars.rows, cars.laws, self.feedback), np.array(rows_of_cars, dtype=np.int64)
@@ -197,7 +203,7 @@ class GroupRun:
             rates[:-1, m : 2 * m] = np.diff(plates[:, 0::2], axis=0) / self.timestep
             displacements = plates[::every, 0::2]
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(self.element)
-            stepping(*constant, rates, plate_z, every, reading, x, y, peaks, table, sample, indices, *lengths)
+            stepping(*constant, rates, plate_z, every, reading, x, changes, y, peaks, table, sample, indices, *lengths)
             sample += size
 
     @staticmethod

@@ -76,7 +76,7 @@ class CarFactors:
         integrated: indices of the integrated poles, p pairs and q real poles; (p + q,).
         pairs: p.
         heights: number of plates whose z is an input; m for a car with slow poles, else 0.
-        step: E and factors of mean forces, slopes, z', mean z', slope forces and z for the integrated poles;
+        step: E - 1 and factors of mean forces, slopes, z', mean z', slope forces and z for the integrated poles;
             (p + q, 1 + 2 d + 2 m + ...).
         direct: contributions of mean forces, their slopes, z' and z to eta of all poles; (n, 2 d + 2 m).
         slip: rows of the damper velocities; (d, n).
@@ -110,9 +110,15 @@ class CarFactors:
 
     @property
     def iterations(self) -> int:
-        """Return the number of iterations over the dampers that leaves `ACCURACY`."""
-        rho = max(self.coupling, np.finfo(float).tiny)
-        return int(np.clip(np.ceil(np.log(ACCURACY) / np.log(rho)), *ITERATIONS)) if rho < 1.0 else ITERATIONS[1]
+        """Return the number of Gauss-Seidel iterations over the dampers that leaves `ACCURACY`.
+
+        The change of a force is at most that of its input over the gain, whatever its law, so the iteration of the
+        linear equations with the absolute values of the gains is a bound.
+        """
+        gain = np.abs(self.gains[1])
+        iteration = np.linalg.solve(np.tril(gain), np.triu(gain, 1))
+        errors = [np.linalg.matrix_power(iteration, n) for n in range(ITERATIONS[0], ITERATIONS[1])]
+        return ITERATIONS[0] + sum(float(np.max(error.sum(axis=1))) > ACCURACY for error in errors)
 
     def start(self, displacements: Vector, rates: Vector) -> tuple[Complex, Vector]:
         """Return the initial states of a car at rest, of pairs and of real poles.
@@ -130,11 +136,11 @@ class CarFactors:
             sensors: rows of sensors over the poles; (s, n).
 
         Returns:
-            Decay, inputs, damper velocities and sensors: (pairs, ...) with real and imaginary parts, (reals, ...).
+            E - 1, inputs, damper velocities and sensors: (pairs, ...) with real and imaginary parts, (reals, ...).
         """
         sums, p = np.concatenate([self.slip, sensors])[:, self.integrated].T, self.pairs
-        decay, inputs = self.step[:p, :1], self.step[:p, 1:]
-        pairs = [decay.real, decay.imag, inputs.real, inputs.imag, sums[:p].real, -sums[:p].imag]
+        change, inputs = self.step[:p, :1], self.step[:p, 1:]
+        pairs = [change.real, change.imag, inputs.real, inputs.imag, sums[:p].real, -sums[:p].imag]
         return np.hstack(pairs), np.hstack([self.step[p:].real, sums[p:].real])
 
     def weights(self, rows: Complex) -> Vector:
@@ -211,7 +217,7 @@ def car_factors(
         plate, mean = plate + held * h * (m1 - 2.0 * m2 + m3), mean + held * h * (3.0 * m2 - 2.0 * m3)
         extra.append(held * m0)
     direct = np.hstack([force * m0, force * (m1 - 0.5 * m0), ahead])
-    step = np.hstack([decay, decay * direct[:, : 2 * d], plate + decay * ahead, mean, *extra])
+    step = np.hstack([np.expm1(s * h), decay * direct[:, : 2 * d], plate + decay * ahead, mean, *extra])
     factors_of_cars, first = [], 0
     for model, car_inputs in zip(models, inputs_of_cars, strict=True):
         part = slice(first, first + len(car_inputs.integrated))

@@ -49,7 +49,8 @@ class TableRows(NamedTuple):
         velocity, earlier: current velocities and those of the last step.
         hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
             during the whole step.
-        sensors: sums over the poles of the sensors of `vehicle.engines.reduced.feedback`.
+        sensors, past: sensors of `vehicle.engines.reduced.feedback` at the beginning of a step and of the last step.
+        direct: contributions of mean forces, slopes, z' and z to each sensor.
         work: work space for the solution of a step.
     """
 
@@ -72,6 +73,8 @@ class TableRows(NamedTuple):
     stuck: int
     stick: int
     sensors: int
+    past: int
+    direct: int
     work: int
 
 

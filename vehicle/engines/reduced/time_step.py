@@ -4,7 +4,9 @@ A pole is integrated as the difference y from its static value on the plates, xi
 
     y' = s y + (b_c + b_z/s) z' + e f.
 
-The differences stay small even on hilly roads, so single precision is sufficient. z' is a quadratic over a step, given
+The differences stay small even on hilly roads. A step adds (E - 1) y and its inputs to y, and the accelerations take
+these changes: round-off of y, amplified by a second difference, would be most of the lateral acceleration of a rolling
+car above 100 Hz in single precision. z' is a quadratic over a step, given
 by its ends and its mean. A damper force has the mean f_n over step n. If the damper is stuck in this step and the last,
 the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. In sliding it is constant, except for the
 damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
@@ -19,7 +21,7 @@ from collections.abc import Callable
 from typing import Any
 
 from vehicle.compiler import OPTIONS, numba_module
-from vehicle.engines.reduced.feedback import Feedback, demanded_excess, read_sensors, slope_force
+from vehicle.engines.reduced.feedback import Feedback, excess_coefficient
 from vehicle.engines.reduced.simd_vector import (
     add_scaled,
     broadcast,
@@ -123,13 +125,16 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
     for k in range(2 * plates):
         store(t, row + k, broadcast(rates[step, k]))
     row += 2 * plates
-    for i in range(feedback.past.shape[0]):
-        store(t, row + i, filled(t, slope_force(feedback, i, rates[step, plates + i])))
+    for i in range(feedback.tyres):
+        load_now = load(t, r.sensors + i)
+        middle = load_now + filled(t, 0.5) * (load_now - load(t, r.past + i))
+        store(t, r.past + i, load_now)
+        store(t, row + i, maximum(middle, filled(t, -1.0)) * broadcast(rates[step, plates + i]))
     for i in range(feedback.heights):
-        store(t, row + feedback.past.shape[0] + i, broadcast(rates[step, 2 * plates + i]))
+        store(t, row + feedback.tyres + i, broadcast(rates[step, 2 * plates + i]))
     for k in range(feedback.dampers.shape[0]):
-        i, nodes = feedback.dampers[k], r.pieces + 1
-        half = filled(t, 0.5 * demanded_excess(feedback, k))
+        i, nodes, sensor = feedback.dampers[k], r.pieces + 1, r.sensors + feedback.tyres + 2 * k
+        half = filled(t, 0.5 * excess_coefficient(feedback, k, t[sensor, 0], t[sensor + 1, 0]))
         store(t, r.hold + i, half * load(t, r.velocity + i))
         for j in range(3 * i * nodes, 3 * (i + 1) * nodes, 3):
             store(t, r.law + j + 1, half * load(t, r.law + j))
@@ -146,12 +151,37 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
 
 
 @inlined
+def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors: int) -> None:
+    """Add the direct terms of forces and plates at the end of a step to the sums of the sensors.
+
+    Args:
+        t, r, rates: see `vehicle.engines.reduced.time_stepping.step_cars`.
+        end: row of the end of the step in `rates`.
+        count, sensors: numbers of dampers and of sensors.
+    """
+    plates = rates.shape[1] // 3
+    row = r.direct
+    for i in range(sensors):
+        value = load(t, r.sensors + i)
+        for k in range(2 * count):
+            value = value + load(t, row + k) * load(t, r.inputs + k)
+        for k in range(plates):
+            value = value + load(t, row + 2 * count + k) * broadcast(rates[end, k])
+            value = value + load(t, row + 2 * count + plates + k) * broadcast(rates[end, 2 * plates + k])
+        store(t, r.sensors + i, value)
+        row += 2 * (count + plates)
+
+
+@inlined
 def advance(
     t: Any,
     r: TableRows,
     x: Any,
+    changes: Any,
     before: int,
     at: int,
+    last: int,
+    now: int,
     rates: Any,
     laws: Any,
     feedback: Feedback,
@@ -164,8 +194,9 @@ def advance(
 
     Args:
         t, r, rates, laws, feedback, inputs, sums, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
-        x: states of samples; the poles are changed in place.
-        before, at: first rows of the poles at the beginning and at the end of the step.
+        x, changes: states of samples, and changes of the poles since the sample before; changed in place.
+        before, at: first rows of the poles in `x` at the beginning and at the end of the step.
+        last, now: first rows of the changes up to the beginning and up to the end of the step.
         step: index of the step.
     """
     count, plates = len(dampers), rates.shape[1] // 3
@@ -184,18 +215,25 @@ def advance(
     for p in range(r.pairs):
         row = p * pair_rows
         a, b, decay, rotation = load(x, before + 2 * p), load(x, before + 2 * p + 1), load(t, row), load(t, row + 1)
-        real = weighted_sum(t, row + 2, u, decay * a - rotation * b)
-        imaginary = weighted_sum(t, row + 2 + size, u, decay * b + rotation * a)
+        real_change = weighted_sum(t, row + 2, u, decay * a - rotation * b)
+        imaginary_change = weighted_sum(t, row + 2 + size, u, decay * b + rotation * a)
+        real, imaginary = a + real_change, b + imaginary_change
         store(x, at + 2 * p, real)
         store(x, at + 2 * p + 1, imaginary)
+        store(changes, now + 2 * p, load(changes, last + 2 * p) + real_change)
+        store(changes, now + 2 * p + 1, load(changes, last + 2 * p + 1) + imaginary_change)
         w = add_scaled(t, row + 2 + 2 * size, real, w)
         imaginary_sums = add_scaled(t, row + 2 + 2 * size + width, imaginary, imaginary_sums)
     for q in range(r.reals):
         row, pole_row = r.real + q * real_rows, 2 * r.pairs + q
-        real = weighted_sum(t, row + 1, u, load(t, row) * load(x, before + pole_row))
+        a = load(x, before + pole_row)
+        real_change = weighted_sum(t, row + 1, u, load(t, row) * a)
+        real = a + real_change
         store(x, at + pole_row, real)
+        store(changes, now + pole_row, load(changes, last + pole_row) + real_change)
         w = add_scaled(t, row + 1 + size, real, w)
     for i in range(width):
         store(t, r.work + i if i < count else r.sensors + i - count, of_cars(w[i] + imaginary_sums[i]))
     solve_dampers(t, r, dampers)
-    read_sensors(t, r, feedback, rates, step + 1, count)
+    read_sensors(t, r, rates, step + 1, count, width - count)
+    feedback.step[0] += 1

@@ -82,6 +82,7 @@ def step_cars(
     every: int,
     reading: OutputTiles,
     x: Any,
+    changes: Any,
     y: Any,
     peaks: Any,
     out: Any,
@@ -103,6 +104,8 @@ def step_cars(
         every: steps between two samples.
         reading: output tiles.
         x: states of the previous sample and of INNER_BLOCK samples: poles, mean forces, their slopes, z'; changed in
+            place.
+        changes: zeros, then changes of the poles from the previous sample to each of INNER_BLOCK samples; changed in
             place.
         y: outputs of PAST previous samples and of INNER_BLOCK samples; changed in place.
         peaks: squares of rotations, minimum and maximum of each watched level; changed in place.
@@ -130,8 +133,9 @@ def step_cars(
         for k in range(size * every):
             sample, phase = k // every, k % every
             at = (sample + 1) * states
-            before = at - states if phase == 0 else at
-            advance(t, r, x, before, at, rates, laws, feedback, step, inputs, sums, dampers)
+            before, now = at - states if phase == 0 else at, (sample + 1) * poles
+            last = 0 if phase == 0 else now
+            advance(t, r, x, changes, before, at, last, now, rates, laws, feedback, step, inputs, sums, dampers)
             step += 1
             row = (PAST + sample) * width + speeds
             if phase == 0:
@@ -145,9 +149,9 @@ def step_cars(
             begin_damper_outputs(t, r, feedback, y, row, count)
             add_damper_outputs(t, r, feedback, y, row, count, 1.0)
         first_check = (1 - first - done) % reading.every
-        fill_outputs(reading.positions, x, states, plate_z, done, True, zero, 0, 1, size, y, width, 0)
+        fill_outputs(reading.positions, x, changes, states, poles, plate_z, done, zero, 0, 1, size, y, width, 0)
         begin, stride = (0, 1) if reading.always else (first_check, reading.every)
-        fill_outputs(reading.levels, x, states, plate_z, done, False, zero, begin, stride, size, y, width, positions)
+        fill_outputs(reading.levels, x, x, states, 0, plate_z, done, zero, begin, stride, size, y, width, positions)
         update_peaks(reading, x, states, plate_z, done, zero, first_check, size, y, width, positions, peaks)
         for k in range(states):
             store(x, k, load(x, size * states + k))
