@@ -66,17 +66,18 @@ def sensor_outputs(
     Returns:
         F_z/F_0 - 1 of the driven tyres, then velocities of wheel and body at each controlled damper [m/s].
     """
-    inputs, loads = model.matrices.system.inputs, tyre_outputs(model)
-    tyres = list(columns) if tyre_load else []
-    static = np.array([tyre_load[inputs[tyre]] for tyre in tyres] if tyre_load else [])[:, None]
-    rates = np.zeros((0, len(model.poles)))
+    inputs = model.matrices.system.inputs
+    rates = np.zeros((0, len(model.poles)), dtype=np.complex128)
     if any(damper.controlled for damper in dampers):
         rates = model.matrices.sensors @ (model.modal * model.poles)
     no_plates = np.zeros((len(rates), len(inputs)))
-    return Outputs(poles=loads.poles[tyres] / static, height=loads.height[tyres] / static,
-                   velocity=loads.velocity[tyres] / static) + Outputs(
-        poles=rates, height=no_plates, velocity=no_plates
-    )  # fmt: skip
+    velocities = Outputs(poles=rates, height=no_plates, velocity=no_plates)
+    if tyre_load is None:
+        return velocities
+    tyres, loads = list(columns), tyre_outputs(model)
+    static = np.array([tyre_load[inputs[tyre]] for tyre in tyres])[:, None]
+    parts = (part[tyres] / static for part in (loads.poles, loads.height, loads.velocity))
+    return Outputs(**dict(zip(("poles", "height", "velocity"), parts, strict=True))) + velocities
 
 
 def feedback_at_rest(dampers: Sequence[Damper], tyres: int, heights: int, timestep: float) -> Feedback:

@@ -17,7 +17,7 @@ from vehicle.engines.reduced.load_outputs import direct_forces, load_outputs
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
-from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, TILE, OutputTiles, aligned_table
+from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, SINGLE, TILE, OutputTiles, aligned_table
 from vehicle.engines.reduced.validity import (
     Validity,
     check_stride,
@@ -190,7 +190,8 @@ class GroupRun:
 
         stepping, cars, every = compiled_stepping(), self.cars, self.every
         m, x = cars.plates, aligned_table((INNER_BLOCK + 1) * cars.states, self.element)
-        changes = aligned_table((INNER_BLOCK + 1) * (2 * cars.rows.pairs + cars.rows.reals), self.element)
+        kept = INNER_BLOCK + 1 if self.element == SINGLE and self.models[0].slope.shape[1] else 0
+        changes = aligned_table(kept * (2 * cars.rows.pairs + cars.rows.reals), self.element)
         x[: len(cars.initial)] = cars.initial
         lengths = tuple((0.0,) * count for count in (cars.inputs, cars.sums, len(self.dampers[0])))
         constant, indices = (cars.table, cars.rows, cars.laws, self.feedback), np.array(rows_of_cars, dtype=np.int64)

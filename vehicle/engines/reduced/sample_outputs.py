@@ -43,7 +43,17 @@ def accumulate(tiles: Any, row: int, values: Any, sums: Any) -> Any:
 
 @inlined
 def read_tile(
-    tiles: Any, row: int, x: Any, changes: Any, states: int, poles: int, samples: Any, plate_z: Any, done: int, zero: Any
+    tiles: Any,
+    row: int,
+    x: Any,
+    changes: Any,
+    states: int,
+    poles: int,
+    samples: Any,
+    plate_z: Any,
+    done: int,
+    differences: bool,
+    zero: Any,
 ) -> Any:
     """Return a tile of outputs at four samples, or of their differences from the previous samples.
 
@@ -53,10 +63,11 @@ def read_tile(
         x: states of the samples, beginning with the sample before the first.
         changes: changes of the poles from sample to sample, likewise.
         states: number of states.
-        poles: number of poles in `changes` for differences; 0 for outputs, which do not use `changes`.
+        poles: number of first states whose differences are in `changes`.
         samples: indices of the samples.
         plate_z: plate displacements and their differences; (samples, 2 plates).
         done: row of the first sample in `plate_z`.
+        differences: return differences.
         zero: tile of zeros.
     """
     sums, plates = (zero, zero, zero, zero), plate_z.shape[1] // 2
@@ -66,7 +77,7 @@ def read_tile(
         (samples[2] + 1) * states,
         (samples[3] + 1) * states,
     )
-    if poles > 0:
+    if differences:
         for k in range(poles):
             values = (
                 load(changes, (samples[0] + 1) * poles + k),
@@ -88,7 +99,7 @@ def read_tile(
             values = load(x, a + k), load(x, b + k), load(x, c + k), load(x, d + k)
             sums = accumulate(tiles, row + k * TILE, values, sums)
     for k in range(plates):
-        column = plates + k if poles > 0 else k
+        column = plates + k if differences else k
         values = (
             broadcast(plate_z[done + samples[0], column]),
             broadcast(plate_z[done + samples[1], column]),
@@ -116,6 +127,7 @@ def fill_outputs(
     poles: int,
     plate_z: Any,
     done: int,
+    differences: bool,
     zero: Any,
     begin: int,
     stride: int,
@@ -127,7 +139,8 @@ def fill_outputs(
     """Compute all tiles of outputs, or of their differences.
 
     Args:
-        tiles, x, changes, states, poles, plate_z, done, zero: see `read_tile`.
+        tiles, x, changes, states, poles, plate_z, done, differences, zero: see
+            `read_tile`.
         begin, stride, size: first sample, stride and end of the samples.
         y: outputs of PAST previous samples and of these; changed in place.
         width: rows of a sample in `y`.
@@ -137,7 +150,7 @@ def fill_outputs(
     for sample in range(begin, size, TOGETHER * stride):
         samples = sample_group(sample, stride, size)
         for tile in range(tiles.shape[0] // weights):
-            sums = read_tile(tiles, tile * weights, x, changes, states, poles, samples, plate_z, done, zero)
+            sums = read_tile(tiles, tile * weights, x, changes, states, poles, samples, plate_z, done, differences, zero)
             row = PAST * width + first + tile * TILE
             store_tile(y, row + samples[0] * width, sums[0])
             store_tile(y, row + samples[1] * width, sums[1])
@@ -181,7 +194,7 @@ def update_peaks(
     for sample in range(first_check, size, TOGETHER * reading.every):
         samples = sample_group(sample, reading.every, size)
         for body in range(bodies):
-            sums = read_tile(reading.rotations, body * weights, x, x, states, 0, samples, plate_z, done, zero)
+            sums = read_tile(reading.rotations, body * weights, x, x, states, 0, samples, plate_z, done, False, zero)
             largest = largest_rotation(sums[1], largest_rotation(sums[0], load(peaks, body)))
             store(peaks, body, largest_rotation(sums[3], largest_rotation(sums[2], largest)))
     for sample in range(0 if reading.always else first_check, size, 1 if reading.always else reading.every):

@@ -115,10 +115,11 @@ class CarFactors:
         The change of a force is at most that of its input over the gain, whatever its law, so the iteration of the
         linear equations with the absolute values of the gains is a bound.
         """
-        gain = np.abs(self.gains[1])
-        iteration = np.linalg.solve(np.tril(gain), np.triu(gain, 1))
-        errors = [np.linalg.matrix_power(iteration, n) for n in range(ITERATIONS[0], ITERATIONS[1])]
-        return ITERATIONS[0] + sum(float(np.max(error.sum(axis=1))) > ACCURACY for error in errors)
+        gain, count = np.abs(self.gains[1]), 0
+        error, iteration = np.ones(len(gain)), np.linalg.solve(np.tril(gain), np.triu(gain, 1))
+        while count < ITERATIONS[0] or (np.max(error) > ACCURACY and count < ITERATIONS[1]):
+            error, count = iteration @ error, count + 1
+        return count
 
     def start(self, displacements: Vector, rates: Vector) -> tuple[Complex, Vector]:
         """Return the initial states of a car at rest, of pairs and of real poles.

@@ -4,9 +4,9 @@ A pole is integrated as the difference y from its static value on the plates, xi
 
     y' = s y + (b_c + b_z/s) z' + e f.
 
-The differences stay small even on hilly roads. A step adds (E - 1) y and its inputs to y, and the accelerations take
-these changes: round-off of y, amplified by a second difference, would be most of the lateral acceleration of a rolling
-car above 100 Hz in single precision. z' is a quadratic over a step, given
+The differences stay small even on hilly roads. A step adds (E - 1) y and its inputs to y. The accelerations of rolling
+cars in single precision take these changes: round-off of y, amplified by a second difference, would be most of the
+lateral acceleration above 100 Hz. z' is a quadratic over a step, given
 by its ends and its mean. A damper force has the mean f_n over step n. If the damper is stuck in this step and the last,
 the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. In sliding it is constant, except for the
 damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
@@ -200,7 +200,7 @@ def advance(
         step: index of the step.
     """
     count, plates = len(dampers), rates.shape[1] // 3
-    size, width = len(inputs), len(sums)
+    size, width, kept = len(inputs), len(sums), changes.shape[0] > 0
     pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
     set_inputs(t, r, feedback, rates, laws, step, dampers)
     for i in range(width):
@@ -220,8 +220,9 @@ def advance(
         real, imaginary = a + real_change, b + imaginary_change
         store(x, at + 2 * p, real)
         store(x, at + 2 * p + 1, imaginary)
-        store(changes, now + 2 * p, load(changes, last + 2 * p) + real_change)
-        store(changes, now + 2 * p + 1, load(changes, last + 2 * p + 1) + imaginary_change)
+        if kept:
+            store(changes, now + 2 * p, load(changes, last + 2 * p) + real_change)
+            store(changes, now + 2 * p + 1, load(changes, last + 2 * p + 1) + imaginary_change)
         w = add_scaled(t, row + 2 + 2 * size, real, w)
         imaginary_sums = add_scaled(t, row + 2 + 2 * size + width, imaginary, imaginary_sums)
     for q in range(r.reals):
@@ -230,7 +231,8 @@ def advance(
         real_change = weighted_sum(t, row + 1, u, load(t, row) * a)
         real = a + real_change
         store(x, at + pole_row, real)
-        store(changes, now + pole_row, load(changes, last + pole_row) + real_change)
+        if kept:
+            store(changes, now + pole_row, load(changes, last + pole_row) + real_change)
         w = add_scaled(t, row + 1 + size, real, w)
     for i in range(width):
         store(t, r.work + i if i < count else r.sensors + i - count, of_cars(w[i] + imaginary_sums[i]))

@@ -106,7 +106,7 @@ def step_cars(
         x: states of the previous sample and of INNER_BLOCK samples: poles, mean forces, their slopes, z'; changed in
             place.
         changes: zeros, then changes of the poles from the previous sample to each of INNER_BLOCK samples; changed in
-            place.
+            place. Empty if differences of the states are exact enough.
         y: outputs of PAST previous samples and of INNER_BLOCK samples; changed in place.
         peaks: squares of rotations, minimum and maximum of each watched level; changed in place.
         out: channels of all cars; (channels, cars, samples).
@@ -149,9 +149,12 @@ def step_cars(
             begin_damper_outputs(t, r, feedback, y, row, count)
             add_damper_outputs(t, r, feedback, y, row, count, 1.0)
         first_check = (1 - first - done) % reading.every
-        fill_outputs(reading.positions, x, changes, states, poles, plate_z, done, zero, 0, 1, size, y, width, 0)
+        kept = poles if changes.shape[0] > 0 else 0
+        fill_outputs(reading.positions, x, changes, states, kept, plate_z, done, True, zero, 0, 1, size, y, width, 0)
         begin, stride = (0, 1) if reading.always else (first_check, reading.every)
-        fill_outputs(reading.levels, x, x, states, 0, plate_z, done, zero, begin, stride, size, y, width, positions)
+        fill_outputs(
+            reading.levels, x, x, states, 0, plate_z, done, False, zero, begin, stride, size, y, width, positions
+        )
         update_peaks(reading, x, states, plate_z, done, zero, first_check, size, y, width, positions, peaks)
         for k in range(states):
             store(x, k, load(x, size * states + k))
