@@ -1,9 +1,8 @@
-"""Periodic input and what it answers: the frequency response without leakage, against which the engines are tested."""
+"""Periodic input, whose FRF has no leakage, with which the engines are tested."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from vehicle.signals.excitation.band import lines_in_band, period_of
 from vehicle.signals.excitation.rest import half_cosine
@@ -24,23 +23,3 @@ def multisine(*, rms: float, seed: int, period: float, periods: int, band: tuple
     z = np.tile(one * (rms / np.sqrt(np.mean(one**2))), periods)
     z = np.append(z, z[0]) * half_cosine(samples=z.size + 1, timestep=1.0 / RATE, length=0.5)
     return Signal(time=uniform_time(samples=z.size, timestep=1.0 / RATE), displacement={"fr": z})
-
-
-def periodic_response(
-    time_step: float,
-    excitation: ArrayLike,
-    responses: ArrayLike,
-    *,
-    period: float,
-    band: tuple[float, float] = (1.0, 50.0),
-) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-    """Lines that the last period of the input excites, and H(f) = Y(f) / X(f) there, shape (k, m).
-
-    In its steady state a linear system has the period of its input, so that nothing leaks: what is left is the
-    transient at the beginning of that period.
-    """
-    count = round(period / time_step)
-    x, y = (np.fft.rfft(np.asarray(signal)[..., -count:]) for signal in (excitation, responses))
-    lines = np.arange(x.size) / period
-    excited = (lines >= band[0] - 1e-9) & (lines <= band[1] + 1e-9) & (np.abs(x) > 1e-6 * np.abs(x[1:]).max())
-    return lines[excited], y[..., excited] / x[excited]

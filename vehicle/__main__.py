@@ -37,7 +37,7 @@ def _print(typed: Sequence[str]) -> None:
         ConfigurationError: the first word is no command and no option.
     """
     if typed[:1] == ["--version"]:
-        from vehicle.commands.version import package_version
+        from vehicle.version import package_version
 
         print(package_version())
         return

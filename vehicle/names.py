@@ -48,6 +48,17 @@ def wheel_words(wheel: str, wheels: Iterable[str]) -> str:
     return f"{side} front wheel" if side in SIDE_SIGN and wheel.startswith("f") else f"{side} wheel"
 
 
+def point_words(point: str) -> str:
+    """Return the name of a part or point in words: "seat rail", "front right suspension mount".
+
+    Args:
+        point: name as in channels, as "seat_rail" or "suspension_mount_fr".
+    """
+    part, _, wheel = point.rpartition("_")
+    corner = next((words for words, name in CORNERS.items() if name == wheel), None)
+    return (f"{corner}_{part}" if part and corner else point).replace("_", " ")
+
+
 def axle_and_side(wheel: str) -> tuple[str, str]:
     """Return axle and side of a wheel in words: "front", "right" for fr; "middle", "left" for middle_l.
 

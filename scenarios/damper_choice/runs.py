@@ -27,8 +27,8 @@ from vehicle.model.parameters.damper_choice import (
 )
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
 from vehicle.signals.analysis.weighting import weighting
-from vehicle.signals.excitation.iso_road import CLASSES, REFERENCE
 
 Array = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 from scenarios.claims import COMPARED, OWN_CHECK, Claim, markdown
 from scenarios.comfort_sensitivity.figures import number
 from scenarios.road.runs import Found, Ride, RideRuns
-from vehicle.signals.excitation.iso_road import CLASSES
+from vehicle.signals.analysis.road_level import CLASSES
 
 LOAD = "load_{}"
 

@@ -24,7 +24,8 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.comfort import comfort_value, comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
-from vehicle.signals.excitation.iso_road import CLASSES, REFERENCE, isotropic_coherence
+from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
+from vehicle.signals.excitation.iso_road import isotropic_coherence
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.optimisation.trials import Spread, bands, samples_for
 from vehicle.studies.sweeps.indices import sobol_indices, sobol_sample

@@ -39,7 +39,7 @@ def completed(script, line):
     ("line", "words"),
     [
         ("vehicle ", list(COMMANDS)),
-        ("vehicle s", ["shaker", "sweep"]),
+        ("vehicle s", ["shaker", "sweep", "spectra"]),
         ("vehicle --v", ["--version"]),
         ("vehicle --print-completion ", ["bash", "zsh"]),
         ("vehicle shaker --eng", ["--engine"]),
@@ -88,7 +88,7 @@ def test_the_version_is_that_of_the_project(words, capsys):
 
 
 def test_an_installed_package_has_the_version_of_its_metadata(monkeypatch):
-    from vehicle.commands import version
+    from vehicle import version
 
-    monkeypatch.setattr(version, "__file__", "/nowhere/vehicle/commands/version.py")
+    monkeypatch.setattr(version, "__file__", "/nowhere/vehicle/version.py")
     assert version.package_version().startswith("vehicle-on-shaker ")

@@ -73,9 +73,9 @@ def test_python_examples_compute_what_the_page_says(site):
     assert value_of(names["tuned"].vehicle, path) == names["result"].values[path] == pytest.approx(6.8e5, rel=0.02)
     assert names["damper"].values["damper.viscous"] == pytest.approx(2000.0, rel=1e-3)
     assert names["drive"].error < 0.5 and "best comfort" in repr(names["found"])
-    rms = names["run"].weighted_comfort()
-    assert names["seat"].overall == pytest.approx(rms["overall"], rel=1e-9)
-    assert names["seat"].weighted_rms["z"] == pytest.approx(rms["z"], rel=1e-9)
+    rms = names["run"].comfort().weighted
+    assert names["seat"].overall == pytest.approx(rms.overall, rel=1e-9)
+    assert names["seat"].weighted_rms.z == pytest.approx(rms["z"], rel=1e-9)
     for name in ("runs/high/summary.json", "runs/compared/compare.json", "report.html", "runs/drive/drive.csv"):
         assert (execution.folder / name).is_file()
 

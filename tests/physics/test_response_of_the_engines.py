@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.periodic import periodic_response
 from tests.validation import validated
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.signal import Signal
 
 PERIOD, PERIODS, RATE = 4.0, 4, 4000.0
@@ -48,8 +48,9 @@ def test_response_up_to_100_hz(engine, damper):
     channels = ["knuckle_fr_acc_z", "seat_rail_acc_z", "engine_acc_z", "suspension_mount_fr_acc_z", "body_front_acc_z"]
     run = car.run(periodic_motion(), engine=engine, channels=[*channels, "plate_fr_displacement"])
     responses = np.array([run[name][:-1] for name in channels])
-    plate = run["plate_fr_displacement"][:-1]
-    frequency, measured = periodic_response(1e-3, plate, responses, period=PERIOD, band=(1.0, 100.0))
+    plate = run["plate_fr_displacement"][None, :-1]
+    (frf,) = whole_record_responses(1e-3, plate, responses, band=(1.0, 100.0))
+    frequency, measured = frf.frequency, frf.response
     exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
     error = np.sqrt(np.sum(np.abs(measured - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
     assert frequency[-1] > 99.0

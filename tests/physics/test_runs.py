@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.periodic import multisine, periodic_response
+from tests.periodic import multisine
 from tests.validation import validated
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
@@ -88,8 +89,9 @@ def test_frf_from_time_and_from_the_matrices(damper):
     run = car.run(signal)
     channels = [f"{point}_acc_{axis}" for point in PLACES for axis in AXES]
     responses = np.array([run[name][:-1] for name in channels])
-    plate = run["plate_fr_displacement"][:-1]
-    frequency, measured = periodic_response(run.recording.timestep, plate, responses, period=4.0)
+    plate = run["plate_fr_displacement"][None, :-1]
+    (frf,) = whole_record_responses(run.recording.timestep, plate, responses)
+    frequency, measured = frf.frequency, frf.response
     assert frequency.size == 197  # 1 to 50 Hz in steps of 0.25
     exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
     error = np.sum(np.abs(measured - exact) ** 2, axis=1)

@@ -10,6 +10,7 @@ COMMANDS = (
     "road",
     "inspect",
     "loads",
+    "spectra",
     "body",
     "compare",
     "report",

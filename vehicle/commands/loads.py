@@ -50,10 +50,10 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.load_plot import plot_loads
     from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.signals.analysis.load_spectrum import load_spectrum
-    from vehicle.signals.records.reader import read_columns
+    from vehicle.signals.records.reader import read_columns, time_file
     from vehicle.signals.records.run_summary import available_summary
 
-    source = _time_file(options.run)
+    source = time_file(options.run)
     if not 1 <= options.classes <= 10000:
         raise ConfigurationError(f"--classes {options.classes}: must be 1 to 10000")
     if not 1.0 <= options.slope < 1000.0:
@@ -78,16 +78,6 @@ def _job(options: argparse.Namespace) -> None:
     if not options.quiet:
         print(_report(spectra_of_channels, caption))
         print(f"files: {table.parent}: {', '.join(path.name for path in (table, spectra, picture))}")
-
-
-def _time_file(run: Path) -> Path:
-    """Return the file of the time histories of a run."""
-    if not run.is_dir():
-        return run
-    for name in ("time.npz", "time.csv"):
-        if (run / name).is_file():
-            return run / name
-    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:

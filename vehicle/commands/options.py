@@ -87,6 +87,16 @@ def extra_output_options(parser: Parser, files: str) -> None:
     group.add_argument("--force", action="store_true", help=FORCE_HELP)
 
 
+def figures_option(parser: argparse._ActionsContainer) -> None:
+    """Add --no-figures, for a command that writes pictures beside its tables; the default of `figures` is True."""
+    parser.add_argument(
+        "--no-figures",
+        dest="figures",
+        action="store_false",
+        help="write no pictures (PNG): the command is done sooner; tables, summary and report are unchanged",
+    )
+
+
 def film_name(value: str, default: str) -> Path:
     """Return the path of a film.
 
@@ -155,6 +165,12 @@ def executor_option(parser: argparse.ArgumentParser) -> None:
     """Add --executor, a cluster or a custom executor for independent runs."""
     text = "dask://host:port, or module:factory for an executor of your own"
     parser.add_argument("--executor", metavar="WHERE", help=text)
+
+
+def time_limit_option(parser: argparse.ArgumentParser) -> None:
+    """Add --time-limit, the maximum computing time of a run."""
+    text = "maximum computing time of a run [s]; a run that takes longer is a failed row"
+    parser.add_argument("--time-limit", type=float, metavar="S", help=text)
 
 
 def _jobs(text: str) -> int:

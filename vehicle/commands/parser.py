@@ -44,7 +44,7 @@ class _Version(argparse.Action):
     """Print the version of the package, which is read only here."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> None:
-        from vehicle.commands.version import package_version
+        from vehicle.version import package_version
 
         print(package_version())
         parser.exit()

@@ -24,6 +24,8 @@ def parser() -> Parser:
         metavar="RUN",
         help="folder of a run, as runs/low; the others are compared with the first",
     )
+    parser.add_argument("--author", default="", metavar="NAME", help="author in the head of the report")
+    parser.add_argument("--project", default="", metavar="NAME", help="project in the head of the report")
     output_options(
         parser, None, default=f"{NAME} in the folder of a single run, and here for several,", metavar="FILE.html"
     )
@@ -40,7 +42,12 @@ def _job(options: argparse.Namespace) -> None:
     default = options.runs[0] / NAME if len(options.runs) == 1 else Path(NAME)
     path = output_file_of(options, default, ending=".html")
     write_report(
-        options.runs, path, force=options.force, progress=ProgressLine("report    ", enabled=not options.quiet)
+        options.runs,
+        path,
+        force=options.force,
+        progress=ProgressLine("report    ", enabled=not options.quiet),
+        author=options.author,
+        project=options.project,
     )
     if not options.quiet:
         print(f"report      {path}, {path.stat().st_size / 1e6:.1f} MB")

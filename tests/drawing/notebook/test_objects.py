@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from vehicle.drawing.notebook.picture import HEIGHT, WIDTH, line_drawing
-from vehicle.errors import MissingPartError
+from vehicle.errors import ConfigurationError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.seat_value import weighted_rms_of
 
 
 @pytest.fixture(scope="module")
@@ -86,3 +87,22 @@ def test_a_drawn_line_keeps_its_extremes():
     points = np.array([pair.split(",") for pair in line.attrib["points"].split()], dtype=float)
     assert len(points) <= 2 * WIDTH and points[:, 1].min() == 16.0 and points[:, 1].max() == HEIGHT - 20
     assert line_drawing(along[:1], values[:1], "a") == ""
+
+
+def test_spectra_and_both_comfort_values(run):
+    spectra = run.psd(["seat_rail_acc_z", "engine_acc_z"])
+    assert repr(spectra).startswith("Spectra of seat_rail_acc_z, seat_rail_acc_z Wk, engine_acc_z: ")
+    assert spectra.plot()._repr_png_().startswith(b"\x89PNG")
+    assert list(spectra.to_dataframe().columns.levels[0]) == ["engine_acc_z", "seat_rail_acc_z", "seat_rail_acc_z Wk"]
+    assert ElementTree.fromstring(spectra._repr_html_()).find(".//table") is not None
+    comfort = run.comfort()
+    weighted = weighted_rms_of(run.recording.timestep, run.at("seat_rail"))
+    assert comfort.weighted.overall == weighted[3] and comfort.weighted.z == weighted[2]
+    assert repr(comfort).startswith("comfort 0.") and "ISO 2631-1" in repr(comfort)
+
+
+def test_files_of_a_run(run, tmp_path):
+    assert (run.save(tmp_path / "run") / "summary.json").exists()
+    assert "<h1>Car on the shaker" in run.report(tmp_path / "run.html").read_text(encoding="utf-8")
+    with pytest.raises(ConfigurationError, match="stores no poses; run the car with engine='mujoco'"):
+        run.film(tmp_path / "run.mp4")

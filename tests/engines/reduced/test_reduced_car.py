@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.periodic import multisine, periodic_response
+from tests.periodic import multisine
 from tests.validation import validated
 from vehicle.engines.reduced import group_run
 from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -82,9 +83,10 @@ def test_frf_from_time_and_from_the_matrices(damper, friction):
     run = car.run(signal, engine="reduced")
     channels = ["knuckle_fr_acc_z", "seat_rail_acc_x", "engine_acc_z"]
     responses = np.array([run[name][:-1] for name in channels])
-    frequency, measured = periodic_response(1e-3, run["plate_fr_displacement"][:-1], responses, period=4.0)
-    exact = car.matrix_frf(channels, frequency, damper=damper, wheel="fr")
-    error = np.sqrt(np.sum(np.abs(measured - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
+    (frf,) = whole_record_responses(1e-3, run["plate_fr_displacement"][None, :-1], responses)
+    assert "periodic" in frf.estimator
+    exact = car.matrix_frf(channels, frf.frequency, damper=damper, wheel="fr")
+    error = np.sqrt(np.sum(np.abs(frf.response - exact) ** 2, axis=1) / np.sum(np.abs(exact) ** 2, axis=1))
     # Sliding is linear and exact at any step; a stuck damper creeps with a constant force over each step.
     # The rest of the transient after three periods is about 1e-3 for the least damped modes.
     assert np.max(error) < (2e-3 if damper == "sliding" else 4e-3), error

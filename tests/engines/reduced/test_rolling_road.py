@@ -17,7 +17,8 @@ from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, Side, drive
+from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.signals.excitation.iso_road import IsoRoad, Side, drive
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]

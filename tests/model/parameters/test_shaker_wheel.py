@@ -22,12 +22,17 @@ def test_the_source_s_right_wheel_is_the_driver_s_left():
 
 
 def test_the_key_has_a_default_and_is_checked():
-    vehicle = load_vehicle(Path("focus_road"))
-    assert vehicle.shaker_wheel == "fr" and vehicle.wheel_text("rr") == "rear right wheel (rr)"
+    assert load_vehicle(Path("sedan")).shaker_wheel == "fr"
+    assert load_vehicle(Path("sedan")).wheel_text("rr") == "rear right wheel (rr)"
     with pytest.raises(ConfigurationError, match=r"rr \(rear_right\): focus does not have it"):
         load_vehicle(None, ["shaker_wheel=rr"])
     with pytest.raises(ConfigurationError, match="shaker_wheel: found 'left'"):
         load_vehicle(None, ["shaker_wheel=left"])
+
+
+def test_both_cars_of_the_source_are_shaken_at_the_same_wheel():
+    cars = [load_vehicle(Path(name)) for name in ("focus", "focus_road")]
+    assert [(car.shaker_wheel, car.shaker_wheel_in_source) for car in cars] == [("fl", "right")] * 2
 
 
 def test_linear_responses_are_to_the_plate_of_the_key():

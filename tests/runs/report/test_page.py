@@ -14,6 +14,7 @@ import pytest
 
 from vehicle.commands.body import main as body_command
 from vehicle.commands.report import main
+from vehicle.commands.shaker import main as shaker
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
 from vehicle.runs.report.comfort_class import reactions
@@ -62,9 +63,19 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     assert outline.links and all(link.startswith(("#", "data:")) for link in outline.links)
     assert not re.search(r"url\((?!#)|@import|<iframe|<object|<base", reported.text)
     assert "default-src 'none'" in unescape(reported.text)
-    wanted = ["Findings", "Car, signal, engine", "Frequency responses", "Time histories", "Dampers", "Comfort", "Modes"]
+    wanted = [
+        "Result",
+        "Findings",
+        "Car, signal, engine",
+        "Frequency responses",
+        "Time histories",
+        "Dampers",
+        "Comfort",
+        "Spectra",
+        "Modes",
+    ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
-    assert reported.text.count("<svg ") == 2
+    assert reported.text.count("<svg ") == 4  # bands of the comfort, FRFs, time histories, spectra
 
 
 def test_the_page_says_the_numbers_of_the_summary(reported, outline):
@@ -102,9 +113,28 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
-    assert found.titles[0] == "Comparison of the runs" and found.titles[-1] == "Modes"
+    assert found.titles[:2] == ["Result", "Comparison of the runs"] and found.titles[-1] == "Modes"
     assert "None: the cars have equal parameters." in found.words
     assert page.stat().st_size < 6e6
+
+
+def test_first_screen_answers_the_question(reported, tmp_path):
+    """What changed, by how much, and where in frequency: a car with half the spring stiffness on the same signal."""
+    summary = json.loads((reported.folder / "summary.json").read_text())
+    softer = tmp_path / "softer"
+    words = ["--input", summary["command"].split(" --input ")[1].split(" --output")[0].strip("'")]
+    words += ["--output", str(softer), "--engine", "reduced", "--quiet", "--set", "damper.coulomb_friction=100"]
+    assert shaker([*words, "--set", "main_spring.stiffness=12000"]) == 0
+    page = tmp_path / "two.html"
+    assert main([str(reported.folder), str(softer), "--output", str(page), "--author", "A. <b>", "--project", "P"]) == 0
+    text = unescape(page.read_text(encoding="utf-8"))
+    assert "P, A. <b>, 20" in text and "vehicle-on-shaker 0." in text
+    summaries = [json.loads((folder / "summary.json").read_text()) for folder in (reported.folder, softer)]
+    before, after = (each["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] for each in summaries)
+    answer = re.search(r'<p class="answer">([^<]*)', text)[1]
+    word = "rises" if after > before else "falls"
+    assert "main_spring.stiffness from " in answer and f"{word} from {before:.3g} to {after:.3g} m/s²" in answer
+    assert re.search(r"% of the change \(mean square\) arise along [xyz] between [\d.]+ and [\d.]+ Hz", answer)
 
 
 @pytest.mark.parametrize(

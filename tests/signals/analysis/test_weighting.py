@@ -53,7 +53,7 @@ def test_factors_are_those_printed_in_the_standard(name):
     found = 1000 * weighting(name).spectrum_factor([f for f, _ in pairs])
     # three printed digits are up to 0.5 % of a value, two (1.55 and below are left) a little more; the issue asks 1 %
     validated(
-        "Comfort, ISO 2631", f"factors of {name} times 1000 at the one-third octaves", found,
+        "Comfort, ISO 2631", f"factors of {name} times 1000 at the third octaves", found,
         np.array([p for _, p in pairs]), rel=0.007,
         source="standard: ISO 2631-1:1997, {}".format("table 4" if name in ("Wc", "We", "Wj") else "table 3"),
     )  # fmt: skip
@@ -215,6 +215,6 @@ def test_a_filter_has_settled_when_its_step_response_stays_below_a_hundredth(nam
     response = np.abs(weighted_record(1 / rate, np.ones(80 * rate), name))
     last = np.flatnonzero(response[: 79 * rate] > 0.01 * response.max())[-1] / rate  # the end rings for Wj
     assert 0.5 * curve.settling_s < last < curve.settling_s
-    # the range of the standard, and one over the width of its lowest one-third octave
+    # the range of the standard, and one over the width of its lowest third octave
     assert curve.lowest_frequency == pytest.approx(0.1 if name == "Wf" else 0.5)
     assert curve.shortest_record_s == pytest.approx(43.2 if name == "Wf" else 8.64, rel=1e-3)

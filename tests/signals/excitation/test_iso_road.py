@@ -8,7 +8,8 @@ from scipy.integrate import quad
 
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, Side, drive, isotropic_coherence
+from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.signals.excitation.iso_road import IsoRoad, Side, drive, isotropic_coherence
 
 SPEED, TRACK = 20.0, 1.49
 

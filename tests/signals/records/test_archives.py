@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.excitation.iso_road import CLASSES, IsoRoad, drive
+from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.signals.excitation.iso_road import IsoRoad, drive
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records import npz_format
 from vehicle.signals.records.reader import read_record

@@ -39,4 +39,5 @@ def run_card(run: Any) -> str:
         value = run.comfort()
         low, high = value.band
         rows["comfort, seat rail"] = f"{value.overall:.3g} m/s² unweighted RMS, {low:g} to {high:g} Hz; lower is better"
+        rows["weighted, seat rail"] = f"{value.weighted.overall:.3g} m/s² weighted RMS, ISO 2631-1; lower is better"
     return card("Run", rows, line_drawing(run.time, run[shown], f"{shown} over {run.signal.duration:g} s"))

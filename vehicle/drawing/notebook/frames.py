@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import MissingPartError
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 
 
 def _library(name: str, purpose: str) -> Any:
@@ -77,5 +79,24 @@ def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
         columns[name, "coherence"] = response.coherence[row]
         columns[name, "random error"] = response.random_error[row]
     frame = pandas.DataFrame(columns, index=pandas.Index(response.frequency, name="frequency [Hz]"))
+    frame.columns.names = ["channel", "value"]
+    return frame
+
+
+def spectra_frame(spectra: Sequence[ChannelSpectrum]) -> Any:
+    """Return a pandas table of density and cumulative RMS of each channel over frequency [Hz].
+
+    Args:
+        spectra: spectra with equal lines.
+
+    Raises:
+        MissingPartError: pandas is not installed.
+    """
+    pandas = _library("pandas", "to_dataframe")
+    columns = {}
+    for spectrum in spectra:
+        columns[spectrum.label, f"density [({spectrum.unit})^2/Hz]"] = spectrum.density
+        columns[spectrum.label, f"cumulative RMS [{spectrum.unit}]"] = spectrum.cumulative_rms
+    frame = pandas.DataFrame(columns, index=pandas.Index(spectra[0].frequency, name="frequency [Hz]"))
     frame.columns.names = ["channel", "value"]
     return frame

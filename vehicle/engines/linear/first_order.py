@@ -7,6 +7,7 @@ Maxwell branches. Cyclic coordinates are the last of the free motions, and their
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -89,12 +90,26 @@ def free_basis(system: LinearSystem, *, stuck: bool = False) -> Array:
         rows = np.vstack([rows, system.slide_rows])
     if system.cyclic:
         cyclic, others = list(system.cyclic), np.setdiff1d(np.arange(system.size), system.cyclic)
-        others_basis = np.asarray(scipy.linalg.null_space(rows[:, others])) if len(rows) else np.eye(len(others))
+        others_basis = _null_space(rows[:, others])
         basis = np.zeros((system.size, others_basis.shape[1] + len(cyclic)))
         basis[others, : others_basis.shape[1]] = others_basis
         basis[cyclic, others_basis.shape[1] + np.arange(len(cyclic))] = 1.0
         return basis
-    return np.eye(system.size) if len(rows) == 0 else np.asarray(scipy.linalg.null_space(rows))
+    return _null_space(rows)
+
+
+def _null_space(rows: Array) -> Array:
+    """Return an orthonormal basis of the solutions of rows u = 0; (n, m), not writeable."""
+    return _null_space_of(rows.tobytes(), *rows.shape)
+
+
+# The cars of a sweep have the same joints.
+@lru_cache(maxsize=8)
+def _null_space_of(entries: bytes, count: int, size: int) -> Array:
+    rows = np.frombuffer(entries).reshape(count, size)
+    basis = np.asarray(scipy.linalg.null_space(rows)) if count else np.eye(size)
+    basis.flags.writeable = False
+    return basis
 
 
 def first_order(system: LinearSystem, *, stuck: bool = False) -> FirstOrder:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.inertia_tensor import about_cog, inertia_tensor, nearest_physical
-from vehicle.model.parameters.body import MOMENTS, TrimmedBody
+from vehicle.model.parameters.body import MOMENTS, BodyInertia, TrimmedBody
+from vehicle.model.parameters.hardpoints import Point
 
 Vector = npt.NDArray[np.float64]
 
@@ -39,11 +41,7 @@ class RigidBody:
 
 def cog_inertia(body: TrimmedBody) -> Vector:
     """Return the inertia tensor of a body about its CoG, without repair [kg m2], products negative; shape (3, 3)."""
-    inertia = body.inertia
-    tensor = inertia_tensor(
-        ixx=inertia.ixx, iyy=inertia.iyy, izz=inertia.izz, ixy=inertia.ixy, izx=inertia.izx, iyz=inertia.iyz
-    )
-    return tensor if inertia.about == "cog" else about_cog(tensor, body.mass, body.cog)
+    return _cog_inertia(body.mass, body.cog, body.inertia)
 
 
 def rigid_body(body: TrimmedBody) -> RigidBody:
@@ -58,26 +56,44 @@ def rigid_body(body: TrimmedBody) -> RigidBody:
     Raises:
         ConfigurationError: the repair would exceed `LARGEST_REPAIR`.
     """
-    tensor, inertia = cog_inertia(body), body.inertia
+    return _rigid_body(body.mass, body.cog, body.inertia)
+
+
+def _cog_inertia(mass: float, cog: Point, inertia: BodyInertia) -> Vector:
+    """Return the inertia tensor about the CoG; see `cog_inertia`."""
+    tensor = inertia_tensor(
+        ixx=inertia.ixx, iyy=inertia.iyy, izz=inertia.izz, ixy=inertia.ixy, izx=inertia.izx, iyz=inertia.iyz
+    )
+    return tensor if inertia.about == "cog" else about_cog(tensor, mass, cog)
+
+
+# Thousands of cars of a sweep have the same body.
+@lru_cache(maxsize=16)
+def _rigid_body(mass: float, cog: Point, inertia: BodyInertia) -> RigidBody:
+    """Return the mass properties of a body; see `rigid_body`."""
+    tensor = _cog_inertia(mass, cog, inertia)
     low, middle, high = (float(moment) for moment in np.linalg.eigvalsh(tensor))
     # With low >= middle + high all moments are negative, and no physical tensor is near.
     near = middle + high > low
-    change = float(np.abs(nearest_physical(tensor).change).max()) if near else np.inf
-    if not change <= LARGEST_REPAIR * high:
+    physical = nearest_physical(tensor) if near else None
+    change = np.inf if physical is None else float(np.abs(physical.change).max())
+    if physical is None or not change <= LARGEST_REPAIR * high:
         values = ", ".join(f"{name} {getattr(inertia, name):g}" for name in MOMENTS)
         raise ConfigurationError(
             f"body.inertia: {values} kg m2 about the {'CoG' if inertia.about == 'cog' else 'origin'}: with body.mass "
-            f"({body.mass:g} kg) at body.cog {list(body.cog)} the principal moments about the centre of gravity are "
+            f"({mass:g} kg) at body.cog {list(cog)} the principal moments about the centre of gravity are "
             f"{low:.4g}, {middle:.4g} and {high:.4g} kg m2. For a real body, all must be positive, and the sum of the "
             f"two smaller at least the largest ({low + middle:.4g} >= {high:.4g}?). The nearest physical tensor "
             f"differs by {change:.3g} kg m2, must be at most {LARGEST_REPAIR * high:.3g} ({LARGEST_REPAIR:.0%} of the "
             "largest). Check signs and digits, and body.inertia.about (cog or origin): moments about the origin "
             "include m r2 of the centre of gravity"
         )
-    physical = nearest_physical(tensor)
+    position = np.array(cog)
+    for array in (position, physical.inertia):
+        array.flags.writeable = False
     return RigidBody(
-        mass=body.mass,
-        cog=np.array(body.cog),
+        mass=mass,
+        cog=position,
         inertia=physical.inertia,
         report=physical.describe(),
         repaired=physical.repaired,

@@ -7,7 +7,6 @@ again from a file in which only numbers of the element differ.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeVar
@@ -27,17 +26,25 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.rigid_part import Part
-from vehicle.model.parameters.toml_file import build
+from vehicle.model.parameters.toml_file import build, type_hints
 from vehicle.names import AXES
 
 T = TypeVar("T")
 
 
-def _numbers(parameters: type[T], file: Mapping[str, Any], tables: tuple[str, ...]) -> T:
-    """Build the numbers of an element from its tables in a vehicle file."""
-    merged = {key: value for path in tables for key, value in value_at(file, path).items()}
-    fields = {entry.name for entry in dataclasses.fields(parameters)}  # type: ignore[arg-type]
-    return build(parameters, {key: value for key, value in merged.items() if key in fields}, tables[-1])
+Built = dict[tuple[type, tuple[str, ...]], Any]
+"""Numbers by their class and their tables: elements on both sides of a car share them."""
+
+
+def _numbers(parameters: type[T], file: Mapping[str, Any], tables: tuple[str, ...], built: Built) -> T:
+    """Build the numbers of an element from its tables in a vehicle file, once for all elements with these tables."""
+    key = parameters, tables
+    if key not in built:
+        merged = {name: value for path in tables for name, value in value_at(file, path).items()}
+        fields = type_hints(parameters)  # type: ignore[arg-type]
+        built[key] = build(parameters, {name: value for name, value in merged.items() if name in fields}, tables[-1])
+    numbers: T = built[key]
+    return numbers
 
 
 class _WithLaw:
@@ -47,9 +54,9 @@ class _WithLaw:
     law: Any
     tables: tuple[str, ...]
 
-    def with_numbers(self, file: Mapping[str, Any]) -> Self:
-        """Return the element with the numbers of another vehicle file."""
-        return replace(self, law=_numbers(type(self.law), file, self.tables))  # type: ignore[type-var]
+    def with_numbers(self, file: Mapping[str, Any], built: Built) -> Self:
+        """Return the element with the numbers of another vehicle file; `built` are those of earlier elements."""
+        return replace(self, law=_numbers(type(self.law), file, self.tables, built))  # type: ignore[type-var]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,11 +102,11 @@ class PlacedPart:
     center: Point = field(default=(0.0, 0.0, 0.0), compare=False)
     rod: tuple[Point, Point] | None = field(default=None, compare=False)
 
-    def with_numbers(self, file: Mapping[str, Any]) -> PlacedPart:
-        """Return the part with the numbers of another vehicle file."""
+    def with_numbers(self, file: Mapping[str, Any], built: Built) -> PlacedPart:
+        """Return the part with the numbers of another vehicle file; `built` are those of earlier elements."""
         if isinstance(self.numbers, Load):
-            return replace(self, numbers=_numbers(Load, file, self.tables))
-        numbers = _numbers(Part, file, self.tables)
+            return replace(self, numbers=_numbers(Load, file, self.tables, built))
+        numbers = _numbers(Part, file, self.tables, built)
         numbers = numbers if self.rod is None else numbers.as_rod(*self.rod)
         return replace(self, numbers=numbers, cog=numbers.cog(self.center, self.side))
 
@@ -294,13 +301,13 @@ class Composition:
             ConfigurationError: a value is wrong.
         """
         updated: dict[str, Any] = {}
-        left = set(changed)
+        left, built = set(changed), Built()
         for group in WITH_NUMBERS:
             before: tuple[Any, ...] = getattr(self, group)
             chosen = {element.path for element in before if element.tables and element.path in changed}
             if chosen:
                 updated[group] = tuple(
-                    element.with_numbers(file) if element.path in chosen else element for element in before
+                    element.with_numbers(file, built) if element.path in chosen else element for element in before
                 )
                 left -= chosen
         return None if left else replace(self, **updated)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import re
 import typing
@@ -75,11 +76,14 @@ def validate(instance: Any, where: str = "") -> None:
         ConfigurationError: a value is wrong; with field, value, unit and range.
     """
     prefix = where or type(instance).__name__
-    for entry in dataclasses.fields(instance):
-        if "unit" not in entry.metadata:
-            continue
-        value = getattr(instance, entry.name)
-        check(f"{prefix}.{entry.name}", value, entry.metadata)
+    for name, metadata in _described(type(instance)):  # type: ignore[arg-type]
+        check(f"{prefix}.{name}", getattr(instance, name), metadata)
+
+
+@functools.cache
+def _described(parameters: type[Any]) -> tuple[tuple[str, Mapping[str, Any]], ...]:
+    """Return name and description of the fields of a class; cached, because a sweep needs them thousands of times."""
+    return tuple((entry.name, entry.metadata) for entry in dataclasses.fields(parameters) if "unit" in entry.metadata)
 
 
 class Validated:

@@ -69,8 +69,7 @@ def build(cls: type[T], table: Mapping[str, Any], path: str = "") -> T:
     Raises:
         ConfigurationError: an unknown name (with the nearest known name), a missing name or a wrong type.
     """
-    hints = type_hints(cls)  # type: ignore[arg-type]
-    fields = {entry.name: entry for entry in dataclasses.fields(cls)}  # type: ignore[arg-type]
+    hints, fields = type_hints(cls), _fields(cls)  # type: ignore[arg-type]
     for key in table:
         if key not in fields:
             near = f"the nearest known name is {nearest(key, fields)}"
@@ -184,10 +183,9 @@ def convert(hint: Any, value: Any, path: str) -> Any:
     """
     if hint is float:
         return _number(value, path)
-    origin = typing.get_origin(hint)
+    origin, arguments = _parts_of(hint)
     if origin in (types.UnionType, typing.Union):
-        inner = [option for option in typing.get_args(hint) if option is not type(None)]
-        return convert(inner[0], value, path)
+        return convert(next(option for option in arguments if option is not type(None)), value, path)
     if hint is dict and not isinstance(value, Mapping):
         raise ConfigurationError(f"{path}: found {value!r}, must be a table")
     if dataclasses.is_dataclass(hint):
@@ -197,14 +195,14 @@ def convert(hint: Any, value: Any, path: str) -> Any:
     if origin is not None and isinstance(origin, type) and issubclass(origin, Mapping):
         if not isinstance(value, Mapping):
             raise ConfigurationError(f"{path}: found {value!r}, must be a table")
-        inner_hint = typing.get_args(hint)[1]
+        inner_hint = arguments[1]
         return types.MappingProxyType(
             {key: convert(inner_hint, member, _join(path, key)) for key, member in value.items()}
         )
     if origin is tuple:
         if not isinstance(value, list | tuple):
             raise ConfigurationError(f"{path}: found {value!r}, must be a list")
-        return tuple(convert(typing.get_args(hint)[0], item, path) for item in value)
+        return tuple(convert(arguments[0], item, path) for item in value)
     if hint is str and not isinstance(value, str):
         raise ConfigurationError(f"{path}: found {value!r}, must be a text in quotes")
     if hint is bool and not isinstance(value, bool):
@@ -236,6 +234,18 @@ def copy_table(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def _join(path: str, name: str) -> str:
     return f"{path}.{name}" if path else name
+
+
+@functools.cache
+def _fields(parameters: type[Any]) -> dict[str, dataclasses.Field[Any]]:
+    """Return the fields of a dataclass by name; cached, see `type_hints`."""
+    return {entry.name: entry for entry in dataclasses.fields(parameters)}
+
+
+@functools.cache
+def _parts_of(hint: Any) -> tuple[Any, tuple[Any, ...]]:
+    """Return origin and arguments of a generic type; cached, see `type_hints`."""
+    return typing.get_origin(hint), typing.get_args(hint)
 
 
 @functools.cache

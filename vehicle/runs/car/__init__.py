@@ -5,6 +5,7 @@ run = car.run("low.csv")              # or Road("C", speed=80), or a Signal
 run["seat_rail_acc_z"]                # time history
 run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
 run.comfort().overall                 # comfort value of Bommer 2006: unweighted RMS of the seat rail, 2 to 50 Hz
+run.comfort().weighted.overall        # weighted RMS of ISO 2631-1
 """
 
 from vehicle.runs.car.car import Car

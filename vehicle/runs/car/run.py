@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,15 +16,20 @@ from vehicle.drawing.notebook.cards import run_card
 from vehicle.drawing.notebook.frames import recording_dataset, recording_frame
 from vehicle.drawing.notebook.picture import Picture, picture
 from vehicle.drawing.notebook.run_response import RunResponse, of_wheel, require_moving, responses
+from vehicle.drawing.notebook.run_spectra import RunSpectra, with_display
 from vehicle.engines.simulation.recording import Recording
+from vehicle.engines.simulation.stepping import Progress
+from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
-from vehicle.signals.analysis.comfort import COMFORT_BAND, ComfortValue, comfort_value
+from vehicle.signals.analysis.comfort import COMFORT_BAND, PointComfort, WeightedComfort, comfort_value
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import first_slip, slip_share
 from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.records.record_spectra import recorded_spectra
 
 if TYPE_CHECKING:
+    from vehicle.drawing.rendering.shot import Take
     from vehicle.runs.car.car import Car
 
 FRF_BAND = (1.0, 50.0)
@@ -108,8 +115,8 @@ class Run:
 
         Args:
             channels: names; all acceleration channels by default.
-            window: length of averaged Hann windows [s] for the H1 estimate; by default the local rational model of
-                the whole record, without leakage.
+            window: length of averaged Hann windows [s] for the H1 estimate; by default the whole record is evaluated
+                without leakage, by its periods if the input is periodic, else by local rational models.
             wheel: wheel of the plate; `self.wheel` by default.
 
         Returns:
@@ -135,27 +142,93 @@ class Run:
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
         return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
 
-    def comfort(self, point: str = "seat_rail") -> ComfortValue:
-        """Return the unweighted RMS acceleration of an output point in 2 to 50 Hz, per axis and overall [m/s2].
+    def comfort(self, point: str = "seat_rail") -> PointComfort:
+        """Return the comfort at an output point over the evaluated span, per axis and overall [m/s2].
 
-        Only the evaluated span is used. The band ends at the end of the band of the signal; see `ComfortValue.band`.
-        For weighted values see `weighted_comfort`.
+        Unweighted RMS in 2 to 50 Hz (Bommer 2006); the band ends at the end of the band of the signal. `weighted`
+        contains the weighted RMS as on a seat (ISO 2631-1: Wk, Wd). Both are the values of the report, of
+        `summary.json` and of the table of a sweep.
         """
-        return comfort_value(self.recording.timestep, self.at(point), self.signal.band(COMFORT_BAND))
+        step = self.recording.timestep
+        value = comfort_value(step, self.at(point), self.signal.band(COMFORT_BAND))
+        axes = [self.recording[f"{point}_acc_{axis}"] for axis in AXES]
+        x, y, z, overall = weighted_rms_of(step, axes, skip=self.skip)
+        weighted = WeightedComfort(x=float(x), y=float(y), z=float(z), overall=float(overall))
+        return PointComfort(x=value.x, y=value.y, z=value.z, overall=value.overall, band=value.band, weighted=weighted)
+
+    def psd(self, channels: Sequence[str] | None = None) -> RunSpectra:
+        """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.
+
+        Args:
+            channels: names of acceleration channels; by default seat rail, a seat with an occupant, and the vertical
+                motion of the knuckles.
+
+        Raises:
+            ConfigurationError: a channel is not recorded or no acceleration.
+            DataError: the record is too short.
+        """
+        vehicle = self.car.vehicle
+        source = Path(self.signal.source).name
+        span = f"{self.skip:g} to {self.time[-1]:g} s"
+        return with_display(
+            recorded_spectra(
+                self.recording,
+                source,
+                f"{source}, {span}, tyres {vehicle.driving.words}",
+                channels,
+                begin=self.skip,
+                seated=vehicle.seated,
+                road=self.road,
+            )
+        )
+
+    def save(self, folder: Path | str, *, force: bool = False) -> Path:
+        """Write the folder of the command `shaker`; see `vehicle.save_run`."""
+        path: Path = _public("save_run")(self, folder, force=force)
+        return path
+
+    def report(self, file: Path | str, *, force: bool = False) -> Path:
+        """Write the report of the run as one HTML file; `vehicle.write_report` compares several saved runs.
+
+        Args:
+            file: name of the report, with the ending .html.
+            force: replace a report that was written there before.
+
+        Raises:
+            VehicleError: see `vehicle.save_run` and `vehicle.write_report`.
+        """
+        with TemporaryDirectory() as folder:
+            saved = self.save(Path(folder) / Path(file).stem)
+            path: Path = _public("write_report")([saved], file, force=force)
+        return path
+
+    def film(self, file: Path | str, take: Take | None = None, *, progress: Progress | None = None) -> Path:
+        """Write a film of a run of the MuJoCo engine as MP4.
+
+        Args:
+            file: name of the film, with the ending .mp4.
+            take: start, length, slow motion and exaggeration (`vehicle.drawing.rendering.shot.Take`); by default ten
+                seconds with the largest motion.
+            progress: called with the finished fraction.
+
+        Raises:
+            ConfigurationError: the reduced engine made the run, which stores no poses.
+            MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
+            OutputError: the file cannot be written.
+        """
+        from vehicle.drawing.rendering.film import film
+        from vehicle.drawing.rendering.shot import Take
+
+        if not self.recording.poses.size:
+            raise ConfigurationError(f"{file}: the reduced engine stores no poses; run the car with engine='mujoco'")
+        speed = (self.road or {}).get("speed_kmh")
+        driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None)
+        film(self, Path(file), take or driven, progress=progress)
+        return Path(file)
 
     def at(self, point: str) -> list[npt.NDArray[np.float64]]:
         """Return the accelerations of an output point in x, y, z [m/s2] over the evaluated span."""
         return [self.recording[f"{point}_acc_{axis}"][self.evaluated] for axis in AXES]
-
-    def weighted_comfort(self, point: str = "seat_rail") -> dict[str, float]:
-        """Return the weighted RMS acceleration [m/s2] of an output point, as on a seat (ISO 2631-1: Wk, Wd).
-
-        Returns:
-            By axis, and "overall", their vector sum: the value of the report and of `summary.json`.
-        """
-        axes = [self.recording[f"{point}_acc_{axis}"] for axis in AXES]
-        weighted = weighted_rms_of(self.recording.timestep, axes, skip=self.skip)
-        return dict(zip((*AXES, "overall"), weighted, strict=True))
 
     def slip_share(self, wheel: str, velocity: float | None = None) -> float:
         """Return the share of the evaluated span with |damper velocity| above a limit [m/s]; default: slip velocity."""
@@ -171,3 +244,8 @@ class Run:
         self.car.vehicle.require_wheels((wheel,))
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return self.recording[f"damper_{wheel}_velocity"], limit
+
+
+def _public(name: str) -> Any:
+    """Return a function of `vehicle` that stands above this room; it is imported at the call, not with this module."""
+    return getattr(import_module("vehicle"), name)

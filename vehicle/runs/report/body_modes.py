@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.engines.linear.mode_participation import participation
+from vehicle.names import point_words
 from vehicle.runs.report.finished_run import FinishedRun
 
 PLACE, WORDS = "seat_rail_acc_z", "seat rail"
@@ -40,7 +41,7 @@ def body_modes(run: FinishedRun, state: str) -> list[str]:
         if modes := [i - 6 for i in order if i >= 6]:
             drivers = result.attachment_shares[modes[0], :, at]
             largest = [int(i) for i in np.argsort(-np.abs(drivers))[:2]]
-            names = ", ".join(f"{result.attachments[i]} {_percent(drivers[i])}" for i in largest)
+            names = ", ".join(f"{point_words(result.attachments[i])} {_percent(drivers[i])}" for i in largest)
             text += f"; the largest excitation of mode {modes[0] + 1} is at {names}"
         sentences.append(f"{text}.")
     note = f"Shares in phase with the sum, of the linear car with dampers {state}; "

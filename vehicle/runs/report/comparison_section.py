@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.drawing.rendering.several_runs import plot_densities, plot_responses, shared_channels
+from vehicle.drawing.rendering.several_runs import plot_responses, shared_channels
 from vehicle.names import wheel_words
 from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
+from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
 
 
@@ -56,7 +57,7 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
 
 
 def _overlay(runs: Sequence[FinishedRun]) -> Markup:
-    """Return the plot of all FRFs, or of the densities if fewer than two runs have FRFs."""
+    """Return the plot of all FRFs, and the spectra of all runs."""
     parts = []
     with_response = {run.name: (run, run.response) for run in runs if run.response is not None}
     wheel = runs[0].wheel
@@ -69,10 +70,5 @@ def _overlay(runs: Sequence[FinishedRun]) -> Markup:
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
         title = "Vertical frequency responses of all runs"
         parts.append(drawing(lambda path: plot_responses(path, with_response, channels, title), title))
-    elif len(runs) > len(with_response):
-        channels = shared_channels(runs, wanted)
-        title = "Power spectral densities of the vertical acceleration"
-        parts.append(
-            drawing(lambda path: plot_densities(path, {run.name: run for run in runs}, channels, title), title)
-        )
+    parts.append(spectra(runs))
     return joined(parts)

@@ -9,7 +9,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
-from vehicle.names import side_of
+from vehicle.names import point_words, side_of
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.signals.records.run_summary import slip_shares
 
@@ -108,8 +108,9 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
         peaks = summary["peaks"].get(channel)
         if peaks:
             top = max(peaks, key=lambda peak: peak["magnitude"])
-            figures[f"{channel}: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
-            figures[f"{channel}: its height", "m/s² per m"] = top["magnitude"]
+            point = point_words(channel.removesuffix("_acc_z"))
+            figures[f"{point}, z: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
+            figures[f"{point}, z: its height", "m/s² per m"] = top["magnitude"]
     return figures
 
 

@@ -6,10 +6,12 @@ import base64
 import dataclasses
 import hashlib
 from collections.abc import Callable, Sequence
+from datetime import date
 from importlib import resources
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
+from vehicle.runs.report.answer import answer
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import beside_each_other
 from vehicle.runs.report.finished_run import FinishedRun
@@ -18,14 +20,23 @@ from vehicle.runs.report.measured_section import measured
 from vehicle.runs.report.modes_section import HIGHEST_MODE, STATES, Modes, car_modes_of, moving_modes
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
+from vehicle.runs.report.spectra_section import spectra
+from vehicle.version import package_version
 
 
-def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] | None = None) -> str:
+def report_page(
+    runs: Sequence[FinishedRun],
+    progress: Callable[[float], None] | None = None,
+    *,
+    author: str = "",
+    project: str = "",
+) -> str:
     """Return the report of one run, or the comparison of several runs.
 
     Args:
         runs: finished runs.
         progress: called with the finished fraction.
+        author, project: names in the head of the page; may be empty.
 
     Returns:
         A whole HTML document.
@@ -38,7 +49,7 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
     runs = _told_apart(runs)
     done = progress or (lambda fraction: None)
     modes = [{state: run.car.modes(state, HIGHEST_MODE) for state in STATES} for run in runs]
-    parts: list[tuple[str, str, Markup]] = []
+    parts: list[tuple[str, str, Markup]] = [("Result", "result", answer(runs, modes))]
     if len(runs) > 1:
         parts += [("Comparison of the runs", "comparison", beside_each_other(runs))]
     done(0.1)
@@ -52,7 +63,8 @@ def report_page(runs: Sequence[FinishedRun], progress: Callable[[float], None] |
         done(0.1 + 0.8 * (index + 1) / len(runs))
     before = next((i for i, (_, anchor, _) in enumerate(parts) if anchor == "tables"), len(parts))
     parts.insert(before, ("Modes", "modes", moving_modes(runs, modes)))
-    page = _document(runs, parts, as_json(car_modes_of(runs, modes)))
+    head = ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
+    page = _document(runs, parts, as_json(car_modes_of(runs, modes)), head)
     done(1.0)
     return page
 
@@ -72,14 +84,11 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
     parts = [
         ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
-        (
-            "Frequency responses" if run.response is not None else "Densities",
-            "responses",
-            responses(run, modes),
-        ),
+        *([("Frequency responses", "responses", responses(run, modes))] if run.responses else []),
         ("Time histories", "time", sections.time_figure(run)),
         ("Dampers", "dampers", sections.dampers(run)),
         ("Comfort", "comfort", comfort(run)),
+        ("Spectra", "spectra", spectra([run])),
     ]
     for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
         if content is not None:
@@ -91,7 +100,7 @@ def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
     ]
 
 
-def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Markup]], data: str) -> str:
+def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Markup]], data: str, head: str) -> str:
     """Return the HTML document; its security policy blocks external content and scripts."""
     names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
     title = f"Car on the shaker: {names}"
@@ -102,6 +111,7 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
     )
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
+    top = tag("header", tag("h1", title), tag("p", captions, class_="about"), tag("p", head, class_="about"))
     pages = {"responses", "time", "modes", "comparison"}
     body = joined(
         section(name, anchor, content, class_="page" if anchor in pages else None) for name, anchor, content in parts
@@ -113,7 +123,7 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<link rel="icon" href="data:,">\n'
         f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
-        f"{tag('header', tag('h1', title), tag('p', captions, class_='about'))}\n{links}\n<main>{body}</main>\n"
+        f"{top}\n{links}\n<main>{body}</main>\n"
         f'<script type="application/json" id="mode-data">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n'
     )
 

@@ -17,6 +17,8 @@ def write_report(
     *,
     force: bool = False,
     progress: Callable[[float], None] | None = None,
+    author: str = "",
+    project: str = "",
 ) -> Path:
     """Write the report of one run, or of several compared with the first, as one HTML file.
 
@@ -25,6 +27,7 @@ def write_report(
         file: name of the report, with the ending .html.
         force: replace a report that was written there before.
         progress: called with the finished fraction.
+        author, project: names in the head of the page; may be empty.
 
     Returns:
         The file.
@@ -40,5 +43,6 @@ def write_report(
         raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
     path = Path(file)
     check_file(path, ending=".html", force=force)
-    write_text(path, report_page([read_run(folder) for folder in folders], progress))
+    page = report_page([read_run(folder) for folder in folders], progress, author=author, project=project)
+    write_text(path, page)
     return path

@@ -1,11 +1,10 @@
-"""Section of the report with FRFs and resonances, or with the densities of a run without FRFs."""
+"""Section of the report with FRFs and resonances."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from vehicle.drawing.rendering.frf_plot import plot_frfs
-from vehicle.drawing.rendering.several_runs import plot_densities, shared_channels
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.findings import main_points, nearest_mode, of_plate
 from vehicle.runs.report.finished_run import FinishedRun
@@ -14,27 +13,19 @@ from vehicle.runs.report.svg_figure import drawing
 
 
 def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
-    """Return FRFs and tables of resonances; for a run without FRFs the acceleration densities."""
-    if run.responses:
-        return joined(
-            [
-                drawing(
-                    lambda path: plot_frfs(path, run, run.responses, run.caption), f"Frequency responses of {run.name}"
-                ),
-                tag(
-                    "p",
-                    "The band around a line is the 95 % region of the random error. Low coherence means a nonlinear "
-                    "response, or too little excitation by the plate.",
-                ),
-                tag("div", *_resonances(run, modes), class_="columns"),
-            ]
-        )
-    channels = shared_channels([run], ROAD_CHANNELS)
-    return drawing(
-        lambda path: plot_densities(
-            path, {run.name: run}, channels, "Power spectral densities of the vertical acceleration", run.caption
-        ),
-        f"Power spectral densities of {run.name}",
+    """Return FRFs and tables of resonances of a run with FRFs."""
+    return joined(
+        [
+            drawing(
+                lambda path: plot_frfs(path, run, run.responses, run.caption), f"Frequency responses of {run.name}"
+            ),
+            tag(
+                "p",
+                "The band around a line is the 95 % region of the random error. Low coherence means a nonlinear "
+                "response, or too little excitation by the plate.",
+            ),
+            tag("div", *_resonances(run, modes), class_="columns"),
+        ]
     )
 
 
@@ -57,10 +48,3 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
 
 STRONGEST = 6
 """Maximum number of resonances of an output point in a table."""
-
-ROAD_CHANNELS = {
-    "knuckle_fr_acc_z": "knuckle, front right",
-    "engine_acc_z": "engine",
-    "seat_rail_acc_z": "seat rail",
-}
-"""Channels in the plot of densities, and their labels."""

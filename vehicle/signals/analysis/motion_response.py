@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf import FrequencyResponse, frequency_responses
-from vehicle.signals.analysis.local_rational import local_rational_responses
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 
 Real = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ def motion_responses(
         names: names of the responses in messages.
         band: lowest and highest frequency [Hz].
         rounding: rounding step of each input.
-        window: length [s] of the Hann windows of H1; None for local rational models on the whole record.
+        window: length [s] of the Hann windows of H1; None for `whole_record_responses`.
 
     Returns:
         FRFs of each motion, in the order of the first inputs.
@@ -76,7 +76,7 @@ def motion_responses(
         )
     else:
         steps = [rounding[key] for key in first]
-        responses_to = local_rational_responses(
+        responses_to = whole_record_responses(
             time_step, driven, responses, band=band, names=names, input_names=driven_labels, rounding=steps
         )
     return tuple(

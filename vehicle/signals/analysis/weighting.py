@@ -62,7 +62,7 @@ class Weighting:
 
     @property
     def shortest_record_s(self) -> float:
-        """Minimum length that resolves the one-third octave at the lowest frequency [s]: 8.6 s (Wf: 43.2 s).
+        """Minimum length that resolves the third octave at the lowest frequency [s]: 8.6 s (Wf: 43.2 s).
 
         T B >= 1 with B = (2^(1/6) - 2^(-1/6)) f = 0.2316 f: 4.3 periods of f. In a shorter record, the lowest band
         is not resolved; for a good estimate ISO 2631-1:1997, 5.5, requires B T = 25 (108 s at 1 Hz).
@@ -96,7 +96,7 @@ class Weighting:
         return np.asarray(self.gain * factor, dtype=np.complex128)
 
     def spectrum_factor(self, frequency: ArrayLike) -> NDArray[np.float64]:
-        """Return |H| [-], the factor of a one-third octave RMS value; a density is multiplied by its square."""
+        """Return |H| [-], the factor of a third octave RMS value; a density is multiplied by its square."""
         return np.asarray(np.abs(self.transfer_function(frequency)))
 
 

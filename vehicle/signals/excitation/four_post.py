@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.iso_road import CLASSES, REFERENCE
+from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 

@@ -23,17 +23,12 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError
+from vehicle.signals.analysis.road_level import REFERENCE
 from vehicle.signals.excitation.band import positive, samples_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 COPIES = 8
 """Number of arrays of the length of the record in memory, without the signals: lines, transform, its plan."""
-
-CLASSES = {letter: 16e-6 * 4.0**number for number, letter in enumerate("ABCDEFGH")}
-"""G(n0) [m3] of each class, the geometric mean of its range. Source: ISO 8608, table of road classes."""
-
-REFERENCE = 0.1
-"""Reference wavenumber n0 of the level of a class [cycles/m] (ISO 8608)."""
 
 LOWEST, HIGHEST = 0.011, 10.0
 """Minimum and maximum wavenumber [cycles/m]: lower end of ISO 8608 (waves of 91 m); waves of 0.1 m, a contact patch."""

@@ -8,7 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.iso_road import CLASSES, RISE_S, IsoRoad, Side, drive
+from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
 from vehicle.signals.excitation.plausibility import acceleration_events
 from vehicle.signals.excitation.signal import Signal

@@ -12,7 +12,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.signals.analysis.frf import frequency_responses
-from vehicle.signals.analysis.local_rational import local_rational_responses
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.signals.records.frf_file import FrfData
@@ -67,7 +67,7 @@ def read_measured(
         choice: model channel name to channel of the file, and preprocessing; by default all channels whose names are
             in `model_channels`.
         inverted: names of channels whose sign is inverted.
-        window: length of Hann windows for estimated responses [s]; by default the local rational model.
+        window: length of Hann windows for estimated responses [s]; by default the whole record is evaluated.
         measurement: contents of the file, if already read.
 
     Returns:
@@ -199,7 +199,7 @@ def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData,
 
     Args:
         record: time histories under model channel names.
-        window: length of Hann windows [s]; None for the local rational model on the whole record.
+        window: length of Hann windows [s]; None for `whole_record_responses`.
 
     Returns:
         Frequency responses and name of the estimator; None without a moving plate or without accelerations.
@@ -217,7 +217,7 @@ def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData,
     highest = min(FRF_BAND[1], record.usable)
     options = {"band": (FRF_BAND[0], highest), "names": names, "input_names": plates}
     if window is None:
-        estimate = local_rational_responses(record.step, inputs, outputs, **options)[0]  # type: ignore[arg-type]
+        estimate = whole_record_responses(record.step, inputs, outputs, **options)[0]  # type: ignore[arg-type]
     else:
         estimate = frequency_responses(record.step, inputs, outputs, window_s=window, **options)[0]  # type: ignore[arg-type]
     data = FrfData(

@@ -97,6 +97,20 @@ def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'"
     return Record(time=uniform, channels=channels, units=units, notices=(*table.notices, *notices))
 
 
+def time_file(run: Path) -> Path:
+    """Return the file of the time histories of a run: the path itself, or `time.npz` or `time.csv` in a folder.
+
+    Raises:
+        ConfigurationError: the folder contains neither.
+    """
+    if not run.is_dir():
+        return run
+    for name in ("time.npz", "time.csv"):
+        if (run / name).is_file():
+            return run / name
+    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
+
+
 def extra(package: str, name: str, purpose: str) -> Any:
     """Import an optional library.
 

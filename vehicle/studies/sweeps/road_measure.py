@@ -98,7 +98,7 @@ class RoadMeasure:
         """Return the values of r runs; (r,) each."""
         # The last sample of the record is the first sample of the next period.
         record = slice(round(self.lead * RATE_HZ) + 1, None)
-        comfort = comfort_values(runs.timestep, runs.stacked(*SEAT_RAIL)[:, :, record])
+        comfort = comfort_values(runs.timestep, np.stack([runs[name][:, record] for name in SEAT_RAIL], axis=1))
         right, left = (runs[name][:, record] for name in self._dampers)
         load = runs[f"tyre_{self.wheel}_force_z"][:, record]
         limit = runs.slip_velocity

@@ -12,7 +12,7 @@ from vehicle.names import CORNERS, is_wheel
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf import FrequencyResponse, frequency_response
 from vehicle.signals.analysis.frf_agreement import log_ratio
-from vehicle.signals.analysis.local_rational import local_rational_response
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.frf_file import FrfData
 
@@ -40,8 +40,8 @@ class FrfTarget:
         signal: plate displacement of the measurement; None compares the linear car with stuck dampers, whose FRFs
             follow from its matrices.
         averages: number of independent averages of data without a random error; 1 if unknown.
-        window: length of the Hann windows of the H1 estimator [s]; None for the local rational model on the whole
-            record. FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
+        window: length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record.
+            FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
         wheel: wheel on the driven plate.
     """
 
@@ -106,7 +106,7 @@ class FrfTarget:
         if self.window is None:
             band = (float(frequency[0]), float(frequency[-1]))
             spacing = float(np.min(np.diff(frequency)))
-            estimate = local_rational_response(step, plate, responses, band=band, resolution=spacing)
+            (estimate,) = whole_record_responses(step, plate[None], responses, band=band, resolution=spacing)
         else:
             margin = 1.0 / self.window
             band = (max(float(frequency[0]) - margin, margin), float(frequency[-1]) + margin)

@@ -66,7 +66,7 @@ def measured_responses(
         fitted: channels to be fitted; by default all of `channels`.
         band: lowest and highest frequency [Hz].
         spacing: minimum distance of the frequencies [Hz].
-        window: length of the Hann windows of the estimate [s]; by default the local rational model.
+        window: length of the Hann windows of the estimate [s]; by default the whole record is evaluated.
 
     Returns:
         The target; without a measured coherence all lines have equal weights.

@@ -15,7 +15,7 @@ def package_version() -> str:
     The metadata of an editable installation can be outdated, so `pyproject.toml` of a clone has priority.
     """
     try:
-        project = tomllib.loads(Path(__file__).parents[2].joinpath("pyproject.toml").read_text(encoding="utf-8"))
+        project = tomllib.loads(Path(__file__).parents[1].joinpath("pyproject.toml").read_text(encoding="utf-8"))
         if project["project"]["name"] == PROJECT:
             return f"{PROJECT} {project['project']['version']}"
     except (OSError, ValueError, KeyError):

@@ -1,0 +1,113 @@
+"""`python -m vehicle spectra`: spectra of the accelerations of runs, and the level of their roads after ISO 8608."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_files_of
+from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.signals.records.record_spectra import RecordSpectra
+
+TABLES = ("spectra.csv", "third_octaves.csv")
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    parser = command_parser(
+        "spectra", "Densities, third octaves and cumulative RMS of accelerations of runs, weighted and not."
+    )
+    parser.add_argument(
+        "runs", nargs="+", type=Path, metavar="RUN", help="folder of a run, or a file of time histories; drawn together"
+    )
+    parser.add_argument(
+        "--channels",
+        metavar="NAME,...",
+        help="acceleration channels; by default seat rail, seat, and the vertical motion of the knuckles",
+    )
+    parser.add_argument(
+        "--range",
+        default="0.5:80",
+        metavar="HZ:HZ",
+        help="lowest and highest frequency [Hz]; %(default)s by default, the range of ISO 2631-1 for comfort",
+    )
+    output_options(parser, None, default="in the folder of a single run, and in runs/spectra for several,")
+    message_options(parser, quiet=True)
+    return parser
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.drawing.rendering.spectra_plot import plot_road_levels, plot_spectra
+    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.runs.output.spectra_files import picture_columns, spectra_text, third_octaves_text
+    from vehicle.signals.records.reader import time_file
+    from vehicle.signals.records.record_spectra import record_spectra
+
+    asked = [name.strip() for name in options.channels.split(",")] if options.channels else None
+    low, _, high = options.range.partition(":")
+    try:
+        frequency_range = float(low), float(high)
+    except ValueError:
+        raise ConfigurationError(f"--range {options.range}: must be HZ:HZ, as 0.5:80") from None
+    runs = [record_spectra(path, asked, frequency_range) for path in options.runs]
+    names = _unique([run.name for run in runs])
+    by_name = dict(zip(names, runs, strict=True))
+    pictures = picture_columns(runs)
+    levels = {
+        f"{name}, {wheel}" if len(run.road_levels) > 1 else name: level
+        for name, run in by_name.items()
+        for wheel, level in run.road_levels.items()
+    }
+    files = [*TABLES, *pictures, *(["spectra_road.png"] if levels else [])]
+    folder = time_file(options.runs[0]).parent if len(runs) == 1 else Path("runs/spectra")
+    paths = dict(zip(files, output_files_of(options, folder, files), strict=True))
+    caption = "; ".join(f"{name}: {run.caption}" if len(runs) > 1 else run.caption for name, run in by_name.items())
+    write_text(paths["spectra.csv"], spectra_text(by_name, caption))
+    write_text(paths["third_octaves.csv"], third_octaves_text(by_name, caption))
+    spectra = {name: run.channels for name, run in by_name.items()}
+    for file, (title, columns) in pictures.items():
+        plot = partial(plot_spectra, runs=spectra, channels=columns, title=title, caption=caption)
+        write_whole(paths[file], plot)
+    if levels:
+        title = "Roads against the classes of ISO 8608"
+        write_whole(paths["spectra_road.png"], lambda path: plot_road_levels(path, levels, title, caption))
+    if not options.quiet:
+        print("\n".join(_report(by_name)))
+        print(f"files: {paths['spectra.csv'].parent}: {', '.join(path.name for path in paths.values())}")
+
+
+def _unique(names: Sequence[str]) -> list[str]:
+    """Return the names with a number after those that occur twice."""
+    return [f"{name} ({index + 1})" if names.count(name) > 1 else name for index, name in enumerate(names)]
+
+
+def _report(runs: Mapping[str, RecordSpectra]) -> list[str]:
+    """Return the printed table: RMS over the range, highest third octave, and half of the mean square."""
+    width = max(len(spectrum.label) for run in runs.values() for spectrum in run.channels)
+    lines = []
+    for name, run in runs.items():
+        lines.append(f"{name}: {run.caption}")
+        lines.append(f"{'channel':<{width}}{'RMS [m/s2]':>12}  highest third octave   half of the mean square below")
+        for spectrum in run.channels:
+            band, rms = run.highest_band(spectrum)
+            half = run.median_frequency(spectrum)
+            lines.append(
+                f"{spectrum.label:<{width}}{spectrum.rms:>12.4g}  {f'{band:g} Hz, {rms:.3g} m/s2':<27}{half:>7.2f} Hz"
+            )
+        lines += [
+            f"road under {wheel}: G(0.1 cycles/m) = {1e6 * level.reference_density:.3g}e-6 m3, class {level.letter} of "
+            f"ISO 8608 (fitted from {level.fitted[0]:.3g} to {level.fitted[1]:.3g} cycles/m)"
+            for wheel, level in run.road_levels.items()
+        ]
+    return lines
+
+
+main = command(parser, _job)

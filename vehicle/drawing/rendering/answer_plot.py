@@ -1,0 +1,109 @@
+"""Pictures on the first screen of a report: changes of comfort and loads, and bands of the weighted acceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
+
+Vector = npt.NDArray[np.float64]
+
+BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
+"""Colours of a change: smaller vibration or load, larger vibration or load, no rating."""
+
+FULL_PANEL = 1.0
+"""Smallest change [%] that fills a panel; a smaller change is a short bar."""
+
+TICKS = (0.5, 1, 2, 5, 10, 20, 50)
+"""Frequency axis [Hz]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """Change of a number between two runs.
+
+    Attributes:
+        label: number in words, with values and unit.
+        percent: change [%].
+        rated: True if a smaller number is better; False for a number without a rating.
+    """
+
+    label: str
+    percent: float
+    rated: bool = True
+
+
+def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str, caption: str) -> None:
+    """Plot the changes of numbers as bars, a panel for each run.
+
+    Args:
+        path: PNG or SVG file.
+        changes: name of the run to its changes against the first run; equal labels in all runs are not needed.
+        title, caption: above and below the figure.
+    """
+    highest = max(len(of_run) for of_run in changes.values())
+    with saved_figure(path, (9.5 if len(changes) == 1 else 13.0, 1.3 + 0.27 * highest), title, caption) as figure:
+        axes = figure.subplots(1, len(changes), squeeze=False)[0]
+        for axis, (name, of_run) in zip(axes, changes.items(), strict=True):
+            percent = np.array([change.percent for change in of_run])
+            colours = [NEUTRAL if not change.rated else BETTER if change.percent < 0.0 else WORSE for change in of_run]
+            rows = np.arange(len(of_run))
+            axis.barh(rows, percent, color=colours, height=0.7)
+            axis.axvline(0.0, color=INK, linewidth=0.8)
+            axis.set_yticks(rows, [change.label for change in of_run])
+            axis.invert_yaxis()
+            room = 0.22 * max(float(np.max(np.abs(percent), initial=0.0)), FULL_PANEL)
+            axis.set_xlim(
+                min(float(percent.min()), -0.2 * FULL_PANEL) - room, max(float(percent.max()), 0.2 * FULL_PANEL) + room
+            )
+            for row, value in zip(rows, percent, strict=True):
+                text, side = f"{value:+.1f} %" if abs(value) < 10.0 else f"{value:+.0f} %", 4 if value >= 0.0 else -4
+                axis.annotate(
+                    text, (value, row), (side, 0), textcoords="offset points", va="center",
+                    ha="left" if value >= 0.0 else "right", fontsize=8,
+                )  # fmt: skip
+            axis.set_xlabel("change [%]")
+            if len(changes) > 1:
+                axis.set_title(name)
+            axis.grid(visible=False, axis="y")
+
+
+def plot_bands(
+    path: Path, edges: Vector, powers: Mapping[str, Vector], modes: Mapping[str, float], caption: str
+) -> None:
+    """Plot the share of each third octave in the weighted acceleration, stacked by axis.
+
+    Args:
+        path: PNG or SVG file.
+        edges: edges of the bands [Hz]; (b + 1,).
+        powers: axis to the mean square in each band [(m/s2)^2]; (b,).
+        modes: short names of natural modes to their frequencies [Hz], marked above the bars.
+        caption: below the figure.
+    """
+    total = sum(float(power.sum()) for power in powers.values()) or 1.0
+    title = "Share of the frequencies in the weighted acceleration of the seat rail"
+    with saved_figure(path, (9.5, 3.6), title, caption) as figure:
+        axis: Any = figure.subplots()
+        base = np.zeros(edges.size - 1)
+        for (name, power), colour in zip(powers.items(), COLOURS, strict=False):
+            share = 100.0 * power / total
+            axis.bar(edges[:-1], share, np.diff(edges), base, align="edge", color=colour, label=name, linewidth=0.0)
+            base = base + share
+        highest = float(base.max())
+        for name, frequency in modes.items():
+            band = int(np.clip(np.searchsorted(edges, frequency) - 1, 0, base.size - 1))
+            axis.annotate(
+                name, (frequency, base[band]), (0, 12), textcoords="offset points", ha="center", fontsize=8, color=INK,
+                arrowprops={"arrowstyle": "-", "color": INK, "linewidth": 0.7},
+            )  # fmt: skip
+        axis.set(xscale="log", xlim=(edges[0], edges[-1]), ylim=(0.0, 1.25 * highest if highest else 1.0))
+        axis.set(xlabel="frequency [Hz]", ylabel="share of the weighted\nmean square [%]")
+        axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+        axis.set_xticks([], minor=True)
+        axis.legend(title="axis", loc="upper left")

@@ -1,0 +1,119 @@
+"""Pictures of spectra of one or several runs over each other: accelerations, and roads against ISO 8608."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.drawing.rendering.figure import COLOURS, INK, LINES, power_of_ten, saved_figure
+from vehicle.signals.analysis.road_level import CLASS_WIDTH, CLASSES, REFERENCE, RoadLevel
+from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
+
+TICKS = (0.5, 1, 2, 5, 10, 20, 50)
+"""Frequency axis [Hz]."""
+
+WEIGHTED = {"alpha": 0.55, "linewidth": 2.2}
+"""Style of weighted spectra, in the colour of the run."""
+
+SHOWN = (0.01, 5.0)
+"""Wavenumbers of a picture of roads [cycles/m]."""
+
+DECADES = 1e5
+"""Range of a density in a picture, from its largest value."""
+
+ROWS = ("density [(m/s²)²/Hz]", "RMS in third\noctaves [m/s²]", "cumulative RMS\n[m/s²]")
+
+
+def plot_spectra(
+    path: Path,
+    runs: Mapping[str, Sequence[ChannelSpectrum]],
+    channels: Mapping[str, str],
+    title: str = "",
+    caption: str = "",
+) -> None:
+    """Plot densities, third octaves and cumulative RMS of accelerations, a column for each channel.
+
+    All columns have the same scale, so that channels and runs can be compared.
+
+    Args:
+        path: PNG or SVG file.
+        runs: name to the spectra of a run.
+        channels: channel that is in all runs to the title of its column.
+        title, caption: above and below the figure.
+    """
+    with saved_figure(path, (max(7.0, 1.6 + 3.8 * len(channels)), 8.6), title, caption) as figure:
+        axes = figure.subplots(
+            3, len(channels), sharex=True, sharey="row", height_ratios=(2.0, 1.3, 1.3), squeeze=False
+        )
+        largest = 0.0
+        for column, (channel, heading) in zip(axes.T, channels.items(), strict=True):
+            for (name, spectra), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
+                for spectrum in (spectrum for spectrum in spectra if spectrum.name == channel):
+                    label = f"{name}, weighted" if spectrum.weighting else name
+                    style = {"color": colour, "linestyle": line, **(WEIGHTED if spectrum.weighting else {})}
+                    bands = spectrum.third_octaves
+                    column[0].plot(spectrum.frequency, spectrum.density, **style)
+                    column[1].stairs(bands.rms, bands.edges, baseline=None, **style)
+                    column[2].plot(spectrum.frequency, spectrum.cumulative_rms, label=label, **style)
+                    largest = max(largest, float(spectrum.density.max()))
+            column[0].set_title(heading)
+            column[2].set_xlabel("frequency [Hz]")
+        axes[2, 0].legend(loc="upper left")
+        for row, label in zip(axes, ROWS, strict=True):
+            row[0].set_ylabel(label)
+        for axis in axes[0]:
+            axis.set(xscale="log", yscale="log", xlim=_limits(runs))
+        if largest > 0.0:
+            axes[0, 0].set_ylim(largest / DECADES, 2.0 * largest)
+        axes[0, 0].yaxis.set_major_formatter(power_of_ten)
+        for row in axes[1:]:
+            row[0].set_ylim(bottom=0.0)
+        for axis in axes[2]:
+            axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+            axis.set_xticks([], minor=True)
+            axis.set_xlim(_limits(runs))
+        figure.align_ylabels(axes[:, 0])
+
+
+def _limits(runs: Mapping[str, Sequence[ChannelSpectrum]]) -> tuple[float, float]:
+    """Return the range of the frequency axis [Hz]: the bands of all runs."""
+    edges = [spectrum.third_octaves.edges[[0, -1]] for spectra in runs.values() for spectrum in spectra]
+    return float(min(pair[0] for pair in edges)), float(max(pair[1] for pair in edges))
+
+
+def plot_road_levels(path: Path, levels: Mapping[str, RoadLevel], title: str = "", caption: str = "") -> None:
+    """Plot the density of road heights over the wavenumber, with the limits of the classes of ISO 8608.
+
+    Args:
+        path: PNG or SVG file.
+        levels: name of the run and wheel to the level of its road.
+        title, caption: above and below the figure.
+    """
+    with saved_figure(path, (7.6, 6.0), title, caption) as figure:
+        axis: Any = figure.subplots()
+        for (name, level), colour, line in zip(levels.items(), cycle(COLOURS), cycle(LINES), strict=False):
+            label = f"{name}: class {level.letter}, G(n₀) = {1e6 * level.reference_density:.3g}·10⁻⁶ m³"
+            axis.plot(level.wavenumber, level.density, color=colour, linestyle=line, label=label)
+        shown = np.array(SHOWN)
+        fitted = np.concatenate(
+            [
+                level.density[(level.wavenumber >= level.fitted[0]) & (level.wavenumber <= level.fitted[1])]
+                for level in levels.values()
+            ]
+        )
+        low, high = 0.1 * float(fitted.min()), 10.0 * float(fitted.max())
+        for letter, mean in CLASSES.items():
+            limit = CLASS_WIDTH * mean * (shown / REFERENCE) ** -2.0
+            axis.plot(shown, limit, color=INK, linewidth=0.7, linestyle=":")
+            middle = mean * (shown[0] / REFERENCE) ** -2.0
+            if low < middle < high:
+                axis.annotate(f" {letter}", (shown[0], middle), fontsize=9, color=INK, va="center")
+        axis.set(xscale="log", yscale="log", xlabel="wavenumber [cycles/m]", ylabel="density of the height [m³]")
+        axis.set(xlim=SHOWN, ylim=(low, high))
+        axis.xaxis.set_major_formatter(power_of_ten)
+        axis.yaxis.set_major_formatter(power_of_ten)
+        axis.legend(loc="upper right")

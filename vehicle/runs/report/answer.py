@@ -1,0 +1,266 @@
+"""First screen of a report: comfort of a run, or effect of a change, as two statements and a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
+from vehicle.engines.linear.car_modes import Mode
+from vehicle.engines.linear.mode_shares import mode_shares
+from vehicle.names import point_words, side_of
+from vehicle.runs.report.comfort_class import reactions
+from vehicle.runs.report.differences import changed_parameters, difference
+from vehicle.runs.report.findings import damper_state
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.main_band import POINT, MainBand, main_band, weighted_bands
+from vehicle.runs.report.markup import Markup, joined, number, tag
+from vehicle.runs.report.svg_figure import drawing
+from vehicle.signals.analysis.modal_assurance import mac
+from vehicle.signals.records.record_spectra import evaluated_from
+from vehicle.signals.records.run_summary import slip_shares
+
+Modes = Mapping[str, Sequence[Mode]]
+
+MOST_CHANGES = 2
+"""Maximum number of listed parameters; more are counted."""
+
+SMALL = 0.05
+"""Change [%] below which comfort counts as unchanged."""
+
+LINES = 400
+"""Spectral lines of a band that determine the shares of the modes."""
+
+
+def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
+    """Return two statements and a picture of a single run, or of each further run against the first.
+
+    Args:
+        runs: finished runs.
+        modes: modes of the car of each run, for dampers "stuck" and "sliding".
+    """
+    if len(runs) == 1:
+        return _of_one(runs[0], modes[0])
+    first, parts = runs[0], []
+    for run, run_modes in zip(runs[1:], modes[1:], strict=True):
+        texts = [text for text in (_effect(first, run), _reason(first, run, modes[0], run_modes)) if text]
+        parts.append(tag("p", " ".join(texts), class_="answer"))
+    changes = {f"{run.name} against {first.name}": _changes(first, run) for run in runs[1:]}
+    if all(changes.values()):
+        title = f"Change of comfort and loads from {first.name}"
+        caption = "green: smaller vibration or load, red: larger; grey: no rating"
+        parts.append(drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title))
+    return joined(parts)
+
+
+def _of_one(run: FinishedRun, modes: Modes) -> Markup:
+    spectra = weighted_bands(run)
+    comfort = run.summary["comfort"].get("seat_rail")
+    if comfort is None or not spectra:
+        return tag("p", "The run records no acceleration of the seat rail, so there is no comfort value.")
+    total = comfort["iso2631"]["vector_sum"]["weighted_rms"]
+    texts = [
+        f"On {_input_words(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
+        f"{number(total)} m/s²: {' to '.join(reactions(total))} (ISO 2631-1; lower is better)."
+    ]
+    band = main_band(spectra)
+    marked: dict[str, float] = {}
+    if band is not None:
+        mode = strongest(run, band, modes.get(damper_state(run), ()))
+        there = "" if mode is None else f"; the largest part there is the mode of {mode_words(mode)}"
+        texts.append(
+            f"{100.0 * band.share:.0f} % of it (mean square) are along {band.axis} between {band.low:.3g} and "
+            f"{band.high:.3g} Hz{there}. {_damper_words(run)}"
+        )
+        marked = {} if mode is None else {f"{mode.frequency:.1f} Hz\n{_motion(mode)}": mode.frequency}
+    bands = next(iter(spectra.values())).third_octaves
+    powers = {axis: np.nan_to_num(spectrum.third_octaves.rms) ** 2 for axis, spectrum in spectra.items()}
+    figure = drawing(
+        partial(plot_bands, edges=bands.edges, powers=powers, modes=marked, caption=run.caption),
+        f"Frequencies of the weighted acceleration of {run.name}",
+    )
+    return joined([tag("p", " ".join(texts), class_="answer"), figure])
+
+
+def _input_words(run: FinishedRun) -> str:
+    """Return the input in words: the road with its speed, or the file with its level."""
+    road, excitation = run.summary["input"].get("road") or {}, run.summary["input"]
+    if road.get("class"):
+        return f"a road of class {road['class']} at {road['speed_kmh']:g} km/h"
+    if road.get("speed_kmh"):
+        return f"{road.get('profile') or Path(excitation['file']).name} at {road['speed_kmh']:g} km/h"
+    return f"{Path(excitation['file']).name} (RMS {1e3 * excitation['rms_m']:.3g} mm)"
+
+
+def _damper_words(run: FinishedRun) -> str:
+    shares = slip_shares(run.summary)
+    if not shares:
+        return ""
+    low, high = (100.0 * limit(shares.values()) for limit in (min, max))
+    if high < 1.0:
+        return "The dampers stick throughout: they dissipate almost no energy."
+    return f"The dampers slip for {low:.2g} to {high:.2g} % of the time."
+
+
+def mode_words(mode: Mode) -> str:
+    """Return a mode in words: frequency, largest motion, damping ratio."""
+    return f"{mode.frequency:.1f} Hz ({_motion(mode)}, damping ratio {100.0 * mode.damping_ratio:.2g} %)"
+
+
+def _motion(mode: Mode) -> str:
+    """Return the motion with the largest kinetic energy of a mode."""
+    return next(iter(mode.motions), mode.description)
+
+
+def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode | None:
+    """Return the mode of the linear car with the largest share in a band of the seat rail.
+
+    The plates move as in the run, at the lines of its periodogram; the state of the dampers is that of most of the run.
+
+    Args:
+        run: the run.
+        band: axis and frequencies.
+        modes: modes of the car in this state of the dampers.
+
+    Returns:
+        The mode; None if no plate is recorded or no mode has a positive share.
+    """
+    recording, wheels = run.recording, run.car.matrices.system.inputs
+    names = [f"plate_{wheel}_displacement" for wheel in wheels]
+    if not all(name in recording.channels for name in names):
+        return None
+    first = round(evaluated_from(run.summary) / recording.timestep)
+    plates = [recording.channels[name][first:] for name in names]
+    frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
+    inside = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
+    inside = inside[:: max(inside.size // LINES, 1)]
+    spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
+    stuck = damper_state(run) == "stuck"
+    result = mode_shares(run.car.matrices.system, f"{POINT}_acc_{band.axis}", frequency[inside], spectra, stuck=stuck)
+    at = int(np.argmax(result.shares))
+    if result.shares[at] <= 0.0:
+        return None
+    natural = abs(result.poles[at]) / (2.0 * np.pi)
+    mode = min(modes, key=lambda other: abs(other.frequency - natural), default=None)
+    same = mode is not None and abs(mode.frequency - natural) < 1e-6 * natural
+    return mode if same else None
+
+
+def _effect(first: FinishedRun, run: FinishedRun) -> str:
+    """Return a statement on the change of comfort."""
+    values = [each.summary["comfort"].get("seat_rail") for each in (first, run)]
+    if values[0] is None or values[1] is None:
+        return ""
+    before, after = (value["iso2631"]["vector_sum"]["weighted_rms"] for value in values if value is not None)
+    percent = 100.0 * (after / before - 1.0) if before else 0.0
+    if abs(percent) < SMALL:
+        effect = f"stays at {number(before)} m/s²"
+    else:
+        word, rating = ("rises", "worse") if percent > 0.0 else ("falls", "better")
+        effect = f"{word} from {number(before)} to {number(after)} m/s² ({difference(before, after)}, {rating})"
+    return f"{_what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
+
+
+def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
+    """Return what differs between two runs: car, parameters, input, engine."""
+    parts = []
+    vehicles = [first.car.vehicle, run.car.vehicle]
+    changed = [row for row in changed_parameters(vehicles) if row[0] != "name"]
+    if len(changed) > MOST_CHANGES and vehicles[0].name != vehicles[1].name:
+        parts.append(f"car {vehicles[1].name} instead of {vehicles[0].name}")
+    elif len(changed) > MOST_CHANGES:
+        parts.append(f"{len(changed)} parameters, among them {changed[0][0]}")
+    else:
+        parts += [f"{path} from {old} to {new} {unit}".rstrip() for path, unit, (old, new) in changed]
+    inputs = [_input_words(each) for each in (first, run)]
+    if inputs[0] != inputs[1]:
+        parts.append(f"{inputs[1]} instead of {inputs[0]}")
+    engines = [each.summary["solver"]["engine"] for each in (first, run)]
+    if engines[0] != engines[1]:
+        parts.append(f"engine {engines[1]} instead of {engines[0]}")
+    text = ", ".join(parts) or "No difference of car, input or engine"
+    return f"{run.name} against {first.name}, {text}" if parts else text
+
+
+def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes) -> str:
+    """Return a statement on band, mode and dampers of the change; empty without a change."""
+    spectra = [weighted_bands(each) for each in (first, run)]
+    if not all(spectra):
+        return ""
+    band = main_band(spectra[1], spectra[0])
+    if band is None:
+        return ""
+    text = (
+        f"{100.0 * band.share:.0f} % of the change (mean square) arise along {band.axis} between {band.low:.3g} and "
+        f"{band.high:.3g} Hz"
+    )
+    mode = strongest(first, band, modes.get(damper_state(first), ()))
+    if mode is not None:
+        text += f", where the largest part was the mode of {mode_words(mode)}"
+        other = counterpart(mode, run_modes.get(damper_state(run), ()))
+        if other is not None and mode_words(other) != mode_words(mode):
+            text += (
+                f"; it is then at {other.frequency:.1f} Hz with a damping ratio of {100.0 * other.damping_ratio:.2g} %"
+            )
+    slips = [slip_shares(each.summary) for each in (first, run)]
+    if list(slips[0]) == list(slips[1]) and slips[0]:
+        wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
+        before, after = (100.0 * slip[wheel] for slip in slips)
+        if abs(after - before) >= 1.0:
+            text += (
+                f"; the {side_of(wheel, slips[0])} damper slips for {after:.3g} % of the time instead of {before:.3g} %"
+            )
+    return f"{text}."
+
+
+def counterpart(mode: Mode, modes: Sequence[Mode]) -> Mode | None:
+    """Return the mode of another car with the most similar shape (MAC above 0.5), or None."""
+    same = [other for other in modes if other.shape.shape == mode.shape.shape]
+    if not same:
+        return None
+    criteria = mac([mode.shape], [other.shape for other in same])[0]
+    return same[int(np.argmax(criteria))] if criteria.max() > 0.5 else None
+
+
+def _changes(first: FinishedRun, run: FinishedRun) -> list[Change]:
+    """Return the changes of comfort and loads, in the order of the report."""
+    before, after = _numbers(first), _numbers(run)
+    changes = []
+    for label, (old, unit, rated) in before.items():
+        if label in after and old > 0.0:
+            new = after[label][0]
+            values = f"{number(old)} → {number(new)} {unit}".rstrip()
+            changes.append(Change(f"{label}, {values}", 100.0 * (new / old - 1.0), rated))
+    return changes
+
+
+def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
+    """Return label to value, unit, and whether a smaller value is better."""
+    numbers: dict[str, tuple[float, str, bool]] = {}
+    for point, value in run.summary["comfort"].items():
+        if point == "seat" and run.summary.get("seat_value") is None:
+            continue  # a point of the body, see the notices
+        iso, label = value["iso2631"], point_words(point)
+        numbers[f"{label}, weighted"] = iso["vector_sum"]["weighted_rms"], "m/s²", True
+        numbers |= {f"{label}, weighted, {axis}": (iso[axis]["weighted_rms"], "m/s²", True) for axis in "xyz"}
+        numbers[f"{label}, VDV"] = iso["vector_sum"]["vdv"], "m/s¹·⁷⁵", True
+        if value["rms_2_50_hz"]["overall"] is not None:
+            numbers[f"{label}, unweighted, 2 to 50 Hz"] = value["rms_2_50_hz"]["overall"], "m/s²", True
+    seat = run.summary.get("seat_value")
+    if seat is not None:
+        numbers["SEAT value"] = seat["rms"], "", True
+    first = round((run.summary.get("evaluated_s") or [0.0])[0] / run.recording.timestep)
+    wheels = run.car.vehicle.wheels
+    for wheel in wheels:
+        force = run.recording.channels.get(f"tyre_{wheel}_force_z")
+        if force is not None:
+            variation = float(np.std(force[first:]))
+            numbers[f"tyre load {side_of(wheel, wheels)}, RMS of its variation"] = variation, "N", True
+    for wheel in slip_shares(run.summary):
+        force = run.recording.channels.get(f"damper_{wheel}_force")
+        if force is not None:
+            numbers[f"damper force {side_of(wheel, wheels)}, largest"] = float(np.abs(force[first:]).max()), "N", True
+    return numbers

@@ -1,0 +1,177 @@
+"""Spectra of the evaluated part of a run or of a file of time histories, with the level of its road."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.road_level import RoadLevel, road_level
+from vehicle.signals.analysis.vibration_spectra import RANGE, ChannelSpectrum, vibration_spectra
+from vehicle.signals.records.reader import read_columns, time_file
+from vehicle.signals.records.run_summary import RunSummary, available_summary
+
+Vector = npt.NDArray[np.float64]
+
+SEAT = "seat_acc_[xyz]"
+"""Channels of the seat, evaluated for a car with a seat; without, this point belongs to the body."""
+
+BY_DEFAULT = ("seat_rail_acc_[xyz]", r"knuckle_\w+_acc_z")
+"""Channels without a choice, as regular expressions."""
+
+
+class TimeHistories(Protocol):
+    """Time histories of a run, as a file or a recording has them."""
+
+    @property
+    def time(self) -> Vector:
+        """Return the sample times [s]; (n,)."""
+
+    @property
+    def channels(self) -> Mapping[str, Vector]:
+        """Return name to time history; (n,)."""
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Return name to unit."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RecordSpectra:
+    """Spectra of a run.
+
+    Attributes:
+        name: short name in legends.
+        caption: input, evaluated span and tyres.
+        channels: spectra of the channels, unweighted and weighted.
+        road_levels: wheel to the level of the road under it; empty for a run on plates.
+    """
+
+    name: str
+    caption: str
+    channels: tuple[ChannelSpectrum, ...]
+    road_levels: Mapping[str, RoadLevel]
+
+    def highest_band(self, spectrum: ChannelSpectrum) -> tuple[float, float]:
+        """Return nominal midband frequency [Hz] and RMS of the highest third octave of a channel."""
+        rms = np.nan_to_num(spectrum.third_octaves.rms, nan=-1.0)
+        index = int(np.argmax(rms))
+        return float(spectrum.third_octaves.nominal[index]), float(rms[index])
+
+    def median_frequency(self, spectrum: ChannelSpectrum) -> float:
+        """Return the frequency [Hz] that halves the mean square of a channel; NaN for a channel at rest."""
+        if spectrum.rms == 0.0:
+            return float("nan")
+        return float(np.interp(np.sqrt(0.5) * spectrum.rms, spectrum.cumulative_rms, spectrum.frequency))
+
+
+def record_spectra(
+    path: Path, channels: Sequence[str] | None = None, frequency_range: tuple[float, float] = RANGE
+) -> RecordSpectra:
+    """Read a run and return the spectra of its evaluated span.
+
+    Args:
+        path: folder of a run, or a file of time histories.
+        channels: names of acceleration channels; by default seat rail, seat and the vertical motion of the knuckles.
+        frequency_range: lowest and highest frequency [Hz].
+
+    Raises:
+        ConfigurationError: no such run or channel, or a channel that is no acceleration.
+        DataError: a damaged file, or a record too short for the range.
+    """
+    source = time_file(path)
+    record = read_columns(source)
+    summary = available_summary(source.parent) if path.is_dir() else None
+    if summary is None:
+        return recorded_spectra(record, path.name, source.name, channels, frequency_range=frequency_range)
+    tyres = f", tyres {summary['tyre']}" if "tyre" in summary else ""
+    span = f"{evaluated_from(summary):g} to {record.time[-1]:g} s"
+    return recorded_spectra(
+        record,
+        path.resolve().name,
+        f"{Path(summary['input']['file']).name}, {span}{tyres}",
+        channels,
+        begin=evaluated_from(summary),
+        seated=summary.get("seat_value") is not None,
+        road=summary["input"].get("road"),
+        frequency_range=frequency_range,
+    )
+
+
+def recorded_spectra(
+    record: TimeHistories,
+    name: str,
+    caption: str,
+    channels: Sequence[str] | None = None,
+    *,
+    begin: float = 0.0,
+    seated: bool = True,
+    road: Mapping[str, object] | None = None,
+    frequency_range: tuple[float, float] = RANGE,
+) -> RecordSpectra:
+    """Return the spectra of time histories; further arguments and errors like `record_spectra`.
+
+    Args:
+        record: time histories with their units.
+        name, caption: see `RecordSpectra`.
+        channels, frequency_range: see `record_spectra`.
+        begin: beginning of the evaluated span [s].
+        seated: True if the point "seat" is on a seat.
+        road: road of the run, as in `summary.json`; None for a run on plates.
+    """
+    step = float(record.time[1] - record.time[0])
+    evaluated = slice(max(round((begin - float(record.time[0])) / step), 0) if begin else 0, None)
+    names = _chosen(channels, record.units, name, (*([SEAT] if seated else []), *BY_DEFAULT))
+    histories = {name: record.channels[name][evaluated] for name in names}
+    return RecordSpectra(
+        name=name,
+        caption=caption,
+        channels=vibration_spectra(step, histories, record.units, frequency_range),
+        road_levels=_road_levels(road, step, record.channels, evaluated),
+    )
+
+
+def evaluated_from(summary: RunSummary) -> float:
+    """Return the beginning of the evaluated span of a run [s]."""
+    return (summary.get("evaluated_s") or [0.0])[0]
+
+
+def _chosen(
+    channels: Sequence[str] | None, units: Mapping[str, str], name: str, by_default: Sequence[str]
+) -> list[str]:
+    """Return the channels whose spectra are computed; all must be accelerations."""
+    if channels is None:
+        pattern = re.compile("|".join(by_default))
+        if names := [channel for channel in units if pattern.fullmatch(channel)]:
+            return names
+        raise ConfigurationError(f"{name}: records no acceleration of a seat or knuckle; name channels (--channels)")
+    if missing := next((channel for channel in channels if channel not in units), None):
+        raise ConfigurationError(f"{name} has no channel {missing!r}; it has {', '.join(units)}")
+    if other := next((channel for channel in channels if units[channel] != "m/s2"), None):
+        raise ConfigurationError(
+            f"{name}: {other} is in {units[other] or 'no unit'}; spectra are of accelerations [m/s2]"
+        )
+    return list(dict.fromkeys(channels))
+
+
+def _road_levels(
+    road: Mapping[str, object] | None, step: float, channels: Mapping[str, Vector], evaluated: slice
+) -> dict[str, RoadLevel]:
+    """Return the level of the road under the front wheels; the rear wheels follow in their tracks."""
+    speed = road.get("speed_kmh") if road else None
+    if not isinstance(speed, int | float):
+        return {}
+    levels = {}
+    for wheel in ("fr", "fl"):
+        if f"plate_{wheel}_displacement" in channels:
+            try:
+                levels[wheel] = road_level(step, channels[f"plate_{wheel}_displacement"][evaluated], speed / 3.6)
+            except DataError:  # too short for a class: the spectra of the car do not depend on it
+                continue
+    return levels
