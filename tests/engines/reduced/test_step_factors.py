@@ -59,8 +59,8 @@ def test_a_step_is_exact_for_a_cubic_plate_and_a_linear_force(pole):
     # Mean forces and slopes of two dampers, z', z; the state lacks what they add at the end of a step.
     still = np.zeros(4)
     eta = begin - factors.direct[0] @ np.array([*still, rate(0.0), cubic(0.0)])
-    inputs = [*still, rate(0.0), (cubic(STEP) - cubic(0.0)) / STEP, *[cubic(0.0)] * factors.heights]
-    assert factors.heights == (abs(pole) < SLOWEST)
+    inputs = [*still, rate(0.0), (cubic(STEP) - cubic(0.0)) / STEP, *[cubic(0.0)] * factors.plate_inputs]
+    assert factors.plate_inputs == (abs(pole) < SLOWEST)
     eta += factors.step[0] @ np.array([eta, *inputs])
     end = eta + factors.direct[0] @ np.array([force, 0.0, force_slope, 0.0, rate(STEP), cubic(STEP)])
     # The tolerance of the solver over some hundred of its steps.

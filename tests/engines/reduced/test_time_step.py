@@ -1,6 +1,7 @@
 """The implicit damper forces of a step."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from vehicle.engines.reduced.time_step import EXACT, solve_dampers
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.vehicle import load_vehicle
 
-LAWS = [
+LAWS: list[dict[str, Any]] = [
     {"coulomb_friction": 90.0},
     {"coulomb_friction": 65.0, "viscous_law": "degressive"},
     {"coulomb_friction": 0.0, "viscous_law": "degressive"},
@@ -36,13 +37,13 @@ def table_of(gain, laws, element):
         columns=[0],
         integrated=np.arange(1),
         pairs=0,
-        heights=0,
+        plate_inputs=0,
         step=np.zeros((1, 3 + 2 * d), dtype=complex),
         direct=np.zeros((1, 2 * d + 2), dtype=complex),
         slip=np.zeros((d, 1), dtype=complex),
         gains=(np.zeros((d, 1)), gain, np.zeros((d, d))),
     )
-    no_sensors = Outputs(poles=np.zeros((0, 1)), height=np.zeros((0, 1)), velocity=np.zeros((0, 1)))
+    no_sensors = Outputs(poles=np.zeros((0, 1), dtype=complex), height=np.zeros((0, 1)), velocity=np.zeros((0, 1)))
     return CarTable([factors], [laws], np.zeros((2, 1)), element, [no_sensors])
 
 
@@ -66,7 +67,9 @@ def test_velocities_and_forces_of_coupled_dampers_are_consistent(count, own_gain
         for v, f, half, law in zip(velocity, force, hold, laws, strict=True):
             curve = damper_curve(law)
             excess = 0.5 * float(curve.force(v) - curve.least_slope * v)
-            friction = np.clip(2.0 / np.pi * law.coulomb_friction * law.smoothing * v, *law.coulomb_friction * np.array([-1, 1]))
+            friction = np.clip(
+                2.0 / np.pi * law.coulomb_friction * law.smoothing * v, *law.coulomb_friction * np.array([-1, 1])
+            )
             assert f == pytest.approx(-(half + excess + friction), rel=1e-7, abs=1e-7)
 
 

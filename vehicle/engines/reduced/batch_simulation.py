@@ -106,7 +106,9 @@ def simulate_batch(
     interval, wheels = 1.0 / record_rate, models[0].matrices.system.inputs
     table = np.empty((len(channels), len(models), samples))
     statistics: dict[int, Statistics] = {}
-    factors = _single_precision(models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels])
+    factors = _single_precision_factors(
+        models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels]
+    )
     for car in {*range(len(models))} - {*factors}:
         run = simulate_reduced(
             models[car],
@@ -124,8 +126,17 @@ def simulate_batch(
     for first in range(0, len(ordered_cars), LANES):
         cars = ordered_cars[first : first + LANES]
         started = clock.perf_counter()
-        parts = [[values[car] for car in cars] for values in (models, factors, dampers, tyre_load)]
-        group = GroupRun(*parts, signal, interval, every, SINGLE, present_load=models[0].slope.shape[1] > 0)
+        group = GroupRun(
+            [models[car] for car in cars],
+            [factors[car] for car in cars],
+            [dampers[car] for car in cars],
+            [tyre_load[car] for car in cars],
+            signal,
+            interval,
+            every,
+            SINGLE,
+            present_load=models[0].slope.shape[1] > 0,
+        )
         validities = group.fill(table, cars, channels)
         time_of_car = (clock.perf_counter() - started) / len(cars)
         for car, validity in zip(cars, validities, strict=True):
@@ -139,7 +150,7 @@ def simulate_batch(
     )
 
 
-def _single_precision(
+def _single_precision_factors(
     models: Sequence[PoleModel], dampers: Sequence[Sequence[Damper]], timestep: float, columns: Sequence[int]
 ) -> dict[int, CarFactors]:
     """Return the factors of the cars for which single precision is sufficient, by their index.
@@ -155,7 +166,9 @@ def _single_precision(
         if not any(law.controlled for law in laws) and np.min(np.abs(model.poles)) >= SLOWEST
     ]
     rolling = models[0].slope.shape[1] > 0
-    factors = car_factors(
-        [models[car] for car in suitable], timestep, columns, exact=False, present_load=rolling
-    )
-    return {car: own for car, own in zip(suitable, factors, strict=True) if own.coupling <= LARGEST_COUPLING}
+    factors = car_factors([models[car] for car in suitable], timestep, columns, exact=False, present_load=rolling)
+    return {
+        car: factors_of_car
+        for car, factors_of_car in zip(suitable, factors, strict=True)
+        if factors_of_car.coupling <= LARGEST_COUPLING
+    }

@@ -46,7 +46,7 @@ def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
 
 
 class CarTable:
-    """Table of a group: cars in single precision, whose idle lanes repeat the last car, or one in double precision.
+    """Table of a group: cars in single precision, whose idle columns repeat the last car, or one in double precision.
 
     Args:
         cars: factors of the cars.
@@ -57,12 +57,12 @@ class CarTable:
 
     Attributes:
         plates: number m of driven plates.
-        states: number of terms of an output in a lane: states of a sample, and plate displacements.
+        states: number of terms of an output in a column: states of a sample, and plate displacements.
         inputs, sums: numbers of inputs of a step, and of damper velocities and sensors.
-        initial: states of the first sample; (..., lanes).
+        initial: states of the first sample; (..., columns).
         rows: first rows of the sections.
-        table: the table, which the time stepping changes; (rows, lanes).
-        laws: records of the dampers if a friction limit depends on the velocity, (d, lanes) or, in double precision,
+        table: the table, which the time stepping changes; (rows, columns).
+        laws: records of the dampers if a friction limit depends on the velocity, (d, columns) or, in double precision,
             (d, 1); otherwise empty.
     """
 
@@ -76,7 +76,7 @@ class CarTable:
     ) -> None:
         self.element, lanes = element, aligned_table(1, element).shape[1]
         split = lanes if element == DOUBLE else 1
-        # Car of each lane, and its part of the poles.
+        # Car of each column, and its part of the poles.
         self.lanes = [(min(lane, len(cars) - 1) if split == 1 else 0, slice(lane % split, None, split))
                       for lane in range(lanes)]  # fmt: skip
         self.cars = cars
@@ -97,7 +97,7 @@ class CarTable:
         self.table, self.initial = (aligned_table(rows, element) for rows in (section_ends[-1], self.states - m))
         self.initial[-m:] = start[1][:, None]
         record = np.zeros((d, lanes), dtype=RECORD)
-        rows_of_cars = [car.rows(own.poles) for car, own in zip(cars, sensors, strict=True)]
+        rows_of_cars = [car.rows(car_sensors.poles) for car, car_sensors in zip(cars, sensors, strict=True)]
         for lane, (car, part) in enumerate(self.lanes):
             record[:, lane] = [array for array, _, _ in damper_data[car]]
             # Repeating the last node gives segments of zero length.
@@ -108,9 +108,9 @@ class CarTable:
             # Sums over the poles are added over the parts of a car, with the contribution of the plates once.
             values["slip"] = slip if part.start == 0 else 0.0 * slip
             values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
-            own, columns = sensors[car], cars[car].columns
-            values["direct"] = cars[car].weights_of(own)[:, cars[car].states :]
-            values["sensors"] = own.height[:, columns] @ start[0] + own.velocity[:, columns] @ start[1]
+            car_sensors, columns = sensors[car], cars[car].columns
+            values["direct"] = cars[car].weights_of(car_sensors)[:, cars[car].states :]
+            values["sensors"] = car_sensors.height[:, columns] @ start[0] + car_sensors.velocity[:, columns] @ start[1]
             values["full"] = np.array([full for _, full, _ in damper_data[car]])
             for name, array in values.items():
                 self.table[first_rows[name] :, lane][: array.size] = array.ravel()
@@ -132,7 +132,7 @@ class CarTable:
             weights: weights of each car, see `CarFactors.weights`.
 
         Returns:
-            Table (..., lanes) whose rows are (tiles, states and plate displacements, TILE).
+            Table (..., columns) whose rows are (tiles, states and plate displacements, TILE).
         """
         tile_count, poles = -(-len(weights[0]) // TILE), self.states - 2 * (len(self.cars[0].slip) + self.plates)
         table = aligned_table(tile_count * self.states * TILE, self.element)

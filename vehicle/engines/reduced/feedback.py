@@ -33,19 +33,19 @@ Vector = npt.NDArray[np.float64]
 
 
 class Feedback(NamedTuple):
-    """What acts by the sensors of a car: r rolling tyres, k controlled dampers.
+    """Rolling tyres on slopes and controlled dampers of a car, which act by its sensors.
 
     Attributes:
-        tyres: number r of driven plates whose tyre loads act on the slope.
-        heights: number of plates whose z is an input; m for a car with slow poles, else 0.
-        dampers: indices of the controlled dampers; (k,).
+        tyres: number of driven plates whose tyre loads act on the slope.
+        plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
+        dampers: indices of the k controlled dampers.
         laws: their records of `vehicle.model.laws.control_laws`; (k,).
         memory: states of their laws, with delayed settings; (k, ...).
         step: index of the next step; (1,).
     """
 
     tyres: int
-    heights: int
+    plate_inputs: int
     dampers: npt.NDArray[np.int64]
     laws: npt.NDArray[Any]
     memory: Vector
@@ -76,16 +76,22 @@ def sensor_outputs(
         return velocities
     tyres, loads = list(columns), tyre_outputs(model)
     static = np.array([tyre_load[inputs[tyre]] for tyre in tyres])[:, None]
-    parts = (part[tyres] / static for part in (loads.poles, loads.height, loads.velocity))
-    return Outputs(**dict(zip(("poles", "height", "velocity"), parts, strict=True))) + velocities
+    return (
+        Outputs(
+            poles=loads.poles[tyres] / static,
+            height=loads.height[tyres] / static,
+            velocity=loads.velocity[tyres] / static,
+        )
+        + velocities
+    )
 
 
-def feedback_at_rest(dampers: Sequence[Damper], tyres: int, heights: int, timestep: float) -> Feedback:
+def feedback_at_rest(dampers: Sequence[Damper], tyres: int, plate_inputs: int, timestep: float) -> Feedback:
     """Return the feedback of a car at rest.
 
     Args:
         dampers: laws of all dampers.
-        tyres, heights: see `Feedback`.
+        tyres, plate_inputs: see `Feedback`.
         timestep: time step [s].
     """
     controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
@@ -94,7 +100,7 @@ def feedback_at_rest(dampers: Sequence[Damper], tyres: int, heights: int, timest
     memory[:] = laws["softest"][:, None]
     return Feedback(
         tyres=tyres,
-        heights=heights,
+        plate_inputs=plate_inputs,
         dampers=np.array(controlled, dtype=np.int64),
         laws=laws,
         memory=memory,

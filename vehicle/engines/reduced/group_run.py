@@ -13,7 +13,7 @@ from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
 from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_outputs
-from vehicle.engines.reduced.load_outputs import direct_forces, load_outputs
+from vehicle.engines.reduced.load_outputs import load_outputs
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
@@ -87,7 +87,7 @@ class GroupRun:
             for model, laws, static in zip(models, dampers, tyre_load, strict=True)
         ]
         tyres = len(columns) if present_load else 0
-        self.feedback = feedback_at_rest(dampers[0], tyres, factors[0].heights, self.timestep)
+        self.feedback = feedback_at_rest(dampers[0], tyres, factors[0].plate_inputs, self.timestep)
         self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
@@ -171,8 +171,11 @@ class GroupRun:
         """Return the levels of a car as outputs: tyre loads and segments, filled up to `watched` rows, then loads."""
         outputs = tyre_outputs(model) + segment_outputs(model)
         idle = ((0, watched - len(outputs.poles)), (0, 0))
-        parts = (np.pad(part, idle) for part in (outputs.poles, outputs.height, outputs.velocity))
-        outputs = Outputs(**dict(zip(("poles", "height", "velocity"), parts, strict=True)))
+        outputs = Outputs(
+            poles=np.pad(outputs.poles, idle),
+            height=np.pad(outputs.height, idle),
+            velocity=np.pad(outputs.velocity, idle),
+        )
         return outputs if self.loads is None else outputs + load_outputs(model, self.loads)
 
     def _plate(self, channel: str, samples: int) -> Vector | float:

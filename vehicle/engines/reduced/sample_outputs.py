@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, of_cars, store
 from vehicle.engines.reduced.table_layout import PAST, TILE, OutputTiles
 from vehicle.engines.reduced.time_step import compiled_once, inlined
-from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, of_cars, store
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 TOGETHER = 4
@@ -58,7 +58,7 @@ def read_tile(
     """Return a tile of outputs at four samples, or of their differences from the previous samples.
 
     Args:
-        tiles: weights, (rows, lanes).
+        tiles: weights, (rows, columns).
         row: first row of the tile.
         x: states of the samples, beginning with the sample before the first.
         changes: changes of the poles from sample to sample, likewise.
@@ -150,7 +150,9 @@ def fill_outputs(
     for sample in range(begin, size, TOGETHER * stride):
         samples = sample_group(sample, stride, size)
         for tile in range(tiles.shape[0] // weights):
-            sums = read_tile(tiles, tile * weights, x, changes, states, poles, samples, plate_z, done, differences, zero)
+            sums = read_tile(
+                tiles, tile * weights, x, changes, states, poles, samples, plate_z, done, differences, zero
+            )
             row = PAST * width + first + tile * TILE
             store_tile(y, row + samples[0] * width, sums[0])
             store_tile(y, row + samples[1] * width, sums[1])
@@ -229,7 +231,7 @@ def write_channels(
         buffer: work space for a channel; changed in place.
         out: channels of all cars; (channels, cars, samples).
         begin: index of the sample `early` in `out`.
-        cars: indices of the cars in the lanes.
+        cars: indices of the cars in the columns.
     """
     for channel in range(reading.wanted.shape[0]):
         row = reading.wanted[channel]

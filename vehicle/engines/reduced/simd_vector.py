@@ -1,8 +1,8 @@
 """SIMD vector types for compiled code: eight numbers in single precision, or four in double precision.
 
 A vector has the LLVM type `<8 x float>` or `<4 x double>`: one register if the processor has registers of that size,
-otherwise several. Loops over lanes would leave the vectorisation and the order of sums to the compiler. With these
-types the order is that of the source in every lane, so the values of a car are bitwise independent of the other cars.
+otherwise several. Loops over the numbers would leave the vectorisation and the order of sums to the compiler. With
+these types the order is that of the source for every car, so the values of a car are bitwise independent of the other cars.
 The type of a table decides: numba compiles a function once for each.
 
 This module imports numba at the top, so only runs that compile import it.
@@ -46,14 +46,14 @@ class _Model(extending.models.PrimitiveModel):  # type: ignore[misc, name-define
 
 
 def _pointer(context: Any, builder: Any, table_type: Any, table: Any, row: Any) -> Any:
-    """Return the address of a row of a table (rows, lanes)."""
+    """Return the address of a row of a table (rows, columns)."""
     data = context.make_array(table_type)(context, builder, table).data
     vector = context.get_value_type(VECTORS[table_type.dtype])
     return builder.gep(builder.bitcast(data, vector.as_pointer()), [row])
 
 
 def _load(typing_context: Any, table: Any, row: Any) -> Any:
-    """Load a row of an aligned table (rows, lanes)."""
+    """Load a row of an aligned table (rows, columns)."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.load(_pointer(context, builder, signature.args[0], *arguments), align=VECTOR_BYTES)
@@ -87,12 +87,12 @@ def _load_tuple(typing_context: Any, table: Any, row: Any, length: Any) -> Any:
 
 
 def _broadcast(typing_context: Any, number: Any) -> Any:
-    """Return a vector with the same number in all lanes."""
+    """Return a vector of equal numbers."""
     return VECTORS[number](number), _same
 
 
 def _filled(typing_context: Any, table: Any, number: Any) -> Any:
-    """Return a vector of the type of a table with the same number in all lanes."""
+    """Return a vector of equal numbers of the type of a table."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         scalar = context.cast(builder, arguments[1], signature.args[1], signature.return_type.scalar)
@@ -102,7 +102,7 @@ def _filled(typing_context: Any, table: Any, number: Any) -> Any:
 
 
 def _same(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Return a vector whose lanes are equal to the first argument."""
+    """Return a vector of numbers equal to the first argument."""
     vector_type = context.get_value_type(signature.return_type)
     undefined = ir.Constant(vector_type, ir.Undefined)
     single = builder.insert_element(undefined, arguments[0], ir.Constant(ir.IntType(32), 0))
@@ -110,12 +110,12 @@ def _same(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
 
 
 def _mask(lanes: list[int]) -> Any:
-    """Return the mask of a shuffle that takes these lanes."""
+    """Return the mask of a shuffle from the indices of its numbers."""
     return ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), lanes)
 
 
 def _of_cars(typing_context: Any, value: Any) -> Any:
-    """Return the sums of the cars: a sum over all lanes in double precision, the vector itself in single precision."""
+    """Return the sums of the cars: the sum of all numbers in double precision, the vector in single precision."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         (total,) = arguments

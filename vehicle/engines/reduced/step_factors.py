@@ -12,9 +12,9 @@ int_0^1 exp(x (1 - t)) t^j dt = j! phi_{j+1}(x), phi_{k+1}(x) = (phi_k(x) - 1/k!
 A pole near zero has no static value: kappa = 0, and z at the beginning of the step is an input. With the integral of
 the quadratic z' over the step, b_z z gives b_z (M0 z + h ((M1 - 2 M2 + M3) z' + (M3 - M2) z'+ + (3 M2 - 2 M3) m)).
 
-In single precision, fast poles are quasi-static, y = -(r z' + e f)/s, and not integrated. The set of fast poles is chosen so that their
-total delay is at most `DELAY` of any response of a damper velocity or an acceleration at the end of the band that the
-step resolves. The criterion uses the total, because poles occur in clusters whose residues cancel.
+In single precision, fast poles are quasi-static, y = -(r z' + e f)/s, and not integrated. The set of fast poles is
+chosen so that their total delay is at most `DELAY` of any response of a damper velocity or an acceleration at the end
+of the band that the step resolves. The criterion uses the total, because poles occur in clusters whose residues cancel.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class CarFactors:
         columns: indices of the driven plates; (m,).
         integrated: indices of the integrated poles, p pairs and q real poles; (p + q,).
         pairs: p.
-        heights: number of plates whose z is an input; m for a car with slow poles, else 0.
+        plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
         step: E - 1 and factors of mean forces, slopes, z', mean z', slope forces and z for the integrated poles;
             (p + q, 1 + 2 d + 2 m + ...).
         direct: contributions of mean forces, their slopes, z' and z to eta of all poles; (n, 2 d + 2 m).
@@ -86,7 +86,7 @@ class CarFactors:
     columns: list[int]
     integrated: npt.NDArray[np.intp]
     pairs: int
-    heights: int
+    plate_inputs: int
     step: Complex
     direct: Complex
     slip: Complex
@@ -190,7 +190,7 @@ def car_factors(
         models: pole models of the cars.
         timestep: h [s].
         columns: indices of the driven plates.
-        exact: integrate all poles, including slow ones, as a run in double precision does.
+        exact: all poles are integrated, for double precision.
         present_load: slope forces of rolling tyres are inputs.
 
     Returns:
@@ -235,7 +235,7 @@ def car_factors(
                 columns=driven,
                 integrated=car_inputs.integrated,
                 pairs=int(np.count_nonzero(car_inputs.integrated < model.pairs)),
-                heights=m * bool(np.any(held)),
+                plate_inputs=m * bool(np.any(held)),
                 step=step[part],
                 direct=direct_factors,
                 slip=model.slip,

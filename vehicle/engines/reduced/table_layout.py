@@ -1,7 +1,7 @@
-"""Layout of the tables of a group: one row for each number, one column for each SIMD lane.
+"""Layout of the tables of a group: one row for each number, one column for each number of a SIMD vector.
 
-In single precision a lane is a car: eight cars. In double precision the four lanes are parts of one car: its poles are
-dealt to the lanes, and sums over poles are added over the lanes.
+In single precision a row has a number of each of eight cars. In double precision its four numbers belong to four parts
+of one car: each part contains a quarter of the poles, and sums over poles are added over the parts.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ class TableRows(NamedTuple):
     """First rows of the sections of a table of cars, and their sizes.
 
     Attributes:
-        pairs, reals: numbers of pole pairs and real poles in a lane; the table begins with the factors of the pairs.
+        pairs, reals: numbers of pole pairs and real poles in a column; the table begins with the factors of the
+            pairs.
         iterations: Gauss-Seidel iterations over the dampers.
         real: first row of the factors of the real poles.
         slip: contribution of z' at the end of a step to the damper velocities, dampers by plates.
@@ -89,7 +90,7 @@ class OutputTiles(NamedTuple):
         every: samples from one check of rotations and tyre loads to the next.
         always: compute levels at every sample; otherwise only at the checks.
         wanted: row of a sample for each channel, positions first; -1 for channels that are not computed here.
-        offset: static value of each channel; (channels, lanes).
+        offset: static value of each channel; (channels, columns).
         weights: weights of the differences of positions for `acceleration`; (2 AHEAD,).
     """
 
@@ -106,7 +107,7 @@ class OutputTiles(NamedTuple):
 
 
 def aligned_table(rows: int, element: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return an aligned table (rows, lanes) of zeros; `simd_vector.load` and `store` need the alignment."""
+    """Return an aligned table (rows, columns) of zeros; `simd_vector.load` and `store` need the alignment."""
     size = rows * VECTOR_BYTES
     buffer = np.zeros(size + VECTOR_BYTES, dtype=np.uint8)
     start = -buffer.ctypes.data % VECTOR_BYTES

@@ -40,7 +40,7 @@ from vehicle.model.laws.damper import friction_limit
 
 numba = numba_module()
 
-# Sums in the order of the source: the values of a lane must not depend on the number of poles in other lanes.
+# Sums in the order of the source: the values of a car must not depend on the number of poles of other cars.
 EXACT = OPTIONS | {"fastmath": {"contract"}}
 
 
@@ -130,7 +130,7 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         middle = load_now + filled(t, 0.5) * (load_now - load(t, r.past + i))
         store(t, r.past + i, load_now)
         store(t, row + i, maximum(middle, filled(t, -1.0)) * broadcast(rates[step, plates + i]))
-    for i in range(feedback.heights):
+    for i in range(feedback.plate_inputs):
         store(t, row + feedback.tyres + i, broadcast(rates[step, 2 * plates + i]))
     for k in range(feedback.dampers.shape[0]):
         i, nodes, sensor = feedback.dampers[k], r.pieces + 1, r.sensors + feedback.tyres + 2 * k

@@ -111,7 +111,7 @@ def step_cars(
         peaks: squares of rotations, minimum and maximum of each watched level; changed in place.
         out: channels of all cars; (channels, cars, samples).
         first: index of the first sample.
-        cars: indices of the cars in the lanes.
+        cars: indices of the cars in the columns.
         inputs, sums, dampers: tuples with the lengths of the inputs of a step, of the damper velocities and sensors,
             and of the dampers.
     """
