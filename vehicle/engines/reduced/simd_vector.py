@@ -2,8 +2,8 @@
 
 A vector has the LLVM type `<8 x float>` or `<4 x double>`: one register if the processor has registers of that size,
 otherwise several. Loops over the numbers would leave the vectorisation and the order of sums to the compiler. With
-these types the order is that of the source for every car, so the values of a car are bitwise independent of the other cars.
-The type of a table decides: numba compiles a function once for each.
+these types the order is that of the source for every car, so the values of a car are bitwise independent of the
+others. The type of a table decides: numba compiles a function once for each.
 
 This module imports numba at the top, so only runs that compile import it.
 """
