@@ -33,7 +33,7 @@ def cases(count: int) -> list[Case]:
         lower_band_edge=ROAD_EDGE_HZ,
     )
     points = points_of("lhs", count, 2006).tolist()
-    return table_cases([one.path for one in RANGES], points, [road], engine="reduced")
+    return list(table_cases([one.path for one in RANGES], points, [road], engine="reduced"))
 
 
 def case_ms(count: int) -> float:

@@ -48,7 +48,17 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
         metavar="FILE.toml",
         help=VEHICLE_HELP,
     )
-    group.add_argument(
+    set_option(group)
+    return group
+
+
+def set_option(parser: argparse._ActionsContainer) -> None:
+    """Add --set, which changes the car.
+
+    Args:
+        parser: parser of the command, or a group of it.
+    """
+    parser.add_argument(
         "--set",
         dest="overrides",
         action="append",
@@ -57,7 +67,6 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
         help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], and the path "
         "of one component ends with its axis: bushings.tyre.stiffness.z=2e5; may be repeated",
     )
-    return group
 
 
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:

@@ -116,8 +116,8 @@ def store_sparse(data, s):  # type: ignore[no-untyped-def]
     for entry in range(s.values.shape[0]):
         s.values[entry] = flat[s.places[entry]]
     for pointer in range(s.offsets.shape[0]):
-        place = words(data + s.offsets[pointer], 1)
-        s.replaced[pointer], place[0] = place[0], s.addresses[pointer]
+        address = words(data + s.offsets[pointer], 1)
+        s.replaced[pointer], address[0] = address[0], s.addresses[pointer]
     size = integers_at(data + s.size, 1)
     s.replaced[-1], size[0] = size[0], s.values.shape[0]
 
@@ -228,10 +228,10 @@ def _loop(mark: int) -> Any:
 
 def restore_rows(data: mujoco.MjData, s: SparseRows) -> None:
     """Return MuJoCo's own rows to a state after a run; the arrays of the car may be deleted then."""
-    places = [ctypes.c_int64.from_address(data._address + int(offset)) for offset in s.offsets]
-    if places and [place.value for place in places] == s.addresses.tolist():
-        for place, address in zip(places, s.replaced[:-1], strict=True):
-            place.value = int(address)
+    pointers = [ctypes.c_int64.from_address(data._address + int(offset)) for offset in s.offsets]
+    if pointers and [pointer.value for pointer in pointers] == s.addresses.tolist():
+        for pointer, address in zip(pointers, s.replaced[:-1], strict=True):
+            pointer.value = int(address)
         ctypes.c_int32.from_address(data._address + s.size).value = int(s.replaced[-1])
 
 

@@ -6,7 +6,7 @@ at their limits known, its minimum is the solution of
     H a = Q + sum_i J_i' (D_i aref_i) +- sum_k J_k' f_k,      H = M + sum_i J_i' D_i J_i,
 
 i being the rows within their limits and k the friction rows at their limits. The limits of the last step hold in most
-steps; otherwise the system is solved again with the new ones. MuJoCo evaluates the gradient at this acceleration, and
+steps; otherwise the system is solved again with the new limits. MuJoCo evaluates the gradient at this acceleration, and
 iterates from there if it exceeds the tolerance of the solver: the result is that of its own solver.
 
 H = L' L is factorised from the last coordinate to the first, so that the body, which all parts act on, comes last.
@@ -32,15 +32,15 @@ ATTEMPTS = 4
 
 @jitable
 def start_of(tile: int) -> int:
-    """Return the first coordinate of a tile, unsigned: compiled code does not check such indices for negative ones."""
+    """Return the first coordinate of a tile, unsigned, which saves the check for negative indices."""
     return np.uint64(4) * np.uint64(tile)  # type: ignore[return-value]
 
 
 @jitable
 def add_rows(line: Vector, at: int, x: float, u: Vector, y: float, v: Vector, z: float, w: Vector) -> None:
     """Add x u + y v + z w to a row in a tile: all four sums before the first is stored, for SIMD."""
-    one = np.uint64(1)
-    b, c, d = at + one, at + one + one, at + one + one + one
+    unit = np.uint64(1)
+    b, c, d = at + unit, at + unit + unit, at + unit + unit + unit
     p = line[at] + (x * u[at] + y * v[at] + z * w[at])
     q = line[b] + (x * u[b] + y * v[b] + z * w[b])
     r = line[c] + (x * u[c] + y * v[c] + z * w[c])
@@ -53,8 +53,8 @@ def take_rows(
     line: Vector, at: int, f: tuple[float, float, float, float], u: tuple[Vector, Vector, Vector, Vector]
 ) -> None:
     """Subtract the sum of f_i u_i over four rows from a row in a tile."""
-    one = np.uint64(1)
-    b, c, d = at + one, at + one + one, at + one + one + one
+    unit = np.uint64(1)
+    b, c, d = at + unit, at + unit + unit, at + unit + unit + unit
     p = line[at] - (f[0] * u[0][at] + f[1] * u[1][at] + f[2] * u[2][at] + f[3] * u[3][at])
     q = line[b] - (f[0] * u[0][b] + f[1] * u[1][b] + f[2] * u[2][b] + f[3] * u[3][b])
     r = line[c] - (f[0] * u[0][c] + f[1] * u[1][c] + f[2] * u[2][c] + f[3] * u[3][c])
@@ -107,7 +107,7 @@ def assemble_matrix(h: Table, mass: Vector, jacobian: Table, weight: Vector, s: 
 
 @jitable
 def factorise_matrix(h: Table, s: Solution) -> None:
-    """Replace the lower triangle of H by D L of H = L' D L, L with ones on its diagonal; the last row comes first."""
+    """Replace the lower triangle of H by D L of H = L' D L, L with a unit diagonal; the last row comes first."""
     for block in range(s.starts.shape[0] - 2, -1, -1):
         row, first, last = TILE * block, s.starts[block], s.starts[block + 1]
         u0, u1, u2, u3 = h[row], h[row + 1], h[row + 2], h[row + 3]
@@ -125,7 +125,7 @@ def factorise_matrix(h: Table, s: Solution) -> None:
         f10 = u1[row] / u1[row + 1]
         u0[row] -= f10 * u1[row]
         i0, i1, i2, i3 = 1.0 / u0[row], 1.0 / u1[row + 1], 1.0 / u2[row + 2], 1.0 / u3[row + 3]
-        # The last tile of a row of tiles is the one on the diagonal.
+        # The last tile of a row of tiles is on the diagonal.
         for a in range(first, last - 1):
             start = start_of(s.tiles[a])
             for i in range(start, start + np.uint64(TILE)):
