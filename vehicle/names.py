@@ -55,7 +55,7 @@ def point_words(point: str) -> str:
         point: name as in channels, as "seat_rail" or "suspension_mount_fr".
     """
     part, _, wheel = point.rpartition("_")
-    corner = next((words for words, name in CORNERS.items() if name == wheel), None)
+    corner = next((corner for corner, name in CORNERS.items() if name == wheel), None)
     return (f"{corner}_{part}" if part and corner else point).replace("_", " ")
 
 

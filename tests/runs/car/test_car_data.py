@@ -13,7 +13,7 @@ import pytest
 
 from tests.engines.simulation.instant_centres import across, motion, rod
 from tests.validation import validated
-from vehicle import Car
+from vehicle import Car, ConfigurationError
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car.axle import axle_statics
 from vehicle.runs.car.axle_data import axle_data
@@ -288,3 +288,15 @@ def test_a_rolling_car_is_shown_at_its_speed(shown):
     assert moving.tyres == "rolling at 72 km/h" and moving.axles[0].geometry == shown["sedan"].axles[0].geometry
     still: Any = shown["sedan"].modes
     assert [mode.frequency_hz for mode in moving.modes] != [mode.frequency_hz for mode in still]
+
+
+def test_a_parameter_of_a_car_by_its_path():
+    car = Car.load("focus", {"damper.coulomb_friction": 93.75})
+    friction = car["damper.coulomb_friction"]
+    assert (friction.path, friction.value, friction.unit) == ("front.damper.coulomb_friction", 93.75, "N")
+    assert friction.source == "set, or computed from what is set" and "section" in car["body.mass"].source
+    with pytest.raises(ConfigurationError, match=r"no parameter damper\.viscus; the nearest is "):
+        car["damper.viscus"]
+    with pytest.raises(ConfigurationError, match=r"front\.damper is a table or a component; car\.search"):
+        car["front.damper"]
+    assert car["damper.coulomb_friction"] in car.search("coulomb DAMPER")

@@ -30,7 +30,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.parameters.optional_keys import optional_paths
-from vehicle.model.parameters.paths import assignments
+from vehicle.model.parameters.paths import assignments, full_path
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
@@ -146,6 +146,21 @@ class Car:
         from vehicle.runs.car.car_data import car_parameters
 
         return [parameter for parameter in car_parameters(self) if parameter.matches(words)]
+
+    def __getitem__(self, path: str) -> Parameter:
+        """Return a parameter with value, unit, range and source.
+
+        Args:
+            path: whole path or its end, as "front.damper.viscous" or "damper.viscous"; a parameter, not a table.
+
+        Raises:
+            ConfigurationError: no parameter has this path (with the nearest path), or several have.
+        """
+        whole = full_path(self.vehicle.table, path)
+        parameter = next((parameter for parameter in self.search() if parameter.path == whole), None)
+        if parameter is None:
+            raise ConfigurationError(f"{whole} is a table or a component; car.search({path!r}) lists its parameters")
+        return parameter
 
     def __repr__(self) -> str:
         """One line."""
