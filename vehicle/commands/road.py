@@ -51,13 +51,20 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def class_or_profile(text: str) -> str | Path:
-    """Return the class of ISO 8608, or the file of a profile, of the value of --road.
+    """Return the class of ISO 8608, the text of an obstacle, or the file of a profile, of the value of --road.
 
     Raises:
-        ConfigurationError: the value is neither.
+        ConfigurationError: the value is none of them.
     """
+    from vehicle.signals.excitation.obstacle import SHAPES, is_obstacle
+
     if len(text) > 1 and not Path(text).is_file():
-        raise ConfigurationError(f"--road {text}: no class of ISO 8608 (A to H), and no file of a measured profile")
+        if is_obstacle(text):
+            return text
+        raise ConfigurationError(
+            f"--road {text}: no class of ISO 8608 (A to H), no file of a measured profile, and no obstacle "
+            f"({', '.join(SHAPES)})"
+        )
     return text.upper() if len(text) == 1 else Path(text)
 
 
