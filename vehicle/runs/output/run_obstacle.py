@@ -14,11 +14,11 @@ from vehicle.signals.records.run_summary import ObstacleSummary
 
 POINTS = ("seat_rail", "seat")
 SETTLED = 0.1
-"""Share of its peak within which an acceleration counts as settled [-]."""
+"""Share of the peak within which an acceleration counts as settled [-]."""
 
 
 def obstacle_values(run: Run) -> ObstacleSummary | None:
-    """Return the values of a run over an obstacle; None for another road.
+    """Return the values of a run over an obstacle, or None.
 
     All are of the evaluated span, which begins before the obstacle. Peaks are of the accelerations as recorded, without
     a filter. The settling time is from the last wheel leaving the obstacle to the last acceleration along z above

@@ -98,8 +98,8 @@ class Obstacle:
     Attributes:
         name: name of its shape, one of `SHAPES`.
         sizes: its sizes [mm]; see `Shape`.
-        side: "left" or "right"; None for both sides.
-        place: distance of its beginning from the start of the foremost wheels [m]; None for the place of the drive.
+        side: "left" or "right"; by default both sides.
+        place: distance of its beginning from the start of the foremost wheels [m]; by default the drive sets it.
     """
 
     name: str
@@ -109,18 +109,18 @@ class Obstacle:
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """Return the obstacle of a text, such as "cleat:20x50", "pothole:50x300:right@40" or "speed_bump".
+        """Return the obstacle of a text, as "cleat:20x50", "pothole:50x300:right@40" or "speed_bump".
 
         Raises:
             ConfigurationError: an unknown shape, a wrong number of sizes, or a size out of range.
         """
-        front, at, place = text.partition("@")
+        front, at, distance = text.partition("@")
         name, *parts = front.split(":")
         if name not in SHAPES:
             raise ConfigurationError(f"obstacle {text!r}: {name!r} must be one of {', '.join(SHAPES)}")
         shape, usage = SHAPES[name], f"must be {usage_of(name)}"
         side = parts.pop() if parts and parts[-1] in ("left", "right", "both") else None
-        if len(parts) > 1 or (at and not re.fullmatch(NUMBER, place)):
+        if len(parts) > 1 or (at and not re.fullmatch(NUMBER, distance)):
             raise ConfigurationError(f"obstacle {text!r}: {usage}")
         sizes = shape.usual
         if parts:
@@ -136,7 +136,7 @@ class Obstacle:
             name=name,
             sizes=sizes,
             side=None if side == "both" else side,
-            place=float(place) if at else None,
+            place=float(distance) if at else None,
         )
 
     @property

@@ -51,7 +51,7 @@ class RoadDrive:
     """Drive at constant speed; each wheel reaches the road d / V after the foremost wheel, in its track.
 
     Attributes:
-        road: class of ISO 8608, such as "C"; the file of a measured profile; or an obstacle, such as "cleat:20x50".
+        road: class of ISO 8608, as "C"; the file of a measured profile; or an obstacle, as "cleat:20x50".
         speed: speed V [km/h].
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
@@ -101,7 +101,7 @@ class RoadDrive:
         elif self.road not in CLASSES:
             raise ConfigurationError(
                 f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of a "
-                "measured profile, or an obstacle such as cleat:20x50"
+                "measured profile, or an obstacle, as cleat:20x50"
             )
         if self.contact is not None and self.contact not in CONTACTS:
             raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(CONTACTS)}")
@@ -109,7 +109,7 @@ class RoadDrive:
 
     @property
     def obstacle(self) -> Obstacle | None:
-        """Obstacle on the road, at its place; None for a class or a profile."""
+        """Obstacle on the road, with its distance; None for another road."""
         if not isinstance(self.road, str) or not is_obstacle(self.road):
             return None
         obstacle = Obstacle.parse(self.road)
@@ -119,7 +119,7 @@ class RoadDrive:
 
     @property
     def envelope(self) -> TyreEnvelope | None:
-        """Cams of the tyres; None for the average over the contact patch."""
+        """Cams of the tyres, if they are chosen."""
         on_obstacle = isinstance(self.road, str) and is_obstacle(self.road)
         if (self.contact or ("cams" if on_obstacle else "patch")) == "patch":
             return None

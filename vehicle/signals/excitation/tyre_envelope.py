@@ -1,6 +1,6 @@
 """Enveloping of a road by a tyre: two elliptical cams one behind the other.
 
-Each cam stands upright and rests on the profile z(x). Its lower edge at the offset u from its centre is b - b e(u)
+The centre of each cam is as low as the profile z(x) allows. Its lower edge at the offset u from its centre is b - b e(u)
 above its lowest point, with e(u) = (1 - |u/a|^c)^(1/c). The lowest point of a cam at X is at the height
 
     Z(X) = max over |x - X| <= a of [z(x) + b e(x - X)] - b,
@@ -145,7 +145,7 @@ class TyreEnvelope:
         """Return effective heights w [m] and slopes tan(beta) of the tyre on a road of straight lines.
 
         Args:
-            x: distances of the points of the road [m], not decreasing; (n,). Two equal ones are a vertical step.
+            x: distances of the points of the road [m], not decreasing; (n,). Two equal distances are a vertical step.
             z: heights of the points [m]; (n,). Outside the points the road is level.
             positions: distances of the middle of the tyre [m]; (m,).
         """
@@ -166,11 +166,11 @@ class TyreEnvelope:
         heights = np.empty(positions.size)
         for first in range(0, positions.size, BLOCK):
             at = positions[first : first + BLOCK]
-            # A point higher than the one below the centre by less than the gap of the cam there cannot be touched.
+            # A cam cannot touch where its gap exceeds the largest height above the road below its centre.
             begin, end = _segments(x, at - self.half_length, at + self.half_length)
             excess = np.maximum(highest(begin, end) - np.interp(at, x, z), 0.0) * (1.0 + 1e-9) + 1e-12
-            reach = self.half_length * self._ellipse(1.0 - np.minimum(excess / self.half_height, 1.0))
-            begin, end = _segments(x, at - reach, at + reach)
+            farthest = self.half_length * self._ellipse(1.0 - np.minimum(excess / self.half_height, 1.0))
+            begin, end = _segments(x, at - farthest, at + farthest)
             counts = end - begin
             starts = np.cumsum(counts) - counts
             segment = np.arange(counts.sum()) + np.repeat(begin - starts, counts)
@@ -191,7 +191,7 @@ class TyreEnvelope:
 
 
 def _segments(x: Vector, low: Vector, high: Vector) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the first segment of the road in each window, and the one after the last; (m,) each."""
+    """Return first and end index of the segments of the road in each window; (m,) each."""
     begin = np.clip(np.searchsorted(x, low, "left") - 1, 0, x.size - 2)
     return begin, np.clip(np.searchsorted(x, high, "right"), begin + 1, x.size - 1)
 
