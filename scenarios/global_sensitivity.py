@@ -30,7 +30,8 @@ from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.folder import write_json, write_text
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.studies.sweeps.case import all_tyre_words, table_cases
+from vehicle.studies.sweeps.case import all_tyre_words
+from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure

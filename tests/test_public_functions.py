@@ -52,7 +52,7 @@ def record(tmp_path):
 
 def test_variations_of_a_sweep():
     every = [("a=1", "b=[2, 3]"), ("a=1", 'b="x"'), ("a=1.5", "b=[2, 3]"), ("a=1.5", 'b="x"')]
-    assert changes_of({"a": [1, 1.5], "b": [[2, 3], "x"]}) == every
+    assert list(changes_of({"a": [1, 1.5], "b": [[2, 3], "x"]})) == every
     assert changes_of([{"a": 1}, ["a=2"]]) == [("a=1",), ("a=2",)]
     nothings: list[Any] = [{}, [], {"a": []}]
     for nothing in nothings:

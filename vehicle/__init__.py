@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from vehicle.errors import VehicleError as VehicleError
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
     from vehicle.runs.car.car import Car as Car
+    from vehicle.runs.car.car_data import CarData as CarData
     from vehicle.runs.car.road import Road as Road
     from vehicle.runs.car.run import Run as Run
     from vehicle.runs.comparison.compared_run import compare_run as compare_run
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
 
 _MODULES = {
     "Car": "vehicle.runs.car.car",
+    "CarData": "vehicle.runs.car.car_data",
     "Choice": "vehicle.signals.records.choice",
     "ComfortMeasure": "vehicle.studies.sweeps.measure",
     "Comparison": "vehicle.runs.comparison.comparison",

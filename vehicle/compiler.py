@@ -28,6 +28,11 @@ COMPILING = ("engines/simulation", "engines/reduced")
 OPTIONS: dict[str, Any] = {"boundscheck": False, "error_model": "numpy", "fastmath": {"reassoc", "contract", "nsz"}}
 """Compiler options: division as in numpy; sums in any order and fused products for SIMD, which changes round-off."""
 
+CALLED: dict[str, Any] = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Further options of functions that only compiled code calls. Inlined by LLVM: inlining by numba gives wrong loops.
+Without inlining, a process that compiles calls the function from another module than a process that loads the callers,
+which changes round-off. Entries for Python and C take a tenth of the compiling time."""
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 _marked: list[Callable[..., Any]] = []
 _loaded: list[Any] = []
@@ -58,9 +63,7 @@ def numba_module() -> Any:
 def _register() -> None:
     """Register the marked functions with numba."""
     while _marked:
-        # Inlined by LLVM: inlining by numba gives wrong loops. Without inlining, a process that compiles calls the
-        # function from another module than a process that loads the callers, which changes round-off.
-        _loaded[0](forceinline=True, **OPTIONS)(_marked.pop(0))
+        _loaded[0](**CALLED, **OPTIONS)(_marked.pop(0))
 
 
 @cache

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.commands.kinematics import axle_statics
 from vehicle.engines.simulation.axle_curves import SMALL, design_slopes, travel_curve
 from vehicle.engines.simulation.axle_statics import WheelPose
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.runs.car import Car
+from vehicle.runs.car.axle import axle_statics
 
 FORCE = 1000.0
 """Force at each contact point for compliance [N]."""

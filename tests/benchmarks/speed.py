@@ -10,6 +10,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -52,6 +53,7 @@ SHOWN = {
     "four_wheel_reduced_realtime_factor": "simulated over computing time of its reduced engine, all channels",
     "case_ms": "processor time of a sweep case of 30 s, ten parameters varied, everything included [ms]",
     "import_ms": "processor time of `import vehicle` in a new process, files cached [ms]",
+    "shaker_ms": "processor time of `python -m vehicle.shaker --input low.csv --engine reduced`, all files [ms]",
     "first_car_ms": "processor time of `from vehicle import Car; Car.load('focus')` in a new process [ms]",
     "reduced_rms_error": "largest RMS difference of an acceleration channel to MuJoCo at an eighth of the step",
 }
@@ -156,7 +158,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
         native = compiled_rows(rows) if form == "native" else None
         with installed(rows, native):
             if native is not None:
-                native.attach(data)
+                native.attach(data, sparse=True)
             spent = go()
     if parts is not None:
         mujoco.set_mjcb_time(None)
@@ -187,6 +189,23 @@ def start_ms(statement: str, repeats: int) -> float:
     command = [sys.executable, "-c", code]
     times = [subprocess.run(command, capture_output=True, text=True, check=True).stdout for _ in range(repeats + 1)]
     return 1e3 * min(float(text) for text in times)
+
+
+def shaker_ms(repeats: int) -> float:
+    """Return the processor time of the command `shaker` with the reduced engine in a new process [ms]."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [
+            "shaker",
+            "--input",
+            "low.csv",
+            "--engine",
+            "reduced",
+            "--output",
+            f"{folder}/run",
+            "--force",
+            "--quiet",
+        ]
+        return start_ms(f"import sys; sys.argv = {words}; from vehicle.commands.shaker import main; main()", repeats)
 
 
 def accuracy(car: Car, seconds: float) -> Figures:
@@ -266,6 +285,7 @@ def measure(effort: Effort) -> Figures:
         "four_wheel_step_ratio": median(four / two for four, two in zip(four_wheel, native, strict=True)),
         "four_wheel_reduced_realtime_factor": median(four_wheel_reduced),
         "import_ms": start_ms("import vehicle", effort.repeats),
+        "shaker_ms": shaker_ms(effort.repeats),
         "first_car_ms": start_ms("from vehicle import Car; Car.load('focus')", effort.repeats),
         "case_ms": min(case_ms(effort.cases) for _ in range(2)),
         "parts_us": parts["native"],

@@ -11,8 +11,9 @@ from tempfile import TemporaryDirectory
 
 from scenarios.global_sensitivity import RANGES, points_of
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
-from vehicle.studies.sweeps.case import Case, table_cases
+from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import run_of
+from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
@@ -32,7 +33,7 @@ def cases(count: int) -> list[Case]:
         lower_band_edge=ROAD_EDGE_HZ,
     )
     points = points_of("lhs", count, 2006).tolist()
-    return table_cases([one.path for one in RANGES], points, [road], engine="reduced")
+    return list(table_cases([one.path for one in RANGES], points, [road], engine="reduced"))
 
 
 def case_ms(count: int) -> float:

@@ -14,6 +14,7 @@ SMALL = speed.Effort(repeats=1, steps=50, seconds=0.5, accuracy_seconds=0.5, cas
 TIMES = {"step_us", "python_step_us", "plain_step_us", "realtime_factor", "reduced_realtime_factor"}
 TIMES |= {"reduced_few_realtime_factor", "four_wheel_step_us", "four_wheel_step_ratio"}
 TIMES |= {"four_wheel_reduced_realtime_factor", "batch_realtime_factor", "case_ms", "import_ms", "first_car_ms"}
+TIMES |= {"shaker_ms"}
 COUNTS = {"rows", "dof", "four_wheel_rows", "four_wheel_dof"}
 KEYS = {*COUNTS, "timestep", *TIMES, "rms_error", "rms_error_channel", "slip_error", "reduced_rms_error"}
 PARTS = {"parts_us", "plain_parts_us"}
@@ -37,6 +38,7 @@ def test_benchmark_prints_and_compares(tmp_path, capsys, monkeypatch):
     assert (found["four_wheel_rows"], found["four_wheel_dof"]) == (120, 113)
     assert all(found[name] > 0.0 for name in TIMES)
     assert found["import_ms"] < 50.0 and found["first_car_ms"] < 1100.0
+    assert found["first_car_ms"] < found["shaker_ms"]
     for parts in (found["parts_us"], found["plain_parts_us"]):
         assert set(parts) == {"step", *speed.PARTS} and all(value > 0.0 for value in parts.values())
         assert sum(parts[name] for name in speed.PARTS) <= parts["step"]

@@ -36,10 +36,21 @@ def test_a_drive_file_is_written_and_read_again(measured, high_piece, tmp_path, 
     assert {path.name for path in folder.iterdir()} == {*summary["files"].values(), ".vehicle-files"}
     assert summary["reached"] and summary["error"] < 0.08 and summary["drive"]["wheels"] == ["fr"]
     assert any("1600 Hz" in text for text in summary["notices"])
+    assert {"response.png", "convergence.png"} <= set(summary["files"].values())
     drive = read_signal(folder / "drive.csv")
     assert drive.wheels == ("fr",) and drive.duration == pytest.approx(4.0)
     errors = [step["error"] for step in summary["iterations"]]
     assert min(errors) == summary["error"] and errors[0] > 2.0 * errors[-1]
+
+
+def test_without_figures_the_tables_of_a_drive_are_written(measured, tmp_path):
+    folder = tmp_path / "plain"
+    given = ["--target", str(measured), "--channel", f"{CHANNEL}=Dof 12*", "--band", "2:40", "--iterations", "1"]
+    assert main([*given, "--no-figures", "--quiet", "--output", str(folder)]) == 0
+    files = json.loads((folder / "summary.json").read_text())["files"]
+    assert {path.name for path in folder.iterdir()} == {*files.values(), ".vehicle-files"}
+    assert {"drive.csv", "response.csv", "iterations.csv"} < set(files.values())
+    assert not any(name.endswith(".png") for name in files.values())
 
 
 BAD = {

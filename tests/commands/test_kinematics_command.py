@@ -42,7 +42,7 @@ def test_files(tmp_path, capsys):
     lines = (folder / "kinematics.csv").read_text(encoding="utf-8").splitlines()
     assert lines[2].startswith("wheel_travel [m],camber [deg],toe [deg],lateral [m]")
     table = np.loadtxt(lines[3:], delimiter=",")
-    assert table.shape == (3, 9) and abs(table[1, 2]) > 0.01  # toe under load at no travel
+    assert table.shape == (3, 20) and abs(table[1, 2]) > 0.01  # toe under load at no travel
     assert (folder / "kinematics.png").stat().st_size > 10_000
     assert "load [N]" in capsys.readouterr().out
     assert main(arguments) == 2

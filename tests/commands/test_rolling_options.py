@@ -14,7 +14,8 @@ from vehicle.model.parameters.driving import Driving, tyre_words
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.excitation.road_drive import RoadDrive
-from vehicle.studies.sweeps.case import SignalFile, all_tyre_words, drivings, table_cases
+from vehicle.studies.sweeps.case import SignalFile, all_tyre_words, drivings
+from vehicle.studies.sweeps.case_table import table_cases
 
 ROAD = ["--road", "A", "--speed", "72", "--duration", "3", "--engine", "reduced", "--quiet"]
 

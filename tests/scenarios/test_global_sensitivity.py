@@ -12,8 +12,8 @@ from tests.studies.sweeps.sweep_samples import ShortRoad
 from vehicle.errors import DataError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.studies.sweeps.case import table_cases
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 

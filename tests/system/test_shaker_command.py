@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +23,7 @@ from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import write_signal
 
+ROOT = Path(__file__).parents[2]
 FILES = {"summary.json", "vehicle.toml", "time.npz", "frf.csv", "frf.png", "time.png"}
 
 
@@ -72,6 +76,35 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
     assert len(header) == 1 + 4 * len(load_vehicle().acceleration_channels)
     for word in ("damper", "resonances", "comfort", "solver", "files"):
         assert word in outcome.out
+
+
+def test_without_figures_the_other_files_are_the_same_and_no_drawing_library_is_loaded(short_signal, tmp_path):
+    code = (
+        "import sys\n"
+        "from vehicle.commands.shaker import main\n"
+        "code = main(sys.argv[1:])\n"
+        "slow = ('matplotlib', 'matplotlib.pyplot')\n"
+        "print(code, [name for name in slow if name in sys.modules])"
+    )
+    options = ["--input", "short.csv", "--engine", "reduced", "--quiet", "--output"]
+    printed = []
+    for folder in (["without", "--no-figures"], ["with"]):
+        command = [sys.executable, "-c", code, *options, *folder]
+        done = subprocess.run(
+            command,
+            cwd=tmp_path,
+            env=os.environ | {"PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        printed.append(done.stdout.strip() + done.stderr)
+    assert printed == ["0 []", "0 ['matplotlib']"]
+    assert {path.name for path in (tmp_path / "without").iterdir()} == (FILES | {MARKER}) - {"frf.png", "time.png"}
+    for name in ("frf.csv", "time.npz", "vehicle.toml"):
+        assert (tmp_path / "without" / name).read_bytes() == (tmp_path / "with" / name).read_bytes(), name
+    files = json.loads((tmp_path / "without" / "summary.json").read_text())["files"]
+    assert set(files) == {"summary", "vehicle", "time", "frf"}
 
 
 def test_what_was_repaired_and_what_has_no_effect_is_said(shaker, short_signal, tmp_path):

@@ -6,6 +6,7 @@ COMMANDS = (
     "sweep",
     "comfort",
     "mjcf",
+    "show",
     "kinematics",
     "road",
     "inspect",

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
-from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
+from vehicle.commands.options import (
+    command_parser,
+    engine_option,
+    figures_option,
+    message_options,
+    output_options,
+    vehicle_options,
+)
 from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError
@@ -78,6 +85,7 @@ def parser() -> Parser:
         parser.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto"
     )
     output_options(parser, OUTPUT)
+    figures_option(parser)
     parser.add_argument("--json", action="store_true", help="print the content of compare.json")
     message_options(parser, quiet=True)
     return parser
@@ -263,7 +271,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         if measured.record is None:
             refuse_idle(options, RECORDS)
         comparison = compare_run(run, measured, delay=delay, drift=drift, window=options.window, bands=edges)
-        save_comparison(comparison, output, force=options.force, protect=(options.measured,))
+        save_comparison(comparison, output, force=options.force, figures=options.figures, protect=(options.measured,))
         summary, said = comparison.summary(), comparison.text()
     return summary, said
 
@@ -351,7 +359,8 @@ def _modes(
     )
     with output_folder(output, force=options.force, protect=(options.measured,)) as folder:
         write_json(folder / "compare.json", summary)
-        write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
+        if options.figures:
+            write_whole(folder / "mac.png", lambda path: plot_mac(path, tables, caption))
     return summary, comparison.text(name)
 
 

@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_choice, record_options
-from vehicle.commands.options import command_parser, engine_option, message_options, output_options, vehicle_options
+from vehicle.commands.options import (
+    command_parser,
+    engine_option,
+    figures_option,
+    message_options,
+    output_options,
+    vehicle_options,
+)
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
@@ -70,6 +77,7 @@ def parser() -> Parser:
     )
     engine_option(iteration, "auto")
     output_options(parser, None, default="runs/drive_<name of the target>")
+    figures_option(parser)
     message_options(parser, quiet=True)
     return parser
 
@@ -97,7 +105,7 @@ def _job(options: argparse.Namespace) -> None:
         engine=options.engine,
         progress=lambda step: None if options.quiet else _say(step, options.iterations),
     )
-    summary = save_drive(drive, output, force=options.force, protect=inputs)
+    summary = save_drive(drive, output, force=options.force, figures=options.figures, protect=inputs)
     if not options.quiet:
         print(report(summary, output))
 

@@ -7,7 +7,7 @@ import dataclasses
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.engines.simulation.axle_statics import AxleStatics, WheelPose
+    from vehicle.engines.simulation.axle_statics import WheelPose
+    from vehicle.engines.simulation.wheel_geometry import WheelGeometry
 
 MOST_POSITIONS = 2001
 """Positions of one table: 0.1 mm over 200 mm."""
@@ -26,7 +27,9 @@ MOST_POSITIONS = 2001
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("kinematics", "Camber, toe, track and loads of an axle over wheel travel and load.")
+    parser = command_parser(
+        "kinematics", "Camber, toe, loads, roll centre and steering axis of an axle over wheel travel and load."
+    )
     vehicle_options(parser)
     parser.add_argument(
         "--axle", default="front", metavar="NAME", help="table of the vehicle file; %(default)s by default"
@@ -77,47 +80,30 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.engines.simulation.axle_curves import design_slopes, travel_curve
+    from vehicle.engines.simulation.axle_curves import design_slopes, geometry_curve, travel_curve
     from vehicle.runs.car import Car
+    from vehicle.runs.car.axle import axle_statics, car_at_rest, direction_to_middle
 
     travels = _travels(options.travel)
     load = np.array([*_vector("--contact-force", options.contact_force), *_vector("--moment", options.moment)])
     folder = None if options.output is None else output_folder_of(options, options.output)
-    car = Car.load(options.vehicle, options.overrides)
-    if car.vehicle.driving.rolling:
-        # The axle does not drive on its rig: the wheel is fixed to the hub there.
-        car = Car.load(options.vehicle, [*options.overrides, "driving.speed=0"])
+    car = car_at_rest(Car.load(options.vehicle, options.overrides))
     statics = axle_statics(car, options.axle, ideal=options.ideal, standing=options.tyre == "standing")
     rates = design_slopes(statics, opposite=options.opposite, load=load)
     poses = travel_curve(statics, travels, opposite=options.opposite, load=load)
+    towards = direction_to_middle(car, options.axle)
+    geometry = geometry_curve(statics, travels, towards=towards, opposite=options.opposite, load=load)
     if folder is not None:
-        _write(options, folder, car.vehicle.name, poses)
+        _write(options, folder, car.vehicle.name, poses, geometry)
     if options.json:
-        rows = [{k: None if math.isnan(v) else v for k, v in dataclasses.asdict(pose).items()} for pose in poses]
+        both = zip(poses, geometry, strict=True)
+        rows = [
+            {k: None if math.isnan(v) else v for entry in pair for k, v in dataclasses.asdict(entry).items()}
+            for pair in both
+        ]
         print(json.dumps({"axle": options.axle, "rates": rates, "rows": rows}, indent=2, allow_nan=False))
     else:
-        print(_report(options, poses, rates))
-
-
-def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:
-    """Return the kinematics model of an axle.
-
-    Args:
-        car: the car.
-        name: table of the axle in the vehicle file.
-        ideal: True replaces all bushings by ideal ball joints.
-        standing: True for tyres that stand, see `AxleStatics`.
-
-    Raises:
-        ConfigurationError: the table has no wheel.
-    """
-    from vehicle.engines.simulation.axle_statics import AxleStatics
-
-    wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == name]
-    if not wheels:
-        axles = dict.fromkeys(wheel.axle for wheel in car.vehicle.composition.wheels)
-        raise ConfigurationError(f"--axle {name!r}: no axle with wheels; {car.vehicle.name} has {', '.join(axles)}")
-    return AxleStatics(car.model.model, car.model.static.preload, wheels=wheels, ideal=ideal, standing=standing)
+        print(_report(options, poses, geometry, rates))
 
 
 def _travels(text: str) -> list[float]:
@@ -161,25 +147,48 @@ HEADS = {
     "load_n": "load [N]",
     "strut_length_m": "spring [mm]",
 }
-"""Columns of the printed table: lengths in mm."""
+"""Columns of the first printed table: lengths in mm."""
+
+GEOMETRY_HEADS = {
+    "roll_centre_height_m": "roll centre [mm]",
+    "front_swing_arm_m": "front arm [m]",
+    "side_swing_arm_m": "side arm [m]",
+    "brake_support_deg": "brake [deg]",
+    "drive_support_deg": "drive [deg]",
+    "caster_deg": "caster [deg]",
+    "kingpin_inclination_deg": "kingpin [deg]",
+    "caster_trail_m": "trail [mm]",
+    "scrub_radius_m": "scrub [mm]",
+}
+"""Columns of the second printed table: swing arms in m, other lengths in mm."""
+
+COLUMNS = (*HEADS, *GEOMETRY_HEADS, "roll_centre_lateral_m", "side_swing_height_m")
+"""Columns of kinematics.csv."""
 
 
-def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str, float | None]) -> str:
-    """Return the table as text."""
+def _report(
+    options: argparse.Namespace,
+    poses: list[WheelPose],
+    geometry: list[WheelGeometry],
+    rates: dict[str, float | None],
+) -> str:
+    """Return both tables as text."""
     joints = "ideal joints" if options.ideal else "bushings as they are"
     lines = [
         f"{options.axle} axle, wheel on the right, against its design position; {joints}"
         + ("; left wheel opposite" if options.opposite else ""),
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
-        "  ".join(f"{head:>{max(len(head), 8)}}" for head in HEADS.values()),
+        *_rows(HEADS, [dataclasses.asdict(pose) for pose in poses]),
+        "roll centre above the ground; swing arms: inwards and towards the middle of the car +; support angles of "
+        "brake and drive forces: against dive, lift and squat +",
+        *_rows(
+            {"wheel_travel_m": HEADS["wheel_travel_m"], **GEOMETRY_HEADS},
+            [
+                {**dataclasses.asdict(entry), "wheel_travel_m": pose.wheel_travel_m}
+                for pose, entry in zip(poses, geometry, strict=True)
+            ],
+        ),
     ]
-    for pose in poses:
-        cells = []
-        for name, head in HEADS.items():
-            value = getattr(pose, name) * (1e3 if name.endswith("_m") else 1.0)
-            text = "-" if math.isnan(value) else f"{value:z.{0 if name == 'wheel_travel_m' else 3}f}"
-            cells.append(f"{text:>{max(len(head), 8)}}")
-        lines.append("  ".join(cells))
     if rates["wheel_rate_n_per_m"] is not None:
         lines.append(f"wheel rate {1e-3 * rates['wheel_rate_n_per_m']:.2f} N/mm")
     camber, toe = (0.1 * (rates[f"{name}_deg_per_m"] or 0.0) for name in ("camber", "toe"))
@@ -187,15 +196,33 @@ def _report(options: argparse.Namespace, poses: list[WheelPose], rates: dict[str
     return "\n".join(lines)
 
 
-def _write(options: argparse.Namespace, output: Path, name: str, poses: list[WheelPose]) -> None:
+def _rows(heads: dict[str, str], values: list[dict[str, float]]) -> list[str]:
+    """Return the lines of a table: its heads, then a line for each position."""
+    widths = [max(len(head), 8) for head in heads.values()]
+    lines = ["  ".join(f"{head:>{width}}" for head, width in zip(heads.values(), widths, strict=True))]
+    for row in values:
+        cells = []
+        for (name, head), width in zip(heads.items(), widths, strict=True):
+            value = row[name] * (1e3 if head.endswith("[mm]") else 1.0)
+            text = "-" if math.isnan(value) else f"{value:z.{0 if name == 'wheel_travel_m' else 3}f}"
+            cells.append(f"{text:>{width}}")
+        lines.append("  ".join(cells))
+    return lines
+
+
+def _write(
+    options: argparse.Namespace, output: Path, name: str, poses: list[WheelPose], geometry: list[WheelGeometry]
+) -> None:
     from vehicle.drawing.rendering.kinematics_plot import plot_kinematics
     from vehicle.runs.output.folder import output_folder, write_whole
     from vehicle.signals.records.text_format import write_table
 
     units = {"m": "m", "deg": "deg", "n": "N"}
-    names = list(HEADS)
-    heads = [f"{name.rpartition('_')[0]} [{units[name.rpartition('_')[2]]}]" for name in names]
-    columns = [np.array([getattr(pose, name) for pose in poses]) for name in names]
+    heads = [f"{name.rpartition('_')[0]} [{units[name.rpartition('_')[2]]}]" for name in COLUMNS]
+    values = [
+        {**dataclasses.asdict(pose), **dataclasses.asdict(entry)} for pose, entry in zip(poses, geometry, strict=True)
+    ]
+    columns = [np.array([row[name] for row in values]) for name in COLUMNS]
     comments = [
         f"{name}, {options.axle} axle, wheel on the right, against its design position",
         "camber: top outwards +, toe: front inwards +, lateral: outwards +, longitudinal: to the rear +",
@@ -211,4 +238,4 @@ def _write(options: argparse.Namespace, output: Path, name: str, poses: list[Whe
             ]
         )
         title = f"{name}: {options.axle} axle, wheel on the right"
-        write_whole(folder / "kinematics.png", lambda file: plot_kinematics(file, poses, title, caption))
+        write_whole(folder / "kinematics.png", lambda file: plot_kinematics(file, poses, geometry, title, caption))

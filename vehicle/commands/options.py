@@ -48,7 +48,17 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
         metavar="FILE.toml",
         help=VEHICLE_HELP,
     )
-    group.add_argument(
+    set_option(group)
+    return group
+
+
+def set_option(parser: argparse._ActionsContainer) -> None:
+    """Add --set, which changes the car.
+
+    Args:
+        parser: parser of the command, or a group of it.
+    """
+    parser.add_argument(
         "--set",
         dest="overrides",
         action="append",
@@ -57,7 +67,6 @@ def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsCont
         help="override one parameter, as damper.coulomb_friction=93.75; a vector is [x, y, z], and the path "
         "of one component ends with its axis: bushings.tyre.stiffness.z=2e5; may be repeated",
     )
-    return group
 
 
 def output_options(parser: Parser, path: Path | None, *, default: str = "", metavar: str = "DIR") -> None:
@@ -85,6 +94,16 @@ def extra_output_options(parser: Parser, files: str) -> None:
     parser.add_argument("--output", type=Path, metavar="DIR", help=f"write {files} there")
     group = parser.scoped_group("files", needs="--output DIR", active=lambda options: options.output is not None)
     group.add_argument("--force", action="store_true", help=FORCE_HELP)
+
+
+def figures_option(parser: argparse._ActionsContainer) -> None:
+    """Add --no-figures, for a command that writes pictures beside its tables; the default of `figures` is True."""
+    parser.add_argument(
+        "--no-figures",
+        dest="figures",
+        action="store_false",
+        help="write no pictures (PNG): the command is done sooner; tables, summary and report are unchanged",
+    )
 
 
 def film_name(value: str, default: str) -> Path:
@@ -155,6 +174,12 @@ def executor_option(parser: argparse.ArgumentParser) -> None:
     """Add --executor, a cluster or a custom executor for independent runs."""
     text = "dask://host:port, or module:factory for an executor of your own"
     parser.add_argument("--executor", metavar="WHERE", help=text)
+
+
+def time_limit_option(parser: argparse.ArgumentParser) -> None:
+    """Add --time-limit, the maximum computing time of a run."""
+    text = "maximum computing time of a run [s]; a run that takes longer is a failed row"
+    parser.add_argument("--time-limit", type=float, metavar="S", help=text)
 
 
 def _jobs(text: str) -> int:

@@ -25,6 +25,7 @@ from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
     engine_option,
+    figures_option,
     film_name,
     message_options,
     output_options,
@@ -84,6 +85,7 @@ def parser() -> Parser:
         help="write the run in this format too: time histories, and in mat, uff and h5 the FRFs with their coherence; "
         "uff with the places of the car; may be repeated",
     )
+    figures_option(parser)
     parser.add_argument("--video", nargs="?", const="", metavar="FILE.mp4", help="render a film of the run")
     film = parser.scoped_group("a film", needs="--video", active=lambda options: options.video is not None)
     film.add_argument("--video-start", type=float, metavar="S", help="start of the excerpt [s]; chosen by default")
@@ -211,6 +213,7 @@ def _job(options: argparse.Namespace) -> None:
             time_format=options.time_format,
             formats=options.formats,
             engine_reason=reason,
+            figures=options.figures,
             video=None if video_name is None else (video_name, make_film),
             measured=measured,
             report=None if report_name is None else (report_name, make_report),

@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
@@ -21,9 +22,13 @@ from vehicle.commands.options import (
     output_options,
     resume_options,
     skip_option,
+    time_limit_option,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+
+if TYPE_CHECKING:
+    from vehicle.studies.sweeps.case_table import Combinations
 
 
 def parser() -> Parser:
@@ -49,6 +54,7 @@ def parser() -> Parser:
     skip_option(parser, 2.0)
     jobs_option(parser)
     executor_option(parser)
+    time_limit_option(parser)
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
@@ -60,6 +66,7 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.runs.car import Car
+    from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.executors import executor_factory
     from vehicle.studies.sweeps.plan import plan_sweep
@@ -68,8 +75,7 @@ def _job(options: argparse.Namespace) -> None:
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
-    paths, rows = read_variations(options.table) if options.table else every_combination(options.vary)
-    changes = [[f"{path}={value}" for path, value in zip(paths, row, strict=True)] for row in rows]
+    changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
     make = executor_factory(options.executor, options.jobs)
@@ -81,7 +87,9 @@ def _job(options: argparse.Namespace) -> None:
             executor=make,
             folder=folder,
             retry_failed=options.retry_failed,
+            time_limit=options.time_limit,
             progress=ProgressLine("sweep     ", enabled=not options.quiet),
+            notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
         )
     except KeyboardInterrupt:
         print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
@@ -102,17 +110,16 @@ def _job(options: argparse.Namespace) -> None:
         )
 
 
-def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, ...]]]:
-    """Return the parameter paths and the rows of all combinations of `--vary`; the last path varies fastest.
+def every_combination(texts: Sequence[str]) -> Combinations:
+    """Return all combinations of `--vary`; the last path varies fastest.
 
     Raises:
         ConfigurationError: an option is not PATH=V1,V2,...
     """
-    from itertools import product
-
     from vehicle.errors import ConfigurationError
+    from vehicle.studies.sweeps.case_table import Combinations
 
-    paths, values = [], []
+    columns: dict[str, list[str]] = {}
     for text in texts:
         path, separator, listed = text.partition("=")
         # A comma within brackets belongs to a vector.
@@ -122,11 +129,10 @@ def every_combination(texts: Sequence[str]) -> tuple[list[str], list[tuple[str, 
                 f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; the path of one "
                 "component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
             )
-        if path.strip() in paths:
+        if path.strip() in columns:
             raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")
-        paths.append(path.strip())
-        values.append(items)
-    return paths, list(product(*values))
+        columns[path.strip()] = [f"{path.strip()}={item}" for item in items]
+    return Combinations(list(columns.values()))
 
 
 main = command(parser, _job)

@@ -45,8 +45,8 @@ class PythonRows:
         if model._address == self.rows.model._address:
             self.rows(model, data)
 
-    def attach(self, data: mujoco.MjData) -> None:
-        """Store the state that the loop steps."""
+    def attach(self, data: mujoco.MjData, *, sparse: bool) -> None:
+        """Store the state that the loop steps; its rows stay dense."""
         self.data = data
 
     def detach(self) -> None:

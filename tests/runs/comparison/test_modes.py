@@ -86,6 +86,11 @@ def test_pairs_and_their_frequencies(file, tmp_path, car, capsys):
     np.testing.assert_allclose(np.diag(content["measured_auto_mac"]), 1.0)
 
 
+def test_without_figures_a_comparison_writes_its_table(file, tmp_path):
+    assert compare(["--measured", str(file), "--output", str(tmp_path / "plain"), "--no-figures", "--quiet"]) == 0
+    assert {path.name for path in (tmp_path / "plain").iterdir()} == {"compare.json", ".vehicle-files"}
+
+
 def measurement(path, car, places, **changes):
     """Modes of the car at some places, at nodes 11, 12, ... without a geometry."""
     shapes = []

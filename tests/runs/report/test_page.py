@@ -67,6 +67,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
         "Result",
         "Findings",
         "Car, signal, engine",
+        "The car",
         "Frequency responses",
         "Time histories",
         "Dampers",
@@ -75,7 +76,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
         "Modes",
     ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
-    assert reported.text.count("<svg ") == 4  # bands of the comfort, FRFs, time histories, spectra
+    assert reported.text.count("<svg ") == 5  # car, bands of the comfort, FRFs, time histories, spectra
 
 
 def test_the_page_says_the_numbers_of_the_summary(reported, outline):
@@ -131,7 +132,7 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     assert "P, A. <b>, 20" in text and "vehicle-on-shaker 0." in text
     summaries = [json.loads((folder / "summary.json").read_text()) for folder in (reported.folder, softer)]
     before, after = (each["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] for each in summaries)
-    answer = re.search(r'<p class="answer">([^<]*)', text)[1]
+    answer = text.partition('<p class="answer">')[2].partition("<")[0]
     word = "rises" if after > before else "falls"
     assert "main_spring.stiffness from " in answer and f"{word} from {before:.3g} to {after:.3g} m/s²" in answer
     assert re.search(r"% of the change \(mean square\) arise along [xyz] between [\d.]+ and [\d.]+ Hz", answer)

@@ -15,8 +15,9 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.optimisation.ride import ride_measure
-from vehicle.studies.sweeps.case import SignalFile, table_cases
+from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_evaluation import evaluate
+from vehicle.studies.sweeps.case_table import table_cases
 
 LOOSE = "damper.coulomb_friction=10"
 SKIP = 1.0

@@ -14,7 +14,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.studies.optimisation.problem import Criterion, Tolerance, parsed_criteria, parsed_range, parsed_tolerance
 from vehicle.studies.optimisation.trials import Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.sweeps.case import SignalFile
-from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.measure import ComfortMeasure
 
 ROADS = ("smooth", "rough")
@@ -134,8 +134,9 @@ class ImmediateExecutor(Executor):
 
     def submit(self, function, /, *arguments, **_):
         future: Future[object] = Future()
-        cases, _, _ = arguments
-        future.set_result([Result(values={"g0": float(case.overrides[0].removeprefix("p0="))}) for case in cases])
+        cases, keys = arguments[:2]
+        results = [Result(values={"g0": float(case.overrides[0].removeprefix("p0="))}) for case in cases]
+        future.set_result(Block.of(cases, keys, results))
         return future
 
 

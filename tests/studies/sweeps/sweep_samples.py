@@ -11,7 +11,7 @@ from itertools import product
 from pathlib import Path
 
 from vehicle.signals.excitation.random_road import random_road
-from vehicle.studies.sweeps.case import table_cases
+from vehicle.studies.sweeps.case_table import table_cases
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -56,6 +56,18 @@ class Peak:
 
     def __call__(self, run):
         return {"peak": float(abs(run["seat_rail_acc_z"]).max())}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Worker(Peak):
+    """Measure: number of the process that runs the case, and the time."""
+
+    @property
+    def units(self):
+        return {"process": "-", "time": "s"}
+
+    def __call__(self, run):
+        return {"process": float(os.getpid()), "time": time.time()}
 
 
 def threads():

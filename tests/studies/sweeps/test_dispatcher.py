@@ -5,10 +5,11 @@ from __future__ import annotations
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 
+import numpy as np
 import pytest
 
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
-from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case_result import Block, Result
 from vehicle.studies.sweeps.dispatcher import DIED, FILL, LARGEST, PER_WORKER, TASK_S, Dispatcher, in_groups
 
 
@@ -26,28 +27,30 @@ class Paced(Executor):
 
     def submit(self, function, /, *arguments, **named):
         self.tasks.append([case.label for case in arguments[0]])
-        future: Future[list[Result]] = Future()
+        future: Future[Block] = Future()
         if self.deadly in self.tasks[-1]:
             future.set_exception(BrokenProcessPool("killed"))
         elif self.wrong in self.tasks[-1]:
             future.set_exception(TypeError("no number"))
         else:
-            future.set_result([Result(values={"peak": 1.0}, seconds=self.pace) for _ in self.tasks[-1]])
+            results = [Result(values={"peak": 1.0}, seconds=self.pace)] * len(self.tasks[-1])
+            future.set_result(Block.of(arguments[0], arguments[1], results))
         return future
 
 
 def many(count, engine="auto"):
     cases = grid({"damper.viscous": range(count)}, [ShortRoad()], engine=engine)
-    return {case.label: case for case in cases}
+    return cases
 
 
-def worked(todo, executor):
-    results_by_key: dict[str, Result] = {}
+def worked(cases, executor):
+    """Run cases and return the results by the labels of the cases."""
+    results: dict[int, Result] = {}
     Dispatcher(lambda: executor, Peak()).work(
-        todo, lambda keys, results: results_by_key.update(zip(keys, results, strict=True))
+        cases, lambda numbers, block: results.update(zip(numbers, block.results(), strict=True))
     )
-    assert set(results_by_key) == set(todo)
-    return results_by_key
+    assert set(results) == set(range(len(cases)))
+    return {cases[number].label: result for number, result in results.items()}
 
 
 @pytest.mark.parametrize(
@@ -69,7 +72,7 @@ def test_tasks_contain_full_vectors_of_cars_with_all_their_inputs():
     roads = [ShortRoad(seed=seed) for seed in range(3)]
     cases = grid({"damper.viscous": range(100)}, roads, engine="reduced")
     executor = Paced(0.2 * TASK_S)
-    worked({f"{number} {case.label}": case for number, case in enumerate(cases)}, executor)
+    worked(cases, executor)
     for task in executor.tasks[: 2 * PER_WORKER]:
         assert len(task) == 3 * FILL and len({label.partition(", ")[2] for label in task}) == FILL
 
@@ -82,7 +85,7 @@ def test_few_cases_are_shared_by_all_workers():
 
 def test_only_the_deadly_case_fails():
     todo = many(40)
-    deadly = list(todo)[13]
+    deadly = todo[13].label
     executor = Paced(deadly=deadly)
     results = worked(todo, executor)
     assert {key for key, result in results.items() if result.reason} == {deadly}
@@ -92,7 +95,7 @@ def test_only_the_deadly_case_fails():
 
 def test_an_error_fails_only_its_case():
     todo = many(20)
-    wrong = list(todo)[3]
+    wrong = todo[3].label
     results = worked(todo, Paced(wrong=wrong))
     assert {key: result.reason for key, result in results.items() if result.reason} == {wrong: "TypeError: no number"}
 
@@ -100,5 +103,4 @@ def test_an_error_fails_only_its_case():
 def test_cases_of_a_car_are_consecutive():
     roads, values = [ShortRoad(seed=1), ShortRoad(seed=2)], {"damper.viscous": [1.0, 2.0]}
     cases = [*grid(values, roads), *grid(values, roads[:1], engine="mujoco"), *grid(values, roads, fixed=["gravity=9"])]
-    keys = in_groups({str(number): case for number, case in enumerate(cases)})
-    assert list(keys) == ["0", "2", "1", "3", "6", "8", "7", "9", "4", "5"]
+    assert in_groups(cases, np.arange(10)).tolist() == [0, 2, 1, 3, 6, 8, 7, 9, 4, 5]

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import errno
+import math
+import os
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from threading import Timer
 from typing import ClassVar
 
+import numpy as np
 import pytest
 
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
-from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.studies.sweeps import executors
-from vehicle.studies.sweeps.case_result import Result
-from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER
+from vehicle.errors import ConfigurationError, OutputError, SimulationError
+from vehicle.studies.sweeps import dispatcher, executors, worker
+from vehicle.studies.sweeps.case_keys import case_keys
+from vehicle.studies.sweeps.case_result import Block, Result
+from vehicle.studies.sweeps.dispatcher import FILL, PER_WORKER, Dispatcher
 from vehicle.studies.sweeps.executors import process_pool, workers_of
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.sweep import case_keys, sweep
+from vehicle.studies.sweeps.store import StoredRows
+from vehicle.studies.sweeps.sweep import sweep
 from vehicle.studies.sweeps.worker import carry_out
 
 
@@ -30,26 +36,24 @@ class Slow(Executor):
 
     def __init__(self, workers):
         self._max_workers = workers
-        self.held: list[Future[list[Result]]] = []
-        self.sizes: dict[Future[list[Result]], int] = {}
+        self.held: dict[Future[Block], Block] = {}
         self.maximum = 0
         self.quiet: Timer | None = None
 
     def submit(self, function, /, *arguments, **named):
         if self.quiet is not None:
             self.quiet.cancel()
-        future: Future[list[Result]] = Future()
-        self.held.append(future)
-        self.sizes[future] = len(arguments[0])
+        future: Future[Block] = Future()
+        self.held[future] = Block.of(arguments[0], arguments[1], [Result(values={"peak": 1.0})] * len(arguments[0]))
         self.maximum = max(self.maximum, sum(not task.done() for task in self.held))
         self.quiet = Timer(0.5, self.finish)
         self.quiet.start()
         return future
 
     def finish(self):
-        for task in list(self.held):
+        for task, block in list(self.held.items()):
             if not task.done():
-                task.set_result([Result(values={"peak": 1.0})] * self.sizes[task])
+                task.set_result(block)
 
 
 class Fails(Executor):
@@ -59,7 +63,7 @@ class Fails(Executor):
         self.error = error
 
     def submit(self, function, /, *arguments, **named):
-        future: Future[list[Result]] = Future()
+        future: Future[Block] = Future()
         if self.error is None:
             future.cancel()
             future.set_running_or_notify_cancel()
@@ -75,6 +79,114 @@ def test_submitted_tasks_are_proportional_to_the_workers():
     with ThreadPoolExecutor(5) as threads:
         assert workers_of(threads) == 5
     assert workers_of(Fails()) is None
+
+
+class Cluster(Fails):
+    """Executor with the client of a cluster, whose workers come and go; it runs a task if there is a worker."""
+
+    scheduler = None
+
+    def __init__(self, workers):
+        super().__init__()
+        self.workers, self.counted, self._client = list(workers), 0, self
+        self.waiting: list[tuple[Future[Block], Block]] = []
+
+    def nthreads(self):
+        count = self.workers.pop(0) if len(self.workers) > 1 else self.workers[0]
+        if count is None:
+            raise OSError("connection lost")
+        self.counted += 1
+        for future, block in self.waiting[: count and None]:
+            future.set_result(block)
+        self.waiting = [] if count else self.waiting
+        return {str(number): 1 for number in range(count)}
+
+    def submit(self, function, /, *arguments, **named):
+        future: Future[Block] = Future()
+        self.waiting.append(
+            (future, Block.of(arguments[0], arguments[1], [Result(values={"peak": 1.0})] * len(arguments[0])))
+        )
+        return future
+
+    def shutdown(self, wait=True, *, cancel_futures=False):
+        pass
+
+    def close(self):
+        pass
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    """Count the workers every hundredth of a second, and give a notice at once."""
+    monkeypatch.setattr(dispatcher, "LOOK_AGAIN_S", 0.01)
+    monkeypatch.setattr(dispatcher, "NO_WORKER_NOTICE_S", 0.0)
+
+
+@pytest.mark.usefixtures("impatient")
+def test_new_workers_get_tasks_while_a_sweep_is_running():
+    class Held(Slow):
+        """Executor with a second worker after the first look; counts its unfinished tasks."""
+
+        def submit(self, function, /, *arguments, **named):
+            Timer(0.1, setattr, (self, "_max_workers", 4)).start()
+            return super().submit(function, *arguments, **named)
+
+    executor = Held(1)
+    assert not sweep(many(300), Peak(), executor=executor).failed
+    assert executor.maximum == 4 * PER_WORKER
+
+
+@pytest.mark.usefixtures("impatient")
+def test_no_worker_is_said_and_waited_for():
+    notices: list[str] = []
+    executor = Cluster([0, 0, 0, 2])
+    assert not sweep(many(2), Peak(), executor=lambda: executor, notice=notices.append).failed
+    (notice,) = notices
+    assert notice.startswith("no worker for 0 s, waiting for at most 300 s; start its workers")
+
+
+@pytest.mark.usefixtures("impatient")
+def test_no_worker_for_too_long_and_a_lost_scheduler_are_errors(monkeypatch):
+    with pytest.raises(SimulationError, match=r"lost the scheduler of the cluster \(connection lost\); finished rows"):
+        sweep(many(2), Peak(), executor=lambda: Cluster([0, None]))
+    monkeypatch.setattr(dispatcher, "NO_WORKER_LIMIT_S", 0.05)
+    with pytest.raises(SimulationError, match=r"no worker for 0\.05 s; start its workers\. Finished rows are stored"):
+        sweep(many(2), Peak(), executor=lambda: Cluster([0]))
+
+
+def test_rows_are_stored_in_the_order_in_which_tasks_finish():
+    """A set of finished tasks has another order: a killed sweep then had the rows of later cases only."""
+    order: list[int] = []
+    executor = Slow(8)
+    Dispatcher(executor, Peak()).work(many(200), lambda numbers, _: order.extend(numbers.tolist()))
+    assert executor.maximum == 8 * PER_WORKER and order == list(range(200))
+
+
+def test_a_full_disk_of_a_worker_stops_the_sweep(monkeypatch):
+    def full(cases, measure):
+        raise OSError(errno.ENOSPC, "No space left on device", "/scratch/road.npz")
+
+    monkeypatch.setattr(worker, "evaluate", full)
+    with pytest.raises(OutputError, match=r"worker .*No space left on device: '/scratch/road.npz'; free space there"):
+        sweep(many(3), Peak(), executor=lambda: ThreadPoolExecutor(1))
+
+
+def test_a_full_disk_of_the_sweep_stops_it(tmp_path, monkeypatch):
+    def full(descriptor, content):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "write", full)
+    rows = StoredRows(tmp_path / "rows.jsonl", 1)
+    with pytest.raises(OutputError, match=r"cannot be written after 0 rows: No space left.*continue with --resume"):
+        rows.append(np.arange(1), Block.of(many(1), [""], [Result()]))
+
+
+def test_a_time_limit_needs_processes():
+    with pytest.raises(ConfigurationError, match="in the process of the sweep, where a run cannot be stopped"):
+        sweep(many(1), Peak(), executor=lambda: ThreadPoolExecutor(1), time_limit=60.0)
+    for limit in (0.0, -1.0, math.nan, math.inf):
+        with pytest.raises(ConfigurationError, match="must be a finite number of seconds above 0"):
+            sweep(many(1), Peak(), executor=lambda: ThreadPoolExecutor(1), time_limit=limit)
 
 
 def test_an_executor_of_the_caller_stays_open():
@@ -112,9 +224,9 @@ def test_an_interruption_keeps_the_rows(tmp_path):
 
 def test_a_worker_with_another_program_is_rejected():
     cases = many(1)
-    assert not carry_out(cases, Peak(), program_digest())[0].reason
+    assert not carry_out(cases, [""], Peak(), program_digest()).failed
     with pytest.raises(ConfigurationError, match="the workers have another program"):
-        carry_out(cases, Peak(), "another")
+        carry_out(cases, [""], Peak(), "another")
     # An error of the worker, not of the run, is not a row.
     with pytest.raises(ConfigurationError, match="another program"):
         sweep(cases, Peak(), executor=Fails(ConfigurationError("another program")))

@@ -12,19 +12,22 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid, threads
+from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, Worker, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps import executors
-from vehicle.studies.sweeps.case import SignalFile, table_cases
-from vehicle.studies.sweeps.dispatcher import DIED
+from vehicle.studies.sweeps.case import SignalFile
+from vehicle.studies.sweeps.case_keys import case_keys
+from vehicle.studies.sweeps.case_table import table_cases
+from vehicle.studies.sweeps.dispatcher import DIED, overdue
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
-from vehicle.studies.sweeps.sweep import case_keys, sweep
+from vehicle.studies.sweeps.sweep import sweep
 
 FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
 ROOT = Path(__file__).parents[3]
@@ -294,6 +297,38 @@ def test_a_dask_cluster_makes_the_same_table():
     expected = sweep(two_by_two(), Peak(), executor=partial(executors.process_pool, 1))
     assert table.text() == expected.text()
     assert not table.failed
+
+
+def test_a_worker_that_joins_a_running_sweep_is_used():
+    """Use a real scheduler with one worker process, and start another one after the first row."""
+    distributed = pytest.importorskip("distributed")
+    joined: list[float] = []
+
+    def join(fraction):
+        if not joined:
+            cluster.scale(2)
+            with distributed.Client(cluster.scheduler_address, set_as_default=False) as client:
+                client.wait_for_workers(2, timeout=60)
+            joined.append(time.time())
+
+    options: dict[str, Any] = {"dashboard_address": None, "worker_dashboard_address": None, "silence_logs": 50}
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=True, **options) as cluster:
+        make = executor_factory(cluster.scheduler_address.replace("tcp", "dask"), 1)
+        roads = [ShortRoad(seed=seed, wait=0.3) for seed in range(40)]
+        cases = grid({"damper.viscous": [2000.0]}, roads, engine="reduced")
+        table = sweep(cases, Worker(), executor=make, progress=join)
+    assert not table.failed
+    processes, times = table.column("process"), table.column("time")
+    assert len(set(processes)) == 2
+    later = max(set(processes), key=lambda process: times[processes == process].min())
+    assert times[processes == later].min() - joined[0] < 10.0
+
+
+def test_a_run_that_hangs_is_a_failed_row(tmp_path):
+    hanging = ShortRoad(name="hanging", wait=600.0)
+    cases = grid({"damper.viscous": [2000.0]}, [ShortRoad(), hanging, ShortRoad(seed=2)], engine="reduced")
+    table = sweep(cases, Peak(), jobs=1, time_limit=8.0)
+    assert [result.reason for result in table.results] == ["", overdue(8.0), ""]
 
 
 def test_a_cluster_without_response_is_named(monkeypatch):

@@ -62,9 +62,9 @@ def test_a_table_of_variations(tmp_path):
     file = tmp_path / "variations.csv"
     file.write_text("damper.viscous, damper.coulomb_friction\n# a remark\n1500,75\n2250,125\n", encoding="utf-8")
     assert read_variations(file) == (["damper.viscous", "damper.coulomb_friction"], [("1500", "75"), ("2250", "125")])
-    assert every_combination(["a=1,2", "b=x"]) == (["a", "b"], [("1", "x"), ("2", "x")])
-    vectors = every_combination(["a=[1, 2, 3],[4,5,6]", "b=7,8"])[1]
-    assert vectors == [("[1, 2, 3]", "7"), ("[1, 2, 3]", "8"), ("[4,5,6]", "7"), ("[4,5,6]", "8")]
+    assert list(every_combination(["a=1,2", "b=x"])) == [("a=1", "b=x"), ("a=2", "b=x")]
+    first, *_, last = every_combination(["a=[1, 2, 3],[4,5,6]", "b=7,8"])
+    assert (first, last) == (("a=[1, 2, 3]", "b=7"), ("a=[4,5,6]", "b=8"))
 
 
 @pytest.mark.parametrize(

@@ -94,9 +94,10 @@ def saved_figure(
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.figure import Figure
 
-    # The matplotlibrc of the user must not change the files of a run.
+    # The matplotlibrc of the user must not change the files of a run. A figure needs no backend, which loads pyplot.
     form = "svg" if path.suffix == ".svg" else "png"
-    with rc_context({**rcParamsDefault, **STYLE, **(SVG if form == "svg" else {})}):
+    defaults = {name: value for name, value in rcParamsDefault.items() if name != "backend"}
+    with rc_context({**defaults, **STYLE, **(SVG if form == "svg" else {})}):
         figure = Figure(figsize=size, layout=None if placed else "constrained")
         yield figure
         parts: list[Any] = [figure, *figure.subfigs]

@@ -9,6 +9,7 @@ import numpy as np
 
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
 from vehicle.engines.simulation.axle_statics import WheelPose
+from vehicle.engines.simulation.wheel_geometry import WheelGeometry
 
 PANELS: dict[str, dict[str, str]] = {
     "camber [deg], top outwards +": {"camber_deg": ""},
@@ -17,27 +18,34 @@ PANELS: dict[str, dict[str, str]] = {
     "longitudinal [mm], to the rear +": {"longitudinal_m": "wheel centre", "patch_longitudinal_m": "contact point"},
     "vertical load [N]": {"load_n": ""},
     "change of spring length [mm]": {"strut_length_m": ""},
+    "roll centre above the ground [mm]": {"roll_centre_height_m": ""},
+    "support angle in the side view [deg]": {"brake_support_deg": "brake force", "drive_support_deg": "drive force"},
+    "steering axis [deg]": {"caster_deg": "caster", "kingpin_inclination_deg": "kingpin inclination"},
 }
 """Label of each panel to its quantities and their names."""
 
 
-def plot_kinematics(path: Path, poses: Sequence[WheelPose], title: str, caption: str) -> None:
+def plot_kinematics(
+    path: Path, poses: Sequence[WheelPose], geometry: Sequence[WheelGeometry], title: str, caption: str
+) -> None:
     """Write the picture of axle kinematics.
 
     Args:
         path: PNG file.
         poses: poses of the right wheel in the order of travel.
+        geometry: geometry of the axle at these positions.
         title: title above the picture.
         caption: caption below the picture.
     """
 
     def values(name: str) -> np.ndarray:
         scale = 1e3 if name.endswith("_m") else 1.0
-        return scale * np.array([getattr(pose, name) for pose in poses])
+        entries: Sequence[object] = poses if hasattr(poses[0], name) else geometry
+        return scale * np.array([getattr(entry, name) for entry in entries])
 
     panels = {label: lines for label, lines in PANELS.items() if np.isfinite(values(next(iter(lines)))).any()}
-    with saved_figure(path, (11.0, 7.0), title, caption) as figure:
-        grid = figure.subplots(2, 3, sharey=True)
+    with saved_figure(path, (11.0, 10.0), title, caption) as figure:
+        grid = figure.subplots(3, 3, sharey=True)
         for axis, (label, lines) in zip(grid.ravel(), panels.items(), strict=False):
             for number, (name, line) in enumerate(lines.items()):
                 style = ("-", "--")[number]

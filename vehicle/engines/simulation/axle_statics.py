@@ -6,9 +6,11 @@ The position q of the parts of the axle satisfies
 
 with the forces f_e of bushings, springs and the stabilizer at large displacements (r and angle in the axes of the
 carrier, which turn with it), forces F and moments M on the wheels at their contact points, the ideal joints c, and the
-vertical loads N that hold the wheel centres at their heights. Newton's method with K = sum of J' K_e J: omitting the
-geometric stiffness costs iterations, not accuracy. With ideal connections all connections are joints, and the solution
-is the minimum-norm motion that satisfies the constraints, independent of forces.
+vertical loads N that hold the wheel centres at their heights. The contact point of a freely rolling tyre is the lowest
+point of its wheel, which stays below the wheel centre; that of a standing tyre is fixed to the wheel.
+Newton's method with K = sum of J' K_e J: omitting the geometric stiffness costs iterations, not accuracy. With ideal
+connections all connections are joints, and the solution is the minimum-norm motion that satisfies the constraints,
+independent of forces.
 """
 
 from __future__ import annotations
@@ -60,6 +62,27 @@ class WheelPose:
     strut_length_m: float
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class AxlePosition:
+    """Position of an axle; left wheels are not mirrored.
+
+    Attributes:
+        centres: wheel centres [m], (wheels, 3).
+        frames: rotation matrices of the wheels, (wheels, 3, 3).
+        steering_axes: lower and upper points of the steering axes [m], (wheels, 2, 3); nan for wheels without one.
+        springs: lengths of the springs between two points [m], in the order of the parts.
+        dampers: positions of the dampers [m], extension positive, in the order of the parts.
+        mass_moment: sum of mass times height over the parts of the axle [kg m], ().
+    """
+
+    centres: Vector
+    frames: Vector
+    steering_axes: Vector
+    springs: Vector
+    dampers: Vector
+    mass_moment: Vector
+
+
 class AxleStatics:
     """Static equilibrium of an axle of a compiled car, over wheel travel and loads."""
 
@@ -79,19 +102,45 @@ class AxleStatics:
             preload: static forces of the rows; see `StaticTrim`.
             wheels: wheels of the axle.
             ideal: True to replace every connection by an ideal ball joint.
-            standing: True to keep the horizontal force and the torque of the tyres at rest; False for freely rolling
-                contact points.
+            standing: True for contact points fixed to the wheels, with the horizontal force and the torque of the
+                tyres at rest; False for freely rolling contact points.
         """
         self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
         self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
         self.wheels, self.columns = self.parts.wheels, self.parts.columns
+        self.standing = standing
         self.ground = self.parts.standing if standing else np.zeros_like(self.parts.standing)
         mujoco.mj_forward(model, self.data)
         self.at_rest = [(np.array(wheel.center), np.array(wheel.patch)) for wheel in wheels]
         self.offsets = [
-            [self.data.xmat[number].reshape(3, 3).T @ (point - self.data.xpos[number]) for point in points]
+            [self._offset(number, point) for point in points]
             for number, points in zip(self.wheels, self.at_rest, strict=True)
         ]
+        self.axis_ends = [
+            [(model.body(part).id, self._offset(model.body(part).id, at)) for part, at in wheel.steering_axis or ()]
+            for wheel in wheels
+        ]
+
+    def _offset(self, body: int, point: npt.ArrayLike) -> Vector:
+        """Return a point [m] in the frame of a body in the design position."""
+        return np.asarray(self.data.xmat[body].reshape(3, 3).T @ (np.asarray(point) - self.data.xpos[body]))
+
+    def position(self) -> AxlePosition:
+        """Return the present position, after `solve`."""
+        data, model = self.data, self.model
+        axes = np.full((len(self.wheels), 2, 3), np.nan)
+        for index, ends in enumerate(self.axis_ends):
+            for end, (body, offset) in enumerate(ends):
+                axes[index, end] = data.xpos[body] + data.xmat[body].reshape(3, 3) @ offset
+        bodies = sorted(self.parts.bodies)
+        return AxlePosition(
+            centres=np.array([self.places(index)[0] for index in range(len(self.wheels))]),
+            frames=np.array([data.xmat[wheel].reshape(3, 3) for wheel in self.wheels]),
+            steering_axes=axes,
+            springs=np.array([self._length(spring)[0] for spring in self.parts.springs]),
+            dampers=np.array([data.qpos[model.jnt_qposadr[strut.joint]] for strut in self.parts.struts]),
+            mass_moment=np.asarray(model.body_mass[bodies] @ data.xipos[bodies, 2]),
+        )
 
     def solve(self, travel: Sequence[float], loads: Vector | None = None) -> list[WheelPose]:
         """Solve the equilibrium for a travel of each wheel, starting from the last solution.
@@ -211,7 +260,7 @@ class AxleStatics:
             force[column] += rate * (model.qpos_spring[position] - data.qpos[position])
             stiffness[column, column] += rate
         for index, (wheel, load) in enumerate(zip(self.wheels, loads, strict=True)):
-            moved, turned = self.jacobian(wheel, self.places(index)[1])
+            moved, turned = self.jacobian(wheel, self.contact(index))
             force += moved.T @ load[:3] + turned.T @ load[3:]
         return force, stiffness
 
@@ -228,14 +277,27 @@ class AxleStatics:
                 reacting.append(moved)
                 gaps.append(gap)
         for index, (wheel, height) in enumerate(zip(self.wheels, travel, strict=True)):
-            center, patch = self.places(index)
+            center, _ = self.places(index)
             rows.append(self.jacobian(wheel, center)[0][2:])
-            reacting.append(self.jacobian(wheel, patch)[0][2:])
+            reacting.append(self.jacobian(wheel, self.contact(index))[0][2:])
             gaps.append(center[2:] - self.at_rest[index][0][2] - height)
         return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
 
+    def contact(self, index: int) -> Vector:
+        """Return the point of a wheel at which the ground acts [m], (3,)."""
+        return self.places(index)[1] if self.standing else self.lowest_point(index)
+
+    def lowest_point(self, index: int) -> Vector:
+        """Return the lowest point of a wheel [m], (3,): a thin disc with its axis along y in the design position."""
+        center, _ = self.places(index)
+        center_at_rest, patch = self.at_rest[index]
+        spin = self.data.xmat[self.wheels[index]].reshape(3, 3)[:, 1]
+        down = spin[2] * spin - np.array([0.0, 0.0, 1.0])
+        beside = (patch - center_at_rest) * [1.0, 1.0, 0.0]
+        return np.asarray(center + beside + (center_at_rest[2] - patch[2]) * down / np.linalg.norm(down))
+
     def places(self, index: int) -> tuple[Vector, Vector]:
-        """Return the present positions of the centre of a wheel and of its contact point [m]."""
+        """Return the present positions of the centre of a wheel and of its patch, which is fixed to the wheel [m]."""
         position, frame = self.data.xpos[self.wheels[index]], self.data.xmat[self.wheels[index]].reshape(3, 3)
         center, patch = (position + frame @ offset for offset in self.offsets[index])
         return center, patch

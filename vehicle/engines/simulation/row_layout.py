@@ -66,10 +66,14 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             ends[name] = model.site(f"{name}/lower").id, model.site(f"{name}/upper").id
     rolling = [name for name in names if f"rolling/{name}" in numbers]
     spins = {name: _spin(model, ends[name]) for name in rolling}
+
+    def modal_at(name: str) -> range:
+        return range(0) if numeric(model, f"shape/{name}") is None else modal
+
     nonzero = [
         run
         for name, sites in ends.items()
-        for run in _reach(model, sites, (*modal, *spins.get(name, ())), equalities[name], first_rows)
+        for run in _reach(model, sites, (*modal_at(name), *spins.get(name, ())), equalities[name], first_rows)
     ]
 
     def rows_of(chosen: Sequence[str]) -> Index:

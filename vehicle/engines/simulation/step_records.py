@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from vehicle.engines.simulation.element_records import Index, Layout, Table, Vector
+from vehicle.engines.simulation.element_records import Index, Indices, Layout, Table, Vector
 
 
 class Fields(NamedTuple):
@@ -19,6 +19,10 @@ class Fields(NamedTuple):
     cdof: Table
     qfrc_applied: Vector
     actuator_velocity: Vector
+    qfrc_passive: Vector
+    qfrc_bias: Vector
+    qacc_warmstart: Vector
+    M: Vector
 
 
 class Efc(NamedTuple):
@@ -115,6 +119,28 @@ class State(NamedTuple):
     steps: Vector
 
 
+class SparseRows(NamedTuple):
+    """Constraint Jacobian of a run in MuJoCo's sparse format; see `vehicle.engines.simulation.sparse_rows`.
+
+    Attributes:
+        jacobian: all columns of the rows, as the laws write them; (rows, nv), or (0, nv) where MuJoCo's are dense.
+        values: nonzero values, row by row; (nJ,).
+        places: index of each value in the flat `jacobian`; (nJ,).
+        offsets: byte offsets in mjData of the pointers to counts, starts, supernodes, columns and values; (5,).
+        addresses: addresses of the arrays of this car in that order; (5,).
+        replaced: MuJoCo's own addresses of the present step and its `nJ`; (6,).
+        size: byte offset of `nJ` in mjData.
+    """
+
+    jacobian: Table
+    values: Vector
+    places: Index
+    offsets: Index
+    addresses: Index
+    replaced: Index
+    size: int
+
+
 class Ticket(NamedTuple):
     """Addresses with which a compiled callback finds and checks its state.
 
@@ -123,6 +149,7 @@ class Ticket(NamedTuple):
         rows: number of constraint rows in the records.
         row_count, time: byte offsets of `nefc` and `time` in mjData.
         efc: byte offsets of the pointers of `Efc`, in its order; (8,).
+        sparse: Jacobian in MuJoCo's sparse format.
     """
 
     model: int
@@ -130,6 +157,38 @@ class Ticket(NamedTuple):
     row_count: int
     time: int
     efc: Index
+    sparse: SparseRows
+
+
+class Solution(NamedTuple):
+    """Equations of a step in tiles of 4 x 4; see `vehicle.engines.simulation.predicted_acceleration`.
+
+    Attributes:
+        size: number of velocity coordinates nv; n is the next multiple of 4.
+        inertia: row and column of each number of the mass matrix; (m, 2).
+        groups: rows with the same columns: first row, number of rows (3 or 1), first and end index in `columns`.
+        columns: tile columns of the groups.
+        singles: rows with a single column, and that column; (k, 2). frictions: the friction rows among them; (f, 2).
+        starts, tiles: tile columns of each row of tiles, ascending, the last on the diagonal; (n / 4 + 1,).
+        matrix: H, factorised after the solution; (n, n).
+        right, acceleration: right-hand side without friction rows, solution; (n,).
+        weight: D of the rows within their limits, else zero; (rows,).
+        limited: sign of the force of each friction row at its limit, else zero; (f,).
+    """
+
+    size: int
+    inertia: Indices
+    groups: Indices
+    columns: Index
+    singles: Indices
+    frictions: Indices
+    starts: Index
+    tiles: Index
+    matrix: Table
+    right: Vector
+    acceleration: Vector
+    weight: Vector
+    limited: Vector
 
 
 class Simulation(NamedTuple):
@@ -140,3 +199,4 @@ class Simulation(NamedTuple):
     layout: Layout
     weights: Weights
     state: State
+    solution: Solution

@@ -84,7 +84,7 @@ def simulate(
     recorder = Recorder(
         car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
-    compiled.attach(data)
+    compiled.attach(data, sparse=True)
     advance = compiled.loop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
     started = clock.perf_counter()
     with installed(rows, compiled):

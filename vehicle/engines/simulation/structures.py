@@ -31,12 +31,15 @@ PLAIN_TYPES: dict[str, Any] = {
     "uint64_t": ctypes.c_uint64,
 }
 
-POINTERS = (*(f"efc_{name}" for name in Efc._fields), "efc_force", "userdata")
+SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc_J")
+"""Arrays of a sparse constraint Jacobian in mjData."""
+
+POINTERS = (*(f"efc_{name}" for name in Efc._fields), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""
 
-PROBE = """<mujoco><size nuserdata="2"/><worldbody><body><joint type="free" frictionloss="1"/><geom size=".1"/></body>
-</worldbody></mujoco>"""
-"""A model with user data and six constraint rows."""
+PROBE = """<mujoco><size nuserdata="2"/><option jacobian="sparse"/><worldbody><body>
+<joint type="free" frictionloss="1"/><geom size=".1"/></body></worldbody></mujoco>"""
+"""A model with user data and six constraint rows in sparse format."""
 
 
 class Offsets(NamedTuple):
@@ -44,7 +47,7 @@ class Offsets(NamedTuple):
 
     Attributes:
         user_size: offset of `nuserdata` in mjModel.
-        time, row_count: offsets of `time` and `nefc` in mjData.
+        time, row_count, nonzeros: offsets of `time`, `nefc` and `nJ` in mjData.
         pointers: offsets of the array pointers in mjData, by name.
         step: address of `mj_step`.
     """
@@ -52,6 +55,7 @@ class Offsets(NamedTuple):
     user_size: int
     time: int
     row_count: int
+    nonzeros: int
     pointers: dict[str, int]
     step: int
 
@@ -141,18 +145,18 @@ def pointer_offsets(data: mujoco.MjData, names: Iterable[str]) -> dict[str, int]
     return offset_by_name
 
 
-def scalar_offsets(data: mujoco.MjData) -> tuple[int, int]:
-    """Return the byte offsets of `time` and `nefc` in mjData.
+def scalar_offsets(data: mujoco.MjData) -> tuple[int, int, int]:
+    """Return the byte offsets of `time`, `nefc` and `nJ` in mjData.
 
     Raises:
         LookupError: a value has another offset than declared.
     """
     structure = layout("mjData")
     seen = structure.from_address(data._address)
-    for name in ("time", "nefc"):
+    for name in ("time", "nefc", "nJ"):
         if getattr(seen, name) != getattr(data, name):
             raise LookupError(f"mjData.{name}")
-    return int(structure.time.offset), int(structure.nefc.offset)
+    return int(structure.time.offset), int(structure.nefc.offset), int(structure.nJ.offset)
 
 
 def step_address() -> int:
@@ -189,11 +193,12 @@ def offsets() -> Offsets:
     # A nonzero time, so that a zero field does not pass the check.
     data.time = 0.734
     try:
-        time, row_count = scalar_offsets(data)
+        time, row_count, nonzeros = scalar_offsets(data)
         return Offsets(
             user_size=user_size_offset(model),
             time=time,
             row_count=row_count,
+            nonzeros=nonzeros,
             pointers=pointer_offsets(data, POINTERS),
             step=step_address(),
         )

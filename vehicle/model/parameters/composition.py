@@ -244,6 +244,8 @@ class PlacedWheel:
         center: wheel centre [m].
         patch: middle of the contact patch [m].
         paths: paths of both points in the vehicle file.
+        steering_axis: part and point [m] of the lower and of the upper end of the steering axis; None for a wheel that
+            is not steered.
     """
 
     name: str
@@ -254,6 +256,7 @@ class PlacedWheel:
     center: Point
     patch: Point
     paths: tuple[str, str]
+    steering_axis: tuple[tuple[str, Point], tuple[str, Point]] | None = None
 
 
 WITH_NUMBERS = ("parts", "connections", "springs", "joint_springs", "dampers")

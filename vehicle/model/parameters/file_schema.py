@@ -33,7 +33,7 @@ from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
-from vehicle.model.parameters.topology import RolePart, Template, Wheel
+from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
 from vehicle.model.parameters.vehicle import Head, Solver
 from vehicle.names import SIDE_SIGN
 
@@ -121,6 +121,7 @@ def template_schema() -> Schema:
         "use": {"type": "array", "items": use},
         "parts": _mapping(_table(RolePart)),
         "wheel": _table(Wheel),
+        "steering_axis": _table(SteeringAxis),
         "above": {"type": "array", "items": {**pair, "description": "the first point lies above the second"}},
         **lists,
     }

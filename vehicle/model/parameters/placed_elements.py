@@ -45,6 +45,7 @@ def placed_wheels(car: Mapping[str, Instance]) -> Iterator[PlacedWheel]:
     for i in car.values():
         if (wheel := i.template.wheel) is None:
             continue
+        axis = i.template.steering_axis
         for side, sign in SIDE_SIGN.items():
             yield PlacedWheel(
                 name=i.label("", side)[1:],
@@ -55,6 +56,12 @@ def placed_wheels(car: Mapping[str, Instance]) -> Iterator[PlacedWheel]:
                 center=i.point(wheel.center, side),
                 patch=i.point(wheel.patch, side),
                 paths=(f"{i.name}.hardpoints.{wheel.center}", f"{i.name}.hardpoints.{wheel.patch}"),
+                steering_axis=None
+                if axis is None
+                else (
+                    (i.part(axis.lower.part, side), i.point(axis.lower.at, side)),
+                    (i.part(axis.upper.part, side), i.point(axis.upper.at, side)),
+                ),
             )
 
 

@@ -19,7 +19,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template_file import LISTS, read_template_file
 from vehicle.model.parameters.toml_file import build, nearest
-from vehicle.model.parameters.topology import RolePart, Template, Wheel
+from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
 
 SHIPPED = Path(str(resources.files("vehicle.model"))) / "templates"
 FREE_PORTS = ("body", "world", "plate")
@@ -29,6 +29,8 @@ _POINTS, _PARTS = (
     {"at", "along", "axes", "points", "center", "patch"},
     {"child", "parent", "moving", "carrier", "part", "on"},
 )
+SINGLE = {"wheel": Wheel, "steering_axis": SteeringAxis}
+"""Elements that a template has at most once, and their classes."""
 _ON = {"damper": ("slide",), "spring": ("slide", "hinge")}
 """Types of joints on which these elements may act."""
 
@@ -80,14 +82,16 @@ def _read_once(
             for key, parameters in LISTS.items()
         }
         parts = {part: build(RolePart, table, f"parts.{part}") for part, table in raw["parts"].items()}
-        wheel = None if raw["wheel"] is None else build(Wheel, raw["wheel"], "wheel")
+        single: dict[str, Any] = {
+            key: None if raw[key] is None else build(parameters, raw[key], key) for key, parameters in SINGLE.items()
+        }
         template = Template(
             file=f"{name}.toml",
             parts=parts,
-            wheel=wheel,
             above=tuple(map(tuple, raw["above"])),
             **{key: raw[key] for key in ("mirrored", "hardpoints", "ports")},
             **lists,
+            **single,
         )
         _check(template, raw)
     except ConfigurationError as error:
@@ -108,7 +112,7 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
     template = read_template_file(path)
     chosen = [use for use in template.pop("use") if use.get("when") is None or use["when"] in options]
     used = [(use, _merged(use["template"], options, searched, (*above, name))) for use in chosen]
-    merged: dict[str, Any] = {"mirrored": template["mirrored"], "wheel": None}
+    merged: dict[str, Any] = {"mirrored": template["mirrored"], **dict.fromkeys(SINGLE)}
     try:
         first = [_renamed(other, use) for use, other in used if "when" not in use]
         for table in [*first, template, *(_renamed(other, use) for use, other in used if "when" in use)]:
@@ -121,9 +125,10 @@ def _merged(name: str, options: frozenset[str], searched: tuple[Path, ...], abov
                 merged[key] |= table[key]
             for key in (*LISTS, "above"):
                 merged[key] = [*merged.get(key, []), *table[key]]
-            if merged["wheel"] and table["wheel"]:
-                raise ConfigurationError("wheel: defined twice; a template has one wheel, on both sides")
-            merged["wheel"] = merged["wheel"] or table["wheel"]
+            for key in SINGLE:
+                if merged[key] and table[key]:
+                    raise ConfigurationError(f"{key}: defined twice; a template has one, on both sides")
+                merged[key] = merged[key] or table[key]
     except ConfigurationError as error:
         raise ConfigurationError(f"{path.name}: {error}") from None
     return {**merged, "ports": template["ports"]}
@@ -163,7 +168,7 @@ def _renamed(table: dict[str, Any], use: Mapping[str, Any]) -> dict[str, Any]:
         },
         **{key: [turned(entry) for entry in table[key]] for key in LISTS},
         "above": turned(table["above"], "at"),
-        "wheel": turned(table["wheel"]),
+        **{key: turned(table[key]) for key in SINGLE},
     }
 
 
@@ -220,7 +225,8 @@ def _check(template: Template, raw: Mapping[str, Any]) -> None:
             look(f"{key}.{entry.get('name', position)}", entry)
     for name, part in raw["parts"].items():
         look(f"parts.{name}", part)
-    look("wheel", raw["wheel"] or {})
+    for key in SINGLE:
+        look(key, raw[key] or {})
     look("above", {"at": [point for pair in raw["above"] for point in pair]})
     if spare := [name for name in template.hardpoints if name not in used]:
         raise ConfigurationError(

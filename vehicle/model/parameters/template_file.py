@@ -20,6 +20,7 @@ TEMPLATE_KEYS: dict[str, Any] = {
     "ports": Mapping[str, str],
     "parts": Mapping[str, dict],  # type: ignore[type-arg]
     "wheel": dict,
+    "steering_axis": dict,
     "above": tuple[tuple[str, ...], ...],
     **dict.fromkeys(LISTS, tuple[dict, ...]),  # type: ignore[type-arg]
 }
@@ -33,7 +34,7 @@ def read_template_file(path: Path) -> dict[str, Any]:
         path: the file.
 
     Returns:
-        Tables and lists; missing tables and lists are empty, a missing wheel is None.
+        Tables and lists; missing tables and lists are empty, a missing wheel or steering axis is None.
 
     Raises:
         ConfigurationError: not a TOML file, an unknown key or a wrong type; the message names the file.
@@ -57,6 +58,7 @@ def read_template_file(path: Path) -> dict[str, Any]:
     return {
         "mirrored": table.get("mirrored", False),
         "wheel": table.get("wheel"),
+        "steering_axis": table.get("steering_axis"),
         "use": table.get("use", []),
         "above": list(table.get("above", [])),
         **{key: dict(table.get(key, {})) for key in ("hardpoints", "ports", "parts")},

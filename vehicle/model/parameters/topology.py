@@ -141,6 +141,14 @@ class Wheel:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class SteeringAxis:
+    """Steering axis of a wheel: the line through two points about which the wheel turns when it is steered."""
+
+    lower: End
+    upper: End
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Template:
     """Template, merged with the included templates."""
 
@@ -150,6 +158,7 @@ class Template:
     ports: Mapping[str, str] = field(default_factory=dict)
     parts: Mapping[str, RolePart] = field(default_factory=dict)
     wheel: Wheel | None = None
+    steering_axis: SteeringAxis | None = None
     joint: tuple[Joint, ...] = ()
     connection: tuple[Connection, ...] = ()
     spring: tuple[Spring, ...] = ()

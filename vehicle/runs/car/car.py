@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -44,6 +44,10 @@ from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.threads import one_blas_thread
+
+if TYPE_CHECKING:
+    from vehicle.model.parameters.parameter_list import Parameter
+    from vehicle.runs.car.car_data import CarData
 
 Overrides = Iterable[str] | Mapping[str, Any]
 """Changes of parameters: path to value, or texts "path=value"."""
@@ -123,6 +127,26 @@ class Car:
         table, folder = self.vehicle.table, self.folder
         optional = partial(optional_paths, table, folder or Path())
         return vehicle_of(varied_table(table, list(overrides), optional, self.overrides), folder)
+
+    def show(self) -> CarData:
+        """Return masses, loads, stiffnesses, frequencies, geometry and parameters of the car; `print` shows them.
+
+        Raises:
+            SimulationError: an axle has no equilibrium near its design position.
+        """
+        from vehicle.runs.car.car_data import car_data
+
+        return car_data(self)
+
+    def search(self, words: str = "") -> list[Parameter]:
+        """Return the parameters with all words in their path or meaning, with value, unit, range and source.
+
+        Args:
+            words: words separated by spaces; all parameters by default.
+        """
+        from vehicle.runs.car.car_data import car_parameters
+
+        return [parameter for parameter in car_parameters(self) if parameter.matches(words)]
 
     def __repr__(self) -> str:
         """One line."""

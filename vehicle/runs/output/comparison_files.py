@@ -15,7 +15,12 @@ from vehicle.signals.records.run_summary import MeasuredSummary
 
 
 def save_comparison(
-    comparison: Comparison, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
+    comparison: Comparison,
+    folder: Path | str,
+    *,
+    force: bool = False,
+    figures: bool = True,
+    protect: tuple[Path, ...] = (),
 ) -> Path:
     """Write the tables of a comparison and a picture for each output point into a new folder.
 
@@ -23,6 +28,7 @@ def save_comparison(
         comparison: result of `compare_run`.
         folder: name of the folder.
         force: replace files of an earlier run.
+        figures: False writes no pictures.
         protect: input files; a folder that holds one of them is never replaced.
 
     Returns:
@@ -33,16 +39,17 @@ def save_comparison(
         OutputError: a file cannot be written.
     """
     with output_folder(Path(folder), force=force, protect=protect) as work:
-        write_comparison(work, comparison)
+        write_comparison(work, comparison, figures=figures)
     return Path(folder)
 
 
-def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
+def write_comparison(folder: Path, comparison: Comparison, *, figures: bool = True) -> dict[str, str]:
     """Write the tables and a picture for each output point.
 
     Args:
         folder: folder of the files.
         comparison: the comparison.
+        figures: False writes no pictures.
 
     Returns:
         Name of each file by its purpose.
@@ -50,13 +57,15 @@ def write_comparison(folder: Path, comparison: Comparison) -> dict[str, str]:
     write_text(folder / "compare.csv", comparison.csv())
     write_json(folder / "compare.json", comparison.summary())
     files = {"compare": "compare.json", "compare_table": "compare.csv"}
-    for name, draw in drawings_of(comparison).items():
+    for name, draw in drawings_of(comparison).items() if figures else ():
         write_whole(folder / f"{name}.png", draw)
         files[name] = f"{name}.png"
     return files
 
 
-def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, str]) -> MeasuredSummary:
+def write_beside(
+    folder: Path, measured: Measured, run: Run, files: dict[str, str], *, figures: bool = True
+) -> MeasuredSummary:
     """Compare a measurement with a run, and write the files into the folder of the run.
 
     Args:
@@ -64,11 +73,12 @@ def write_beside(folder: Path, measured: Measured, run: Run, files: dict[str, st
         measured: the measurement.
         run: the run.
         files: name of each file by its purpose; the new files are added.
+        figures: False writes no pictures.
 
     Returns:
         Entry of the summary.
     """
     comparison = comparison_of(measured, of_run(run), command="python -m vehicle compare, after the run")
-    files |= write_comparison(folder, comparison)
+    files |= write_comparison(folder, comparison, figures=figures)
     content = comparison.summary()
     return {"file": comparison.measured, "table": content["table"], "notices": content["notices"]}

@@ -275,12 +275,15 @@ def _opened(path: Path) -> int:
     return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file under a temporary name, rename it, and add its name and digest to the list of its folder.
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yield a temporary name for a file; on success, rename it and add its name and digest to the list of its folder.
 
     Args:
         path: final name.
-        write: function that writes the file to a path with the same ending.
+
+    Yields:
+        A path with the same ending, where the body writes the file.
 
     Raises:
         ConfigurationError: the existing file is of the user, or was edited.
@@ -293,13 +296,19 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         note(path, UNFINISHED)
-        write(temporary)
+        yield temporary
         note(path, digest_of(temporary))
         temporary.replace(path)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing is left behind") from None
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Write a file with a function that writes it to a path, see `whole_file`."""
+    with whole_file(path) as temporary:
+        write(temporary)
 
 
 def write_text(path: Path, text: str) -> None:

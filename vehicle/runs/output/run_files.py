@@ -78,6 +78,7 @@ def write_run(
     *,
     time_format: str = "npz",
     formats: Sequence[str] = (),
+    figures: bool = True,
     engine_reason: str = "",
     video: tuple[Path, Callable[[Path], None]] | None = None,
     measured: Measured | None = None,
@@ -91,6 +92,7 @@ def write_run(
         run: the run.
         time_format: "npz" or "csv".
         formats: further formats of `vehicle.signals.records.formats.WRITTEN`.
+        figures: False writes no pictures.
         engine_reason: reason for the choice of the engine; by default that of the run.
         video: name of the film, or a path outside the folder, and the function that writes it.
         measured: measurement to compare with the run.
@@ -108,11 +110,14 @@ def write_run(
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
     files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
-        files |= {"frf": "frf.csv", "frf_plot": "frf.png"}
+        files["frf"] = "frf.csv"
+        if figures:
+            files["frf_plot"] = "frf.png"
     if run.road is not None:
         files["psd"] = "psd.csv"
         write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
-    files["time_plot"] = "time.png"
+    if figures:
+        files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
     write_text(folder / "vehicle.toml", parameters_text(run.car, header))
     files |= write_own_files(folder, run.car)
@@ -127,15 +132,17 @@ def write_run(
             folder / "frf.csv",
             lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=motions),
         )
-        caption = _caption(run, first.response)
-        write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
+        if figures:
+            caption = _caption(run, first.response)
+            write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
     for file_format in dict.fromkeys(formats):
         if file_format != time_format:
             from vehicle.runs.output.run_formats import writer
 
             files[f"time_{file_format}"] = f"time.{file_format}"
             write_whole(folder / f"time.{file_format}", writer(file_format, run, responses, channels, FRAME))
-    write_whole(folder / "time.png", lambda path: plot_time(path, run))
+    if figures:
+        write_whole(folder / "time.png", lambda path: plot_time(path, run))
     if video is not None:
         name, make = video
         write_whole(folder / name if name.parent == Path() else name, make)
@@ -144,7 +151,7 @@ def write_run(
     if measured is not None:
         from vehicle.runs.output.comparison_files import write_beside
 
-        beside = write_beside(folder, measured, run, files)
+        beside = write_beside(folder, measured, run, files, figures=figures)
     if report is not None:
         files["report"] = str(report[0])
     summary = summarise(

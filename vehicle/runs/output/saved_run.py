@@ -12,7 +12,13 @@ from vehicle.runs.output.run_files import write_run
 
 
 def save_run(
-    run: Run, folder: Path | str, *, force: bool = False, time_format: str = "npz", formats: Sequence[str] = ()
+    run: Run,
+    folder: Path | str,
+    *,
+    force: bool = False,
+    time_format: str = "npz",
+    formats: Sequence[str] = (),
+    figures: bool = True,
 ) -> Path:
     """Write the files of a run: summary, parameters as used, time histories, FRFs, pictures.
 
@@ -22,6 +28,7 @@ def save_run(
         force: replace a run that was written there before.
         time_format: format of the time histories, "npz" or "csv".
         formats: further formats: "csv", "npz", "mat", "uff", "rpc", "h5".
+        figures: False writes no pictures.
 
     Returns:
         The folder; `write_report` and `compare_run` take it.
@@ -38,5 +45,5 @@ def save_run(
             f"{folder}: the run has no channel {missing[0]}, which its files need; run the car without channels=[...]"
         )
     with output_folder(Path(folder), force=force) as work:
-        write_run(work, run, time_format=time_format, formats=formats)
+        write_run(work, run, time_format=time_format, formats=formats, figures=figures)
     return Path(folder)

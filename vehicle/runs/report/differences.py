@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.base_car import vehicle_table
+from vehicle.model.parameters.parameter_list import flattened
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
 from vehicle.names import point_words, side_of
@@ -16,15 +16,6 @@ from vehicle.signals.records.run_summary import slip_shares
 LARGEST_SHARE = 0.5
 """Largest share of other or further parameters in a car that was made from a shipped one: above it a car counts
 as a new car. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
-
-
-def flattened(table: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, object]]:
-    """Yield the full path and the value of every parameter of a vehicle file."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from flattened(value, f"{path}{key}.")
-        else:
-            yield path + key, value
 
 
 def shipped_origin(vehicle: Vehicle) -> Vehicle | None:

@@ -12,6 +12,7 @@ from importlib import resources
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
 from vehicle.runs.report.answer import answer
+from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import beside_each_other
 from vehicle.runs.report.finished_run import FinishedRun
@@ -54,7 +55,9 @@ def report_page(
         parts += [("Comparison of the runs", "comparison", beside_each_other(runs))]
     done(0.1)
     for index, (run, car_modes) in enumerate(zip(runs, modes, strict=True)):
-        run_parts = _of_run(run, car_modes)
+        # Runs of one car show the car once.
+        with_car = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
+        run_parts = _of_run(run, car_modes, with_car=with_car)
         if len(runs) == 1:
             parts += run_parts
         else:
@@ -79,11 +82,12 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     return [dataclasses.replace(run, name=name) for run, name in zip(runs, unique, strict=True)]
 
 
-def _of_run(run: FinishedRun, modes: Modes) -> list[tuple[str, str, Markup]]:
-    """Return title, anchor and content of each section of a run."""
+def _of_run(run: FinishedRun, modes: Modes, *, with_car: bool) -> list[tuple[str, str, Markup]]:
+    """Return title, anchor and content of each section of a run; with_car: add the section of the car."""
     parts = [
         ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
+        *([("The car", "car", car_section(run))] if with_car else []),
         *([("Frequency responses", "responses", responses(run, modes))] if run.responses else []),
         ("Time histories", "time", sections.time_figure(run)),
         ("Dampers", "dampers", sections.dampers(run)),

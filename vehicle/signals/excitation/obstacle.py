@@ -128,10 +128,10 @@ class Obstacle:
             if len(cells) != len(shape.sizes) or not all(re.fullmatch(NUMBER, cell) for cell in cells):
                 raise ConfigurationError(f"obstacle {text!r}: {usage}")
             sizes = tuple(float(cell) for cell in cells)
-        for kind, size in zip(shape.sizes, sizes, strict=True):
-            largest = LARGEST.get(kind, 10_000.0)
+        for size_name, size in zip(shape.sizes, sizes, strict=True):
+            largest = LARGEST.get(size_name, 10_000.0)
             if not (1.0 <= size <= largest):
-                raise ConfigurationError(f"obstacle {text!r}: {kind} {size:g}; allowed: 1 to {largest:g}")
+                raise ConfigurationError(f"obstacle {text!r}: {size_name} {size:g}; allowed: 1 to {largest:g}")
         return cls(
             name=name,
             sizes=sizes,
@@ -154,8 +154,8 @@ class Obstacle:
         """Description of the obstacle, for messages and headers."""
         shape = SHAPES[self.name]
         sizes = ", ".join(
-            f"{kind} {size:g}{'' if kind == 'number' else ' mm'}"
-            for kind, size in zip(shape.sizes, self.sizes, strict=True)
+            f"{size_name} {size:g}{'' if size_name == 'number' else ' mm'}"
+            for size_name, size in zip(shape.sizes, self.sizes, strict=True)
         )
         return f"{self.name} ({sizes}) {f'{self.side} side' if self.side else 'both sides'}, at {self.begin:g} m"
 
@@ -169,15 +169,14 @@ class Obstacle:
         Raises:
             ConfigurationError: the obstacle is not wholly on the road.
         """
-        x, heights = self._outline()
+        x, tracks = self._outline()
         if self.begin < 1.0 or self.begin + x[-1] >= length:
             raise ConfigurationError(
                 f"obstacle from {self.begin:g} to {self.begin + x[-1]:g} m; must be within 1 to {length:.4g} m, which "
                 "are driven; set another place (@METRES), or a longer --duration"
             )
         distance = np.concatenate(([0.0], self.begin + x, [length]))
-        tracks = {}
-        for side, z in heights.items():
+        for side, z in tracks.items():
             profile = np.concatenate(([0.0], z, z[-1:]))
             tracks[side] = profile if self.side in (None, side) else np.zeros_like(profile)
         return MeasuredRoad(
@@ -194,7 +193,8 @@ class Obstacle:
         """Return distances from the beginning [m] and heights by side [m]; random levels differ between the sides."""
         shape, generator = SHAPES[self.name], np.random.Generator(np.random.PCG64(1))
         sizes = tuple(
-            size if kind == "number" else 1e-3 * size for kind, size in zip(shape.sizes, self.sizes, strict=True)
+            size if size_name == "number" else 1e-3 * size
+            for size_name, size in zip(shape.sizes, self.sizes, strict=True)
         )
         x, right = shape.outline(sizes, generator)
         return x, {"right": right, "left": shape.outline(sizes, generator)[1]}

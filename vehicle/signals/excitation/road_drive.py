@@ -114,8 +114,8 @@ class RoadDrive:
             return None
         obstacle = Obstacle.parse(self.road)
         # To the millimetre, for messages.
-        place = round((self.skip + BEFORE_S) * self.speed / 3.6, 3) if obstacle.place is None else obstacle.place
-        return replace(obstacle, place=place)
+        usual = round((self.skip + BEFORE_S) * self.speed / 3.6, 3)
+        return replace(obstacle, place=usual if obstacle.place is None else obstacle.place)
 
     @property
     def envelope(self) -> TyreEnvelope | None:

@@ -163,7 +163,7 @@ class TyreEnvelope:
         power = (np.abs(slopes) * self.half_length / self.half_height) ** (self.order / (self.order - 1.0))
         touch = self.half_length * np.sign(slopes) * (power / (1.0 + power)) ** (1.0 / self.order)
         highest = _Maxima(np.maximum(z[:-1], z[1:]))
-        heights = np.empty(positions.size)
+        lowest = np.empty(positions.size)
         for first in range(0, positions.size, BLOCK):
             at = positions[first : first + BLOCK]
             # A cam cannot touch where its gap exceeds the largest height above the road below its centre.
@@ -177,13 +177,13 @@ class TyreEnvelope:
             centre = np.repeat(at, counts)
             left = np.maximum(x[segment], centre - self.half_length)
             right = np.minimum(x[segment + 1], centre + self.half_length)
-            place = np.clip(centre + touch[segment], left, right)
-            height = z[segment] + slopes[segment] * (place - x[segment])
+            contact = np.clip(centre + touch[segment], left, right)
+            height = z[segment] + slopes[segment] * (contact - x[segment])
             # A vertical step touches with its upper edge.
             height = np.where(run[segment] > 0.0, height, np.maximum(z[segment], z[segment + 1]))
-            gap = self.half_height * (1.0 - self._ellipse(np.abs(place - centre) / self.half_length))
-            heights[first : first + BLOCK] = np.maximum.reduceat(height - gap, starts)
-        return heights
+            gap = self.half_height * (1.0 - self._ellipse(np.abs(contact - centre) / self.half_length))
+            lowest[first : first + BLOCK] = np.maximum.reduceat(height - gap, starts)
+        return lowest
 
     def _ellipse(self, share: Vector) -> Vector:
         """Return (1 - share^c)^(1/c) for shares from 0 to 1."""

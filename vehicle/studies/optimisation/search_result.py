@@ -17,7 +17,8 @@ from vehicle.studies.optimisation.outcome import Outcome
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search_files import OtherFront, agreement, numbers, write_search
 from vehicle.studies.optimisation.trials import Trials
-from vehicle.studies.sweeps.case import all_tyre_words, varied_cases
+from vehicle.studies.sweeps.case import all_tyre_words
+from vehicle.studies.sweeps.case_table import Cases
 
 STILL = 0.005
 """Maximum relative growth of the hypervolume in the last quarter of a converged search."""
@@ -65,7 +66,7 @@ class FoundCars:
     def tyres(self) -> str:
         """Return a description of the state of the tyres on all inputs: standing or rolling at a speed."""
         trials = self.trials
-        return all_tyre_words(varied_cases([()], trials.inputs, vehicle=trials.vehicle, fixed=trials.fixed))
+        return all_tyre_words(Cases([()], trials.inputs, vehicle=trials.vehicle, fixed=trials.fixed))
 
     @property
     def caption(self) -> str:

@@ -16,7 +16,7 @@ from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search import TriedCars, search
 from vehicle.studies.optimisation.trials import Trials
 from vehicle.studies.sweeps.case import digest
-from vehicle.studies.sweeps.sweep import case_keys
+from vehicle.studies.sweeps.case_keys import case_keys
 
 SEARCH = "search.json"
 """File with a digest of car, inputs, program, criteria and seed, which identifies a search; the number of cars may

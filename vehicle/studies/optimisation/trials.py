@@ -14,8 +14,9 @@ import scipy
 
 from vehicle.errors import ConfigurationError
 from vehicle.studies.optimisation.problem import Problem, Tolerance, Vector
-from vehicle.studies.sweeps.case import Case, Input, table_cases
+from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.measure import Measure
 
@@ -33,10 +34,9 @@ def on_executor(executor: Executor, measure: Measure) -> Evaluate:
     dispatcher = Dispatcher(executor, measure)
 
     def evaluate(cases: Sequence[Case], _: Measure) -> list[Result]:
-        results_by_key: dict[str, Result] = {}
-        todo = {str(number): case for number, case in enumerate(cases)}
-        dispatcher.work(todo, lambda keys, results: results_by_key.update(zip(keys, results, strict=True)))
-        return [results_by_key[key] for key in todo]
+        results: dict[int, Result] = {}
+        dispatcher.work(cases, lambda numbers, block: results.update(zip(numbers, block.results(), strict=True)))
+        return [results[number] for number in range(len(cases))]
 
     return evaluate
 

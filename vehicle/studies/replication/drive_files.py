@@ -28,7 +28,12 @@ FILES = {
 
 
 def save_drive(
-    drive: FoundDrive, folder: Path | str, *, force: bool = False, protect: tuple[Path, ...] = ()
+    drive: FoundDrive,
+    folder: Path | str,
+    *,
+    force: bool = False,
+    figures: bool = True,
+    protect: tuple[Path, ...] = (),
 ) -> dict[str, Any]:
     """Write the files of a drive: plate signals, response, iterations, pictures, parameters, summary.
 
@@ -36,6 +41,7 @@ def save_drive(
         drive: result of `replicate_drive`.
         folder: name of the folder.
         force: replace what was written there before.
+        figures: False writes no pictures.
         protect: input files; a folder that holds one of them is never replaced.
 
     Returns:
@@ -46,10 +52,10 @@ def save_drive(
         OutputError: a file cannot be written.
     """
     with output_folder(Path(folder), force=force, protect=protect) as work:
-        return write_drive(work, drive)
+        return write_drive(work, drive, figures=figures)
 
 
-def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
+def write_drive(folder: Path, drive: FoundDrive, *, figures: bool = True) -> dict[str, Any]:
     """Write all files of a drive to a folder of `output_folder`; result as in `save_drive`."""
     replication, plant, run = drive.replication, drive.plant, drive.run
     target = plant.target
@@ -70,29 +76,31 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
     record = Record(time=target.time, channels=channels, units=dict.fromkeys(channels, "m/s2"))
     write_whole(folder / FILES["response"], lambda path: write_record(path, "csv", record, description))
     write_text(folder / FILES["iterations"], _table(replication, target.channels, description))
-    write_whole(
-        folder / FILES["response_plot"],
-        lambda path: plot_replication(
-            path,
-            target.time,
-            {name: (target.values[row], replication.response[row]) for row, name in enumerate(target.channels)},
-            dict(zip(plant.wheels, replication.drive, strict=True)),
-            target.band,
-            description,
-        ),
-    )
-    write_whole(
-        folder / FILES["convergence_plot"],
-        lambda path: plot_convergence(
-            path,
-            {
-                name: np.array([step.errors[row] for step in replication.steps])
-                for row, name in enumerate(target.channels)
-            },
-            np.array([step.kept for step in replication.steps]),
-            f"{description}; {replication.outcome}",
-        ),
-    )
+    files = {name: file for name, file in FILES.items() if figures or not file.endswith(".png")}
+    if figures:
+        write_whole(
+            folder / FILES["response_plot"],
+            lambda path: plot_replication(
+                path,
+                target.time,
+                {name: (target.values[row], replication.response[row]) for row, name in enumerate(target.channels)},
+                dict(zip(plant.wheels, replication.drive, strict=True)),
+                target.band,
+                description,
+            ),
+        )
+        write_whole(
+            folder / FILES["convergence_plot"],
+            lambda path: plot_convergence(
+                path,
+                {
+                    name: np.array([step.errors[row] for step in replication.steps])
+                    for row, name in enumerate(target.channels)
+                },
+                np.array([step.kept for step in replication.steps]),
+                f"{description}; {replication.outcome}",
+            ),
+        )
     write_text(folder / FILES["vehicle"], parameters_text(plant.car, "parameters of this drive, as used"))
     summary = {
         "target": {
@@ -121,7 +129,7 @@ def write_drive(folder: Path, drive: FoundDrive) -> dict[str, Any]:
             for step in replication.steps
         ],
         "notices": [*target.notices, *plant.ramp, *run.recording.statistics.warnings],
-        "files": FILES | write_own_files(folder, plant.car),
+        "files": files | write_own_files(folder, plant.car),
     }
     write_json(folder / FILES["summary"], summary)
     return summary

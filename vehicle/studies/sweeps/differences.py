@@ -9,19 +9,20 @@ with two or more seeds the mean over the seeds is also given, with the error est
 from __future__ import annotations
 
 import csv
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import islice
+from typing import TextIO
 
 import numpy as np
-import scipy
+from scipy.special import stdtrit
 
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import Case, Input
 from vehicle.studies.sweeps.measure import WAVE_NAMES
-from vehicle.studies.sweeps.sweep_table import SweepTable, changes
+from vehicle.studies.sweeps.sweep_table import Row, SweepTable
 
 DIFFERENCES = "differences.csv"
 """Name of the file in the folder of a sweep."""
@@ -39,59 +40,97 @@ HEADS = (
 )
 
 
-def differences_text(table: SweepTable) -> str:
-    """Return the difference in comfort between every car and the first car on the same road, as CSV.
+VALUES = ("comfort_overall", "comfort_error", *WAVE_NAMES)
+"""Names of the values of a row that the differences need."""
+
+Numbers = tuple[float, ...]
+"""The `VALUES` of a row."""
+
+ROWS_AT_ONCE = 1024
+"""Number of rows whose errors are computed together."""
+
+
+def has_differences(table: SweepTable) -> bool:
+    """Return True for a sweep with `ComfortMeasure` of two or more cars."""
+    # An override of a road, the speed of rolling tyres, does not make another car.
+    cars = (case.overrides[case.shared :] for case in table.cases)
+    first, good = next(cars, ()), (result for result in table.results if not result.reason)
+    return (
+        "comfort_overall" in table.units
+        and any(car != first for car in cars)
+        and any(WAVE_NAMES[0] in result.values for result in islice(good, 1))
+    )
+
+
+class DifferencesWriter:
+    """Writes the difference in comfort between every car and the first car on the same road as CSV, row by row.
 
     Args:
-        table: table of a sweep with `ComfortMeasure`.
-
-    Returns:
-        The text; empty for a sweep with a single car or another measure.
+        file: the open file.
+        paths: the modified parameter paths of all cases.
     """
-    if "comfort_overall" not in table.units or not any(WAVE_NAMES[0] in result.values for result in table.results):
-        return ""
-    paths = table.paths()
-    comfort, relative = table.column("comfort_overall"), table.column("comfort_error")
-    parts = np.array([[result.values.get(name, math.nan) for name in WAVE_NAMES] for result in table.results])
-    waves = parts[:, 0::2] + 1j * parts[:, 1::2]
-    # An override of a road, the speed of rolling tyres, does not make another car.
-    if len({case.overrides[case.shared :] for case in table.cases}) < 2:
-        return ""
-    file = io.StringIO()
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(["input", *paths, *HEADS])
 
-    def write(name: str, case: Case, population: str, numbers: Sequence[float]) -> None:
-        changed = changes(case)
+    def __init__(self, file: TextIO, paths: Sequence[str]) -> None:
+        self._writer = csv.writer(file, lineterminator="\n")
+        self._writer.writerow(["input", *paths, *HEADS])
+        self._factor = float(stdtrit(2 * WAVES, 0.975))
+        self._first: dict[Input, Numbers] = {}
+        self._seeds: dict[str, dict[tuple[str, ...], tuple[Sequence[str], list[float]]]] = {}
+        self._source: Input | None = None
+        self._base: Numbers = ()
+        self._road = ""
+        self._waiting: list[tuple[str, Sequence[str], Numbers, Numbers]] = []
+
+    def add(self, case: Case, parameters: Sequence[str], row: Row) -> None:
+        """Add the row of a case.
+
+        Args:
+            case: the case, in the order of the table.
+            parameters: values of its parameters, see `parameter_cells`.
+            row: its values.
+        """
+        values = row["values"]
+        numbers = tuple([float(values.get(name, math.nan)) for name in VALUES])
+        if case.source is not self._source:
+            self._source, self._road = case.source, ""
+            self._base = self._first.setdefault(case.source, numbers)
+            if isinstance(case.source, RoadDrive) and case.source.tagged:
+                self._road = replace(case.source, tagged=False).name
+        self._waiting.append((case.source.name, parameters, numbers, self._base))
+        if self._road:
+            cars = self._seeds.setdefault(self._road, {})
+            cars.setdefault(case.overrides, (parameters, []))[1].append(numbers[0])
+        if len(self._waiting) == ROWS_AT_ONCE:
+            self._flush()
+
+    def finish(self) -> None:
+        """Write the last rows, and the means over the seeds of each road with two or more seeds."""
+        self._flush()
+        for name, cars in self._seeds.items():
+            base = np.array(next(iter(cars.values()))[1])
+            for parameters, listed in cars.values():
+                comfort = np.array(listed)
+                count, apart = len(comfort), comfort - base
+                error, spread = (float(np.std(values, ddof=1)) / math.sqrt(count) for values in (comfort, apart))
+                width = float(stdtrit(count - 1, 0.975)) * spread
+                numbers = [float(np.mean(comfort)), error, float(np.mean(apart)), spread, width]
+                self._write(f"{name}, mean of {count} seeds", parameters, SEEDS, numbers)
+
+    def _flush(self) -> None:
+        """Write the waiting rows."""
+        if not self._waiting:
+            return
+        names, parameters, numbers, base = zip(*self._waiting, strict=True)
+        (comfort, relative, *waves), (base_comfort, _, *base_waves) = np.array(numbers).T, np.array(base).T
+        first, second = (
+            np.stack(parts[0::2], axis=1) + 1j * np.stack(parts[1::2], axis=1) for parts in (waves, base_waves)
+        )
+        errors = difference_error(first, second)
+        columns = [comfort, relative * comfort, comfort - base_comfort, errors, self._factor * errors]
+        for name, cells, row in zip(names, parameters, np.stack(columns, axis=1).tolist(), strict=True):
+            self._write(name, cells, CLASS, row)
+        self._waiting.clear()
+
+    def _write(self, name: str, parameters: Sequence[str], population: str, numbers: Sequence[float]) -> None:
         cells = [f"{number:.6g}" if math.isfinite(number) else "" for number in numbers]
-        writer.writerow([name, *(changed.get(path, "") for path in paths), population, *cells])
-
-    first: dict[Input, int] = {}
-    base = np.array([first.setdefault(case.source, row) for row, case in enumerate(table.cases)])
-    errors, gaps = difference_error(waves, waves[base]), comfort - comfort[base]
-    factor = float(scipy.stats.t.ppf(0.975, 2 * WAVES))
-    for row, case in enumerate(table.cases):
-        numbers = [comfort[row], relative[row] * comfort[row], gaps[row], errors[row], factor * errors[row]]
-        write(case.source.name, case, CLASS, numbers)
-    for name, rows in _seeds(table.cases).items():
-        base_rows = next(iter(rows.values()))
-        for rows_of_car in rows.values():
-            count = len(rows_of_car)
-            apart = comfort[rows_of_car] - comfort[base_rows]
-            error, spread = (
-                float(np.std(values, ddof=1)) / math.sqrt(count) for values in (comfort[rows_of_car], apart)
-            )
-            width = float(scipy.stats.t.ppf(0.975, count - 1)) * spread
-            numbers = [float(np.mean(comfort[rows_of_car])), error, float(np.mean(apart)), spread, width]
-            write(f"{name}, mean of {count} seeds", table.cases[rows_of_car[0]], SEEDS, numbers)
-    return file.getvalue()
-
-
-def _seeds(cases: Sequence[Case]) -> dict[str, dict[tuple[str, ...], list[int]]]:
-    """Return road to car to rows of the seeds, for roads with two or more seeds."""
-    rows: dict[str, dict[tuple[str, ...], list[int]]] = {}
-    for row, case in enumerate(cases):
-        if isinstance(case.source, RoadDrive) and case.source.tagged:
-            road = replace(case.source, tagged=False).name
-            rows.setdefault(road, {}).setdefault(case.overrides, []).append(row)
-    return rows
+        self._writer.writerow([name, *parameters, population, *cells])

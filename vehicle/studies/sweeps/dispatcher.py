@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-import itertools
+import time as clock
 from collections import deque
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import takewhile
+from queue import Empty, SimpleQueue
 
-from vehicle.errors import SimulationError, VehicleError
+import numpy as np
+
+from vehicle.errors import ConfigurationError, SimulationError, VehicleError
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.case_result import Result
-from vehicle.studies.sweeps.executors import workers_of
+from vehicle.studies.sweeps.case_result import Block, Result
+from vehicle.studies.sweeps.executors import worker_remedy, workers_of
 from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import program_digest
-from vehicle.studies.sweeps.worker import carry_out
+from vehicle.studies.sweeps.store import Indices
+from vehicle.studies.sweeps.worker import TimeLimit, carry_out
 
 PER_WORKER = 2
 """Submitted tasks per worker of an executor, so that no worker is idle."""
@@ -24,26 +31,76 @@ FILL = 8
 """Number of cars in a SIMD vector: tasks contain multiples of this number, each car with all its inputs."""
 TASK_S = 1.0
 """Target computing time of a task [s]: dispatch costs a thousandth of it, and rows are stored every second."""
+TASKS_PER_S = 200.0
+"""Maximum number of tasks that all workers finish in a second: a task costs a Dask client and its scheduler 1 to 2 ms
+of processor time. Above 200 workers the tasks take longer instead."""
 LARGEST = 32 * FILL
 """Maximum number of cases of a task."""
 
-LOOK_AGAIN_S = 2.0
-"""Interval after which new workers get tasks even if no task has finished [s]."""
+LOOK_AGAIN_S = 1.0
+"""Interval after which the workers are counted again even if no task has finished, so that new ones get tasks [s]."""
+NO_WORKER_NOTICE_S = 5.0
+"""Time without any worker after which a notice is given [s]."""
+NO_WORKER_LIMIT_S = 300.0
+"""Maximum time without any worker [s]: a batch system starts workers successively."""
+
+PACE_RESERVE = 10.0
+"""Multiple of the expected computing time of a task that its time limit allows."""
 
 DIED = "the worker died in this run, twice (killed, or out of memory)"
 
-Keep = Callable[[Sequence[str], Sequence[Result]], None]
-"""Function that stores finished rows: keys and results."""
+Keep = Callable[[Indices, Block], None]
+"""Function that stores finished rows: numbers of the cases and their rows."""
+Notice = Callable[[str], None]
+"""Function that shows a message while the sweep is running."""
 
 
-def in_groups(todo: dict[str, Case]) -> deque[str]:
-    """Return the keys sorted by vehicle file and engine, then by car; groups are in the order of first occurrence."""
-    positions: dict[object, int] = {}
-    order = {}
-    for key, case in todo.items():
-        group = positions.setdefault((case.vehicle, case.engine), len(positions))
-        order[key] = (group, positions.setdefault((case.vehicle, case.engine, case.overrides), len(positions)))
-    return deque(sorted(todo, key=order.__getitem__))
+def overdue(limit: float) -> str:
+    """Return the reason of a failed run that took longer than the time limit [s]."""
+    return f"took longer than the time limit of {limit:g} s; its worker was ended"
+
+
+def in_groups(cases: Sequence[Case], numbers: Indices) -> Indices:
+    """Return numbers of cases sorted by vehicle file and engine, then by car, in the order of first occurrence.
+
+    Args:
+        cases: all cases.
+        numbers: numbers of the cases to sort, ascending.
+    """
+    # Hashes instead of the cars: 8 byte a case. Two cars of equal hash would only be evaluated alternately.
+    groups: dict[object, int] = {}
+    group = np.empty(len(numbers), dtype=np.int32)
+    car = np.empty(len(numbers), dtype=np.int64)
+    for position, case in enumerate(cases if len(numbers) == len(cases) else map(cases.__getitem__, numbers.tolist())):
+        group[position] = groups.setdefault((case.vehicle, case.engine), len(groups))
+        car[position] = hash(case.overrides)
+    by_car = np.argsort(car, kind="stable")
+    new = np.append(True, np.diff(car[by_car]) != 0)
+    first = np.empty(len(numbers), dtype=np.int32)
+    first[by_car] = by_car[new][np.cumsum(new, dtype=np.int32) - 1]
+    order: Indices = numbers[np.lexsort((first, group))]
+    return order
+
+
+@dataclass(slots=True, eq=False)
+class Waiting:
+    """Numbers of the cases that wait for a worker.
+
+    Attributes:
+        numbers: numbers of the cases, in the order of submission.
+        submitted: number of cases that were submitted.
+    """
+
+    numbers: Indices
+    submitted: int = 0
+
+    def __len__(self) -> int:
+        """Return the number of waiting cases."""
+        return len(self.numbers) - self.submitted
+
+    def leading(self, count: int) -> Indices:
+        """Return the numbers of the next cases, at most `count`."""
+        return self.numbers[self.submitted : self.submitted + count]
 
 
 class Dispatcher:
@@ -52,34 +109,62 @@ class Dispatcher:
     Args:
         executor: executor, or function that returns an executor.
         measure: measure of all cases.
+        key_of: function that returns the key of a case for its row; by default the keys are empty.
+        time_limit: maximum computing time of a run [s], see `TimeLimit`; None for no limit.
+        notice: called with messages.
+
+    Raises:
+        ConfigurationError: the time limit is no positive number.
     """
 
-    def __init__(self, executor: Executor | Callable[[], Executor], measure: Measure) -> None:
+    def __init__(
+        self,
+        executor: Executor | Callable[[], Executor],
+        measure: Measure,
+        *,
+        key_of: Callable[[Case], str] | None = None,
+        time_limit: float | None = None,
+        notice: Notice | None = None,
+    ) -> None:
+        if time_limit is not None and not 0.0 < time_limit < np.inf:
+            raise ConfigurationError(f"time limit: found {time_limit:g} s, must be a finite number of seconds above 0")
         self.make = None if isinstance(executor, Executor) else executor
         self.executor = executor if isinstance(executor, Executor) else executor()
         self.measure, self.program = measure, program_digest()
+        self.key_of, self.time_limit, self.notice = key_of, time_limit, notice
         self.pace: float | None = None
+        self._workers: int | None = None
+        self._counted = self._last_worker = -np.inf
+        self._noticed = False
 
-    def work(self, todo: dict[str, Case], keep: Keep) -> None:
-        """Run all cases; `keep` is called with finished rows.
+    def work(self, cases: Sequence[Case], keep: Keep, numbers: Indices | None = None) -> None:
+        """Run cases; `keep` is called with finished rows.
+
+        Args:
+            cases: the cases.
+            keep: called with the numbers of finished cases and their rows.
+            numbers: numbers of the cases to run, ascending; by default all.
 
         Raises:
-            SimulationError: the executor broke and cannot be created again.
+            SimulationError: the executor broke and cannot be created again, or has no workers.
         """
-        waiting = in_groups(todo)
-        suspects: deque[list[str]] = deque()
+        waiting = Waiting(in_groups(cases, np.arange(len(cases)) if numbers is None else numbers))
+        suspects: deque[Indices] = deque()
+        self._last_worker = clock.monotonic()
         try:
             while waiting or suspects:
                 if suspects:
                     # A single task, then single runs, so that only the run that kills its worker fails.
                     task = suspects.popleft()
-                    if not self._round(deque(task), todo, keep, len(task)):
+                    began = clock.monotonic()
+                    if not self._run_waiting(Waiting(task), cases, keep, len(task)):
                         continue
                     if len(task) == 1:
-                        keep(task, [Result(reason=DIED)])
-                    suspects.extend([key] for key in task if len(task) > 1)
+                        keep(task, self._failed(cases, task, self._death(began)))
+                    else:
+                        suspects.extend(np.split(task, len(task)))
                 else:
-                    suspects.extend(self._round(waiting, todo, keep))
+                    suspects.extend(self._run_waiting(waiting, cases, keep))
         except CancelledError:
             raise SimulationError(
                 "the executor cancelled its runs (lost Dask scheduler?); finished rows are stored, continue with "
@@ -89,47 +174,58 @@ class Dispatcher:
             if self.make is not None:
                 _close(self.executor)
 
-    def _round(self, waiting: deque[str], todo: dict[str, Case], keep: Keep, size: int = 0) -> list[list[str]]:
+    def _run_waiting(self, waiting: Waiting, cases: Sequence[Case], keep: Keep, size: int = 0) -> list[Indices]:
         """Run waiting cases until all are finished or a worker dies.
 
         Args:
-            waiting: keys of the waiting cases; removed as they are submitted.
-            todo: key to case.
+            waiting: the waiting cases.
+            cases: all cases.
             keep: called with finished rows.
             size: number of cases of a task; by default from the measured computing time.
 
         Returns:
             Tasks that were submitted and lost.
         """
-        flying: dict[Future[list[Result]], list[str]] = {}
-        lost: list[list[str]] = []
+        flying: dict[Future[Block], tuple[Indices, float]] = {}
+        finished: SimpleQueue[Future[Block]] = SimpleQueue()
+        lost: list[Indices] = []
+
+        def submit_task(task: Indices, task_cases: Sequence[Case]) -> None:
+            future = self._submit(task_cases)
+            flying[future] = task, clock.monotonic()
+            # The queue has the order in which the tasks finish, and costs the same with any number of tasks.
+            future.add_done_callback(finished.put)
+
         while waiting or flying:
-            workers = workers_of(self.executor)  # may change in a cluster
-            at_once = UNKNOWN_WORKERS if workers is None else PER_WORKER * workers
+            workers = self._count_workers()
+            at_once = UNKNOWN_WORKERS if workers is None else PER_WORKER * max(workers, 1)
             while waiting and len(flying) < at_once and not lost:
-                task = self._task(waiting, todo, size, at_once)
+                task, task_cases = self._next_task(waiting, cases, size, at_once)
                 try:
-                    flying[self._submit(task, todo)] = task
+                    submit_task(task, task_cases)
                 except BrokenExecutor:
                     lost.append(task)
             if not flying:
                 break
-            for future in wait(flying, timeout=LOOK_AGAIN_S, return_when=FIRST_COMPLETED).done:
-                task = flying.pop(future)
+            for future in _drained(finished):
+                task, began = flying.pop(future)
                 error = future.exception()
                 if error is None:
-                    results = future.result()
-                    self.pace = sum(result.seconds for result in results) / len(results)
-                    keep(task, results)
+                    block = future.result()
+                    self.pace = block.seconds / len(task)
+                    keep(task, block)
                 elif isinstance(error, BrokenExecutor):
                     lost.append(task)
                 elif isinstance(error, VehicleError):
                     raise error  # an error of the worker itself: errors of runs are results
                 elif len(task) == 1:
-                    keep(task, [Result(reason=f"{type(error).__name__}: {error}")])
+                    # Dask repeats the task of a dead worker, and gives up with this error.
+                    killed = type(error).__name__ == "KilledWorker"
+                    reason = self._death(began) if killed else f"{type(error).__name__}: {error}"
+                    keep(task, self._failed(cases, task, reason))
                 else:
-                    for key in task:  # an error of one case: submit each case separately
-                        flying[self._submit([key], todo)] = [key]
+                    for single in np.split(task, len(task)):  # an error of one case: submit each case separately
+                        submit_task(single, [cases[single[0]]])
         if lost:
             if self.make is None:
                 raise SimulationError(
@@ -140,35 +236,100 @@ class Dispatcher:
             self.executor = self.make()
         return lost
 
-    def _task(self, waiting: deque[str], todo: dict[str, Case], size: int, at_once: int) -> list[str]:
+    def _count_workers(self) -> int | None:
+        """Return the number of workers, counted again after `LOOK_AGAIN_S`: a cluster may grow; None if unknown.
+
+        Raises:
+            SimulationError: there was no worker for `NO_WORKER_LIMIT_S`.
+        """
+        now = clock.monotonic()
+        if now - self._counted >= LOOK_AGAIN_S:
+            self._workers, self._counted = workers_of(self.executor), now
+            if self._workers != 0:
+                self._last_worker, self._noticed = now, False
+            elif now - self._last_worker > NO_WORKER_LIMIT_S:
+                raise SimulationError(
+                    f"no worker for {NO_WORKER_LIMIT_S:g} s; {worker_remedy(self.executor)}. Finished rows are stored; "
+                    "continue with --resume"
+                )
+            elif now - self._last_worker > NO_WORKER_NOTICE_S and not self._noticed and self.notice is not None:
+                self._noticed = True
+                self.notice(
+                    f"no worker for {now - self._last_worker:.0f} s, waiting for at most {NO_WORKER_LIMIT_S:g} s; "
+                    f"{worker_remedy(self.executor)}"
+                )
+        return self._workers
+
+    def _next_task(
+        self, waiting: Waiting, cases: Sequence[Case], size: int, at_once: int
+    ) -> tuple[Indices, list[Case]]:
         """Remove the cases of a task from the waiting cases: one vehicle file and engine, about `TASK_S` of work."""
-        first = todo[waiting[0]]
+        first = cases[waiting.leading(1)[0]]
         if not size:
-            paced = FILL if self.pace is None else TASK_S / max(self.pace, 1e-9)
-            even = len(waiting) / at_once  # so that all workers finish at the same time
-            size = max(int(min(paced, even, LARGEST)), 1)
-            if first.engine != "mujoco" and paced > 2.0:
-                inputs = _of_one_car(waiting, todo)
-                fill = FILL * inputs
-                # A single car cannot fill a vector; a task with very many inputs would store its rows too late.
-                if inputs < len(waiting) and fill <= LARGEST:
-                    size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
-        task: list[str] = []
-        while waiting and len(task) < size:
-            case = todo[waiting[0]]
-            if (case.vehicle, case.engine) != (first.vehicle, first.engine):
-                break
-            task.append(waiting.popleft())
-        return task
+            size = self._size(waiting, cases, first, at_once)
+        group = first.vehicle, first.engine
+        listed = map(cases.__getitem__, waiting.leading(size).tolist())
+        task_cases = list(takewhile(lambda case: (case.vehicle, case.engine) == group, listed))
+        task = waiting.leading(len(task_cases))
+        waiting.submitted += len(task_cases)
+        return task, task_cases
 
-    def _submit(self, task: list[str], todo: dict[str, Case]) -> Future[list[Result]]:
-        return self.executor.submit(carry_out, [todo[key] for key in task], self.measure, self.program)
+    def _size(self, waiting: Waiting, cases: Sequence[Case], first: Case, at_once: int) -> int:
+        """Return the number of cases of the next task.
+
+        Args:
+            waiting: the waiting cases.
+            cases: all cases.
+            first: first waiting case.
+            at_once: number of tasks submitted at once.
+        """
+        if self.pace is None:
+            # With a time limit the first tasks are single runs, whose time is limited exactly.
+            paced = 1.0 if self.time_limit is not None else float(FILL)
+        else:
+            paced = max(TASK_S, at_once / PER_WORKER / TASKS_PER_S) / max(self.pace, 1e-9)
+        even = len(waiting) / at_once  # so that all workers finish at the same time
+        size = max(int(min(paced, even, LARGEST)), 1)
+        if first.engine != "mujoco" and paced > 2.0:
+            inputs = 0
+            for number in waiting.leading(LARGEST // FILL + 1).tolist():
+                if cases[number].overrides != first.overrides:
+                    break
+                inputs += 1
+            fill = FILL * inputs
+            # A single car cannot fill a vector; a task with very many inputs would store its rows too overran.
+            if inputs < len(waiting) and fill <= LARGEST:
+                size = min(fill * -(-size // fill), LARGEST, -(-PER_WORKER * len(waiting) // at_once))
+        return size
+
+    def _submit(self, task: Sequence[Case]) -> Future[Block]:
+        keys = [""] * len(task) if self.key_of is None else [self.key_of(case) for case in task]
+        limit = None
+        if self.time_limit is not None:
+            # A task of several runs that takes too long is repeated run by run.
+            expected = 0.0 if self.pace is None or len(task) == 1 else PACE_RESERVE * self.pace * len(task)
+            limit = TimeLimit(seconds=max(self.time_limit, expected))
+        return self.executor.submit(carry_out, task, keys, self.measure, self.program, limit)
+
+    def _failed(self, cases: Sequence[Case], task: Indices, reason: str) -> Block:
+        """Return the row of a single failed run."""
+        case = cases[task[0]]
+        return Block.of([case], ["" if self.key_of is None else self.key_of(case)], [Result(reason=reason)])
+
+    def _death(self, began: float) -> str:
+        """Return the reason of a run whose worker died; `began` is the time of its submission [s]."""
+        overran = self.time_limit is not None and clock.monotonic() - began >= self.time_limit
+        return overdue(self.time_limit) if overran and self.time_limit is not None else DIED
 
 
-def _of_one_car(waiting: deque[str], todo: dict[str, Case]) -> int:
-    """Return the number of leading cases of the same car."""
-    first = todo[waiting[0]].overrides
-    return sum(1 for _ in itertools.takewhile(lambda key: todo[key].overrides == first, waiting))
+def _drained(finished: SimpleQueue[Future[Block]]) -> list[Future[Block]]:
+    """Wait for a finished task for `LOOK_AGAIN_S`; return all finished tasks, in the order in which they finished."""
+    futures = []
+    with suppress(Empty):
+        futures.append(finished.get(timeout=LOOK_AGAIN_S))
+        while True:
+            futures.append(finished.get_nowait())
+    return futures
 
 
 def _close(executor: Executor) -> None:

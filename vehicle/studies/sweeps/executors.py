@@ -13,15 +13,12 @@ from functools import partial
 from multiprocessing import connection, get_context, parent_process
 from typing import Any
 
-from vehicle.errors import ConfigurationError, MissingPartError
+from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.threads import one_thread_each
 
 DASK = "dask://"
 
 WATCH = "parent watch"
-
-FIRST_WORKER_S = 60
-"""Maximum time until a cluster has a worker [s]: a batch system starts workers successively."""
 
 
 def executor_factory(text: str | None, jobs: int) -> Callable[[], Executor]:
@@ -65,13 +62,30 @@ def process_pool(jobs: int) -> ProcessPoolExecutor:
 
 
 def workers_of(executor: Executor) -> int | None:
-    """Return the number of workers of an executor; None if unknown."""
+    """Return the present number of workers of an executor; None if unknown.
+
+    Raises:
+        SimulationError: the scheduler of a cluster does not respond.
+    """
     client = getattr(executor, "_client", None)
     if client is not None:
-        return sum(client.nthreads().values()) or None
+        try:
+            return int(sum(client.nthreads().values()))
+        except (OSError, ValueError, TimeoutError) as error:
+            raise SimulationError(
+                f"lost the scheduler of the cluster ({error}); finished rows are stored. Start scheduler and workers "
+                "again and continue with --resume"
+            ) from None
     # Both executors of the standard library have this attribute, and no public one.
     count = getattr(executor, "_max_workers", None)
     return count if isinstance(count, int) and count > 0 else None
+
+
+def worker_remedy(executor: Executor) -> str:
+    """Return the instruction that starts workers of an executor."""
+    client = getattr(executor, "_client", None)
+    address = "" if client is None or client.scheduler is None else client.scheduler.address
+    return f"start workers, as: dask worker {address} --nthreads 1" if address else "start its workers"
 
 
 def _ready() -> None:
@@ -106,14 +120,6 @@ def _dask(address: str) -> Callable[[], Executor]:
             client = distributed.Client(address, timeout="10s", set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise ConfigurationError(f"--executor dask://{address}: no response from a scheduler ({error})") from None
-        try:
-            client.wait_for_workers(1, timeout=FIRST_WORKER_S)
-        except TimeoutError:
-            client.close()
-            raise ConfigurationError(
-                f"--executor dask://{address}: no worker joined within {FIRST_WORKER_S} s; start workers, as: dask "
-                f"worker {address} --nthreads 1"
-            ) from None
         executor: Executor = client.get_executor(pure=False)
         return executor
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from itertools import product
+from operator import and_
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,15 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
-from vehicle.studies.sweeps.case import Case, all_tyre_words, varied_cases
+from vehicle.studies.sweeps.case import Case, all_tyre_words
+from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
+from vehicle.studies.sweeps.dispatcher import Notice
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
 from vehicle.studies.sweeps.sweep import Progress, sweep
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
-Variations = Mapping[str, Sequence[Any]] | Sequence[Iterable[str] | Mapping[str, Any]]
+Variations = Mapping[str, Sequence[Any]] | Combinations | RowChanges | Sequence[Iterable[str] | Mapping[str, Any]]
 """Path to values, run in every combination; or a list of variations, each path to value or texts "path=value"."""
 
 
@@ -54,7 +56,9 @@ class SweepPlan:
         jobs: int = 1,
         folder: Path | None = None,
         retry_failed: bool = False,
+        time_limit: float | None = None,
         progress: Progress | None = None,
+        notice: Notice | None = None,
     ) -> SweepTable:
         """Run the sweep; arguments, result and errors as in `vehicle.studies.sweeps.sweep.sweep`."""
         return sweep(
@@ -64,7 +68,9 @@ class SweepPlan:
             jobs=jobs,
             folder=folder,
             retry_failed=retry_failed,
+            time_limit=time_limit,
             progress=progress,
+            notice=notice,
         )
 
 
@@ -83,7 +89,7 @@ def plan_sweep(
     require_paths(vehicle, car.overrides, changes[0])
     sources = inputs_of(car, inputs)
     start = common_start(sources, skip)
-    cases = varied_cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
+    cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
     paths = [text.partition("=")[0] for text in changes[0]]
     return SweepPlan(
         cases=cases,
@@ -103,6 +109,7 @@ def run_sweep(
     measure: Measure | None = None,
     jobs: int = 1,
     folder: Path | None = None,
+    time_limit: float | None = None,
     progress: Progress | None = None,
 ) -> SweepTable:
     """Run a car with varied parameters on one or several inputs, and tabulate comfort and slip.
@@ -119,6 +126,7 @@ def run_sweep(
         measure: measure of each run; by default comfort and slip shares.
         jobs: number of processes; the table does not depend on it.
         folder: existing folder in which finished rows are stored, for the next call to reuse; None stores no rows.
+        time_limit: maximum computing time of a run [s]; a run that takes longer is a failed row.
         progress: called with the finished fraction.
 
     Returns:
@@ -129,18 +137,21 @@ def run_sweep(
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     plan = plan_sweep(car, vary, inputs, engine=engine, skip=skip, measure=measure)
-    return plan.run(jobs=jobs, folder=folder, progress=progress)
+    return plan.run(jobs=jobs, folder=folder, time_limit=time_limit, progress=progress)
 
 
-def changes_of(vary: Variations) -> list[tuple[str, ...]]:
+def changes_of(vary: Variations) -> Sequence[tuple[str, ...]]:
     """Return the texts "path=value" of each variation, the last path varying fastest.
 
     Raises:
         ConfigurationError: no variation, or a value of an invalid type.
     """
+    changes: Sequence[tuple[str, ...]]
     if isinstance(vary, Mapping):
         columns = [[text for value in each for text in assignments({path: value})] for path, each in vary.items()]
-        changes = list(product(*columns))
+        changes = Combinations(columns)
+    elif isinstance(vary, Combinations | RowChanges):
+        changes = vary
     else:
         changes = [tuple(assignments(each)) for each in vary]
     if not changes or not changes[0]:
@@ -171,10 +182,15 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
 
 def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return a message for each varied parameter without effect; empty if laws vary, which may switch it on."""
-    for column in zip(*changes, strict=True):
-        values = {text.partition("=")[2].strip() for text in column}
-        if len(values) > 1 and any(value[:1].isalpha() for value in values):
-            return ()
+    varied, is_law = [False] * len(changes[0]), [False] * len(changes[0])
+    first = [text.partition("=")[2].strip() for text in changes[0]]
+    for change in changes:
+        for column, text in enumerate(change):
+            value = text.partition("=")[2].strip()
+            varied[column] = varied[column] or value != first[column]
+            is_law[column] = is_law[column] or value[:1].isalpha()
+    if any(map(and_, varied, is_law)):
+        return ()
     try:
         return idle_parameters(load_vehicle(file, [*overrides, *changes[0]]), changes[0])
     except ConfigurationError:

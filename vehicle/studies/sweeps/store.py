@@ -1,93 +1,176 @@
-"""Finished rows of a sweep on disk: a line of JSON each, read again when the sweep is continued."""
+"""Rows of a sweep in a file: appended as their tasks finish, found by the number of the case, used again later.
+
+The process of a sweep holds only the position of each row in the file (16 byte a case). Without a folder the file is a
+temporary one.
+"""
 
 from __future__ import annotations
 
-import json
 import os
-from collections.abc import Mapping
-from dataclasses import fields
+import tempfile
+import time as clock
+import weakref
+from collections.abc import Callable, Sequence
 from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
 
 from vehicle.errors import DataError, OutputError
 from vehicle.runs.output.written_files import note
-from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case import Case
+from vehicle.studies.sweeps.case_keys import KEY_DIGITS
+from vehicle.studies.sweeps.case_result import Block, Result, result_of
+from vehicle.studies.sweeps.lazy_sequence import LazySequence
 
 ROWS = "rows.jsonl"
 
-FIELDS = tuple(field.name for field in fields(Result))
+SYNCHRONISED_S = 1.0
+"""Maximum age of rows that a loss of power takes [s]. A flush to the disk takes milliseconds, as long as many blocks of
+a large cluster; rows survive the death of the process without it."""
+
+BEGINNING = b'{"key": "'
+"""Beginning of a row, before its key."""
+
+Indices = npt.NDArray[np.intp]
 
 
-class Store:
-    """File `rows.jsonl` of a sweep.
+class StoredRows(LazySequence[Result]):
+    """Results of the cases of a sweep, read from the file when they are used.
 
     Args:
-        path: the file in an existing folder; existing rows are kept.
+        path: `rows.jsonl` in an existing folder, whose rows are kept; None for a temporary file.
+        count: number of cases.
+
+    Attributes:
+        failed: True for each case with a row of a failed run; (count,).
 
     Raises:
-        DataError: a line in the middle of the file is damaged.
-        OutputError: the file cannot be written.
+        OutputError: the file cannot be opened.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path | None, count: int) -> None:
         self.path = path
-        self.finished = _read(path)
         try:
-            note(path)
-            self._file = path.open("a", encoding="utf-8")
+            if path is None:
+                descriptor, name = tempfile.mkstemp(suffix=ROWS)
+                Path(name).unlink()
+            else:
+                note(path)
+                descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
         except OSError as error:
-            raise OutputError(f"{path}: cannot be written: {error.strerror}; use another folder") from None
+            raise OutputError(
+                f"{path or tempfile.gettempdir()}: cannot be written: {error.strerror}; use another folder"
+            ) from None
+        self._descriptor = descriptor
+        weakref.finalize(self, os.close, descriptor)
+        self._end, self._synchronised = os.fstat(descriptor).st_size, clock.monotonic()
+        self._start = np.zeros(count, dtype=np.int64)
+        self._length = np.zeros(count, dtype=np.int32)
+        self.failed = np.zeros(count, dtype=bool)
 
-    def add(self, rows: Mapping[str, tuple[str, Result]]) -> None:
-        """Append rows to the file and flush them to the disk.
+    @property
+    def stored(self) -> npt.NDArray[np.bool_]:
+        """Return True for each case with a row; (count,)."""
+        return self._length > 0
+
+    def use_stored(self, cases: Sequence[Case], key_of: Callable[[Case], str]) -> None:
+        """Find the rows of cases among those that the file already contains; remove an incomplete last line.
 
         Args:
-            rows: key to label and result.
+            cases: the cases.
+            key_of: function that returns the key of a case.
+
+        Raises:
+            DataError: a line in the middle of the file is damaged.
+        """
+        if not self._end:
+            return
+        keys, starts, lengths, failed = self._read()
+        if not len(keys):
+            return
+        # The last row of a key counts: a failed run may have been computed again.
+        order = np.argsort(keys, kind="stable")
+        last = order[np.append(keys[order[1:]] != keys[order[:-1]], True)]
+        keys, starts, lengths, failed = keys[last], starts[last], lengths[last], failed[last]
+        for number, case in enumerate(cases):
+            key = key_of(case).encode()
+            row = int(np.searchsorted(keys, key))
+            if row < len(keys) and keys[row] == key:
+                self._start[number], self._length[number] = starts[row], lengths[row]
+                self.failed[number] = failed[row]
+
+    def append(self, numbers: Indices, block: Block) -> None:
+        """Append the rows of cases to the file.
+
+        Args:
+            numbers: numbers of the cases.
+            block: their rows.
 
         Raises:
             OutputError: the file cannot be written.
         """
-        lines = []
-        for key, (label, result) in rows.items():
-            self.finished[key] = result
-            # JSON writes floats with all digits, so rows read again are identical; NaN is written as NaN.
-            row = {name: getattr(result, name) for name in FIELDS}
-            lines.append(json.dumps({"key": key, "case": label, **row}) + "\n")
+        ends = np.flatnonzero(np.frombuffer(block.rows, dtype=np.uint8) == ord("\n")) + 1
+        starts = np.concatenate([[0], ends[:-1]])
         try:
-            self._file.write("".join(lines))
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            remaining = memoryview(block.rows)
+            while remaining:
+                remaining = remaining[os.write(self._descriptor, remaining) :]
+            if self.path is not None and clock.monotonic() - self._synchronised > SYNCHRONISED_S:
+                self.synchronise()
         except OSError as error:
             raise OutputError(
-                f"{self.path}: cannot be written after {len(self.finished)} rows: {error.strerror}"
+                f"{self.path or tempfile.gettempdir()}: cannot be written after {np.count_nonzero(self.stored)} rows: "
+                f"{error.strerror}; free space there" + ("" if self.path is None else " and continue with --resume")
             ) from None
+        self._start[numbers], self._length[numbers] = self._end + starts, ends - starts
+        self.failed[numbers] = False
+        self.failed[numbers[list(block.failed)]] = True
+        self._end += len(block.rows)
 
-    def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+    def synchronise(self) -> None:
+        """Flush the rows to the disk."""
+        os.fsync(self._descriptor)
+        self._synchronised = clock.monotonic()
 
+    def __len__(self) -> int:
+        """Return the number of cases."""
+        return len(self._length)
 
-def _read(path: Path) -> dict[str, Result]:
-    """Read the rows of a file by key; remove an incomplete last line from the file."""
-    if not path.exists():
-        return {}
-    finished = {}
-    content = path.read_bytes()
-    whole, _, incomplete = content.rpartition(b"\n")
-    for number, line in enumerate(whole.split(b"\n") if whole else [], start=1):
-        try:
-            row = json.loads(line)
-            key = str(row["key"])
-            finished[key] = Result(
-                values={str(name): float(value) for name, value in row["values"].items()},
-                engine=str(row["engine"]),
-                reason=str(row["reason"]),
-                seconds=float(row["seconds"]),
-            )
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
-            raise DataError(
-                f"{path}, line {number}: not a row of a sweep ({error}); start again with --force"
-            ) from None
-    if incomplete:
-        with path.open("r+b") as file:
-            file.truncate(len(content) - len(incomplete))
-    return finished
+    def item(self, number: int) -> Result:
+        """Return the result of a case."""
+        return result_of(self.row(number))
+
+    def row(self, number: int) -> bytes:
+        """Return the row of a case, a line of JSON."""
+        return os.pread(self._descriptor, int(self._length[number]), int(self._start[number]))
+
+    def _read(self) -> tuple[npt.NDArray[np.bytes_], Indices, Indices, npt.NDArray[np.bool_]]:
+        """Return key, position, length and failure of all rows in the file; remove an incomplete last line."""
+        keys, starts, lengths, failed = bytearray(), [], [], []
+        position = 0
+        with open(self._descriptor, "rb", closefd=False) as file:
+            file.seek(0)
+            for number, line in enumerate(file, start=1):
+                if not line.endswith(b"\n"):
+                    os.ftruncate(self._descriptor, position)
+                    break
+                try:
+                    failed.append(bool(result_of(line).reason))
+                    if not line.startswith(BEGINNING):
+                        raise ValueError("no key")
+                except (ValueError, KeyError, TypeError, AttributeError) as error:
+                    raise DataError(
+                        f"{self.path}, line {number}: not a row of a sweep ({error}); start again with --force"
+                    ) from None
+                keys += line[len(BEGINNING) :][:KEY_DIGITS]
+                starts.append(position)
+                lengths.append(len(line))
+                position += len(line)
+        self._end = position
+        return (
+            np.frombuffer(bytes(keys), dtype=f"S{KEY_DIGITS}"),
+            np.array(starts, dtype=np.intp),
+            np.array(lengths, dtype=np.intp),
+            np.array(failed, dtype=bool),
+        )

@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from vehicle.model.flexbody.body_model import PACKAGE_FOLDER
+import numpy as np
+
 from vehicle.model.parameters.driving import tyre_words
-from vehicle.model.parameters.shipped import FOCUS_FILE
-from vehicle.model.parameters.template import SHIPPED as TEMPLATES
-from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.runs.output.folder import folder_lock, write_text
-from vehicle.studies.sweeps.case import Case, digest, drivings
-from vehicle.studies.sweeps.case_result import Result
-from vehicle.studies.sweeps.differences import DIFFERENCES, differences_text
-from vehicle.studies.sweeps.dispatcher import Dispatcher
+from vehicle.runs.output.folder import folder_lock
+from vehicle.studies.sweeps.case import Case, drivings
+from vehicle.studies.sweeps.case_keys import CaseKeys
+from vehicle.studies.sweeps.case_result import Block
+from vehicle.studies.sweeps.dispatcher import Dispatcher, Notice
 from vehicle.studies.sweeps.executors import process_pool
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
-from vehicle.studies.sweeps.program import class_source, libraries, program_digest
-from vehicle.studies.sweeps.store import ROWS, Store
+from vehicle.studies.sweeps.program import libraries, program_digest
+from vehicle.studies.sweeps.store import ROWS, Indices, StoredRows
 from vehicle.studies.sweeps.sweep_table import SweepTable
+from vehicle.studies.sweeps.table_files import write_table
 
 Progress = Callable[[float], None]
 
@@ -38,7 +36,9 @@ def sweep(
     jobs: int = 1,
     folder: Path | None = None,
     retry_failed: bool = False,
+    time_limit: float | None = None,
     progress: Progress | None = None,
+    notice: Notice | None = None,
 ) -> SweepTable:
     """Run cases and tabulate their measured values.
 
@@ -56,7 +56,11 @@ def sweep(
         jobs: number of processes without `executor`.
         folder: existing folder for the rows; None stores no rows.
         retry_failed: compute failed rows again.
+        time_limit: maximum computing time of a run [s], including its car and, for the first run of a worker, imports
+            and compilation; the worker of a run that takes longer is ended, and the run is a failed row. None for no
+            limit.
         progress: called with the finished fraction of the runs computed by this call.
+        notice: called with messages while the sweep is running, as that a cluster has no workers.
 
     Returns:
         The table, in the order of the cases.
@@ -67,79 +71,49 @@ def sweep(
         SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
     chosen = ComfortMeasure() if measure is None else measure
-    keys = case_keys(cases, chosen)
+    key_of, each = CaseKeys(chosen), _one_of_each(cases)
+    for case in each:
+        key_of(case)  # raises the error of an input or a vehicle file before the first run
     with ExitStack() as held:
         if folder is not None:
             held.enter_context(folder_lock(folder.resolve()))
-        store = Store(folder / ROWS) if folder is not None else None
-        finished: dict[str, Result] = {} if store is None else dict(store.finished)
-        todo = {
-            key: case
-            for key, case in zip(keys, cases, strict=True)
-            if key not in finished or (retry_failed and finished[key].reason)
-        }
-        began = clock.perf_counter()
+        rows = StoredRows(folder / ROWS if folder is not None else None, len(cases))
+        rows.use_stored(cases, key_of)
+        todo = np.flatnonzero(~rows.stored | rows.failed if retry_failed else ~rows.stored)
+        began, done = clock.perf_counter(), 0
 
-        def keep(keys: Sequence[str], results: Sequence[Result]) -> None:
-            finished.update(zip(keys, results, strict=True))
-            if store is not None:
-                store.add({key: (todo[key].label, finished[key]) for key in keys})
-            for key in keys:
-                done.add(key)
-                if progress is not None:
-                    progress(len(done) / len(todo))
+        def keep(numbers: Indices, block: Block) -> None:
+            nonlocal done
+            rows.append(numbers, block)
+            if progress is not None:
+                for _ in numbers:
+                    done += 1
+                    progress(done / len(todo))
 
-        done: set[str] = set()
-        try:
-            if todo:
-                Dispatcher(executor or partial(process_pool, jobs), chosen).work(todo, keep)
-        finally:
-            if store is not None:
-                store.close()
-        table = SweepTable(
-            cases=list(cases),
-            results=[finished[key] for key in keys],
-            units=chosen.units,
-            made=_made(cases, chosen),
-        )
+        if len(todo):
+            dispatcher = Dispatcher(
+                executor or partial(process_pool, jobs), chosen, key_of=key_of, time_limit=time_limit, notice=notice
+            )
+            dispatcher.work(cases, keep, todo)
+            rows.synchronise()
+        table = SweepTable(cases=cases, results=rows, units=chosen.units, made=_made(cases, each, chosen))
         if folder is not None:
-            table.write(folder, f"{len(todo)} runs computed in {clock.perf_counter() - began:.2f} s")
-            if text := differences_text(table):
-                write_text(folder / DIFFERENCES, text)
+            write_table(table, folder, f"{len(todo)} runs computed in {clock.perf_counter() - began:.2f} s")
         return table
 
 
-def case_keys(cases: Sequence[Case], measure: Measure) -> list[str]:
-    """Return a digest for each case of all data that its values depend on: car, input, engine, measure and program."""
-    common = [program_digest(), repr(measure), class_source(measure)]
-    # Thousands of cases share a few inputs and cars; reading them for every case would take half a minute.
-    sources = {id(case.source): case.source for case in cases}
-    inputs = {key: digest(source.identity()) for key, source in sources.items()}
-    cars = {vehicle: _car_digest(vehicle) for vehicle in dict.fromkeys(case.vehicle for case in cases)}
-    return [
-        digest([*common, cars[case.vehicle], inputs[id(case.source)], case.engine, case.shared, case.overrides])
-        for case in cases
-    ]
+def _one_of_each(cases: Sequence[Case]) -> Collection[Case]:
+    """Return a case for each input, vehicle file and engine."""
+    return {(id(case.source), case.vehicle, case.engine): case for case in cases}.values()
 
 
-def _car_digest(vehicle: Path | None) -> str:
-    """Return a digest of a vehicle file and of all superelements and templates that it may refer to."""
-    file = FOCUS_FILE if vehicle is None else vehicle
-    load_vehicle(file)  # raises the usual error for a bad file
-    content = hashlib.sha256(file.read_bytes())
-    for folder in dict.fromkeys([file.parent, file.parent / "templates", PACKAGE_FOLDER, TEMPLATES]):
-        for path in sorted(folder.glob("*.toml")):
-            content.update(path.name.encode() + path.read_bytes())
-    return content.hexdigest()[:20]
-
-
-def _made(cases: Sequence[Case], measure: Measure) -> dict[str, Any]:
+def _made(cases: Sequence[Case], each: Collection[Case], measure: Measure) -> dict[str, Any]:
     """Return the content of `sweep.json`."""
-    sources = {id(case.source): case.source for case in cases}
+    sources = {id(case.source): case.source for case in each}
     return {
         "runs": len(cases),
-        "vehicles": sorted({"focus" if case.vehicle is None else case.vehicle.name for case in cases}),
-        "engines_asked": sorted({case.engine for case in cases}),
+        "vehicles": sorted({"focus" if case.vehicle is None else case.vehicle.name for case in each}),
+        "engines_asked": sorted({case.engine for case in each}),
         "inputs": {source.name: source.identity() for source in sources.values()},
         "tyre": {name: tyre_words(cars) for name, cars in drivings(cases).items()},
         "measure": repr(measure),

@@ -4,26 +4,39 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.runs.output.folder import write_json, write_text
 from vehicle.signals.records.formats import recognised_format
 from vehicle.signals.records.sheet_format import read_sheet_texts
 from vehicle.signals.records.text_format import read_texts
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.store import StoredRows
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Heads of the columns without unit."""
+
+CONSTANTS = {"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}
+"""Constants of JSON to the texts of Python."""
+
+
+class Row(TypedDict):
+    """Row of a case: its values as texts with all digits."""
+
+    values: dict[str, str]
+    engine: str
+    reason: str
+    seconds: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -51,25 +64,40 @@ class SweepTable:
     @property
     def failed(self) -> list[tuple[Case, str]]:
         """Return the failed cases with their error messages."""
-        pairs = zip(self.cases, self.results, strict=True)
-        return [(case, result.reason) for case, result in pairs if result.reason]
+        if isinstance(self.results, StoredRows):
+            numbers = np.flatnonzero(self.results.failed).tolist()
+        else:
+            numbers = [number for number, result in enumerate(self.results) if result.reason]
+        return [(self.cases[number], self.results[number].reason) for number in numbers]
 
     def paths(self) -> list[str]:
         """Return all modified parameter paths, in the order of first occurrence."""
-        return list(dict.fromkeys(path for case in self.cases for path in changes(case)))
+        return list(dict.fromkeys(text.partition("=")[0] for case in self.cases for text in case.overrides))
 
     def text(self) -> str:
         """Return the table as CSV, units in the header; bitwise identical for equal cases."""
-        paths, file = self.paths(), io.StringIO()
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([INPUT, *paths, *(f"{name} [{unit}]" for name, unit in self.units.items()), ENGINE, REASON])
-        for case, result in zip(self.cases, self.results, strict=True):
-            changed = changes(case)
-            numbers = [repr(result.values[name]) if name in result.values else "" for name in self.units]
-            writer.writerow(
-                [case.source.name, *(changed.get(path, "") for path in paths), *numbers, result.engine, result.reason]
-            )
+        file = io.StringIO()
+        paths = self.paths()
+        writer = TableWriter(file, paths, self.units)
+        for case, row in zip(self.cases, self.rows(), strict=True):
+            writer.add(case, parameter_cells(case, paths), row)
         return file.getvalue()
+
+    def rows(self) -> Iterator[Row]:
+        """Return the rows with numbers as texts of all digits, which need no conversion; read when they are used."""
+        if isinstance(self.results, StoredRows):
+            numbers_as_texts = json.JSONDecoder(parse_float=str, parse_constant=CONSTANTS.__getitem__)
+            for number in range(len(self.results)):
+                yield numbers_as_texts.decode(self.results.row(number).decode())
+        else:
+            for result in self.results:
+                texts = {name: repr(value) for name, value in result.values.items()}
+                yield {
+                    "values": texts,
+                    "engine": result.engine,
+                    "reason": result.reason,
+                    "seconds": repr(result.seconds),
+                }
 
     def __repr__(self) -> str:
         """Return the numbers of runs and of failed runs, and the columns, in a line."""
@@ -83,23 +111,47 @@ class SweepTable:
         """
         return table_frame(self.text())
 
-    def write(self, folder: Path, computed: str = "") -> None:
-        """Write `table.csv`, `sweep.json` and `timing.csv`.
 
-        Args:
-            folder: folder of the files.
-            computed: last line of `timing.csv`; empty for none.
-        """
-        text = self.text()
-        write_text(folder / "table.csv", text)
-        write_json(folder / "sweep.json", {**self.made, "failed": [case.label for case, _ in self.failed]})
-        times = "case,seconds [s]\n" + "".join(f"{i},{r.seconds:.4f}\n" for i, r in enumerate(self.results))
-        write_text(folder / "timing.csv", times + (f"# {computed}\n" if computed else ""))
+class _Returned:
+    """File for the csv module whose rows are the return values of the writer."""
+
+    def write(self, text: str) -> str:
+        return text
+
+
+class TableWriter:
+    """Writes a table of a sweep as CSV, row by row, units in the header.
+
+    Args:
+        file: the open file.
+        paths: the modified parameter paths of all cases.
+        units: name of each value to its unit.
+    """
+
+    def __init__(self, file: TextIO, paths: Sequence[str], units: Mapping[str, str]) -> None:
+        self.names, self._file = list(units), file
+        self._texts = csv.writer(_Returned(), lineterminator="\n")
+        heads = (f"{name} [{unit}]" for name, unit in units.items())
+        csv.writer(file, lineterminator="\n").writerow([INPUT, *paths, *heads, ENGINE, REASON])
+
+    def add(self, case: Case, parameters: Sequence[str], row: Row) -> None:
+        """Write the row of a case; `parameters` are its values, see `parameter_cells`."""
+        # The csv module takes 10 us for 25 numbers, in which it looks for commas; only texts may contain a comma.
+        values = row["values"]
+        numbers = "".join([f"{values.get(name, '')}," for name in self.names])
+        begin = self._texts.writerow([case.source.name, *parameters, ""])[:-1]
+        self._file.write(f"{begin}{numbers}{self._texts.writerow([row['engine'], row['reason']])}")
 
 
 def changes(case: Case) -> dict[str, str]:
     """Return parameter path to value text; the last value of a repeated path."""
-    return {path: value for path, _, value in (text.partition("=") for text in case.overrides)}
+    return {path: value for path, _, value in [text.partition("=") for text in case.overrides]}
+
+
+def parameter_cells(case: Case, paths: Sequence[str]) -> list[str]:
+    """Return the value text of each path in a case; empty for a parameter that the case does not modify."""
+    changed = changes(case)
+    return [changed.get(path, "") for path in paths]
 
 
 def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:

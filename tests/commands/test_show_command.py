@@ -1,0 +1,57 @@
+"""The command that shows a car: text, JSON, files, parameters, refusals."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import pytest
+
+from vehicle.commands.show import main
+
+
+def test_text_and_json(capsys):
+    assert main(["sedan", "--set", "body.mass=1000"]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("sedan, tyres standing; body.mass=1000\n")
+    assert "wheelbase     2757 mm" in text and "\nwheel rate [N/mm] " in text and "heave " in text
+    assert main(["sedan", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["mass_kg"] == pytest.approx(1697.604) and found["axles"][1]["geometry"]["caster_deg"] is None
+    assert found["axles"][0]["brake_support_percent"] == pytest.approx(-138.3, abs=0.1)
+
+
+def test_files(tmp_path, capsys):
+    folder = tmp_path / "car"
+    assert main(["focus", "--output", str(folder)]) == 0
+    assert (folder / "car.png").stat().st_size > 30_000
+    assert json.loads((folder / "car.json").read_text())["wheelbase_m"] is None
+    with (folder / "parameters.csv").open(encoding="utf-8", newline="") as file:
+        rows = {row["path"]: row for row in csv.DictReader(file)}
+    assert rows["body.mass"]["value"] == "813" and rows["body.mass"]["source"] == "section 3.1.2"
+    assert main(["focus", "--output", str(folder)]) == 2
+    assert "exists" in capsys.readouterr().err
+
+
+def test_search(capsys):
+    assert main(["sedan", "--search", "rear damper coulomb"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 2 and lines[0].split() == ["parameter", "value", "unit", "range", "source"]
+    assert lines[1].startswith("rear.damper.coulomb_friction     40")
+    assert main(["sedan", "--search", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)) > 200
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["sedan", "--search", "nowhere"], "--search 'nowhere': no parameter of sedan has these words"),
+        (["sedan", "--search", "mass", "--output", "x"], "--search: prints parameters only"),
+        (["--vehicle", "sedan"], "--vehicle: the car comes first"),
+        (["lorry"], "lorry: no such file, and no shipped car"),
+        (["sedan", "--force"], "--force: belongs to --output DIR"),
+    ],
+)
+def test_refusals(arguments, message, capsys):
+    assert main(arguments) == 2
+    assert message in capsys.readouterr().err

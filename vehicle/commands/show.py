@@ -1,0 +1,76 @@
+"""`python -m vehicle show CAR`: masses, loads, stiffnesses, frequencies, geometry and parameters of a car."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import json
+from typing import Any
+
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.options import VEHICLE_HELP, command_parser, extra_output_options, message_options, set_option
+from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.shipped import vehicle_file
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    parser = command_parser("show", "Masses, stiffnesses, frequencies, geometry and parameters of a car.")
+    parser.add_argument("car", nargs="?", type=vehicle_file, metavar="CAR", help=VEHICLE_HELP)
+    set_option(parser)
+    parser.add_argument(
+        "--search",
+        nargs="?",
+        const="",
+        metavar="WORDS",
+        help="list the parameters with these words in their path or meaning, with value, unit, range and source; all "
+        "parameters without words",
+    )
+    extra_output_options(parser, "car.png (drawing with dimensions), car.json and parameters.csv")
+    parser.former("--vehicle", "--vehicle: the car comes first, as in `show sedan`")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    message_options(parser)
+    return parser
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.runs.car import Car
+
+    if options.search is not None and options.output is not None:
+        raise ConfigurationError("--search: prints parameters only; leave out --output, which writes all of them")
+    car = Car.load(options.car, options.overrides)
+    if options.search is not None:
+        _print_parameters(car, options)
+        return
+    folder = None if options.output is None else output_folder_of(options, options.output)
+    data = car.show()
+    if folder is not None:
+        from vehicle.runs.output.car_files import write_car
+
+        write_car(folder, car, data, force=options.force)
+    print(json.dumps(data.summary(), indent=2, allow_nan=False) if options.json else data)
+
+
+def _print_parameters(car: Any, options: argparse.Namespace) -> None:
+    """Print the parameters that match the words of --search.
+
+    Raises:
+        ConfigurationError: no parameter matches.
+    """
+    from vehicle.runs.car.car_text import parameter_table
+
+    parameters = car.search(options.search)
+    if not parameters:
+        raise ConfigurationError(
+            f"--search {options.search!r}: no parameter of {car.vehicle.name} has these words in its path or meaning; "
+            "use other words, or --search alone for all"
+        )
+    if options.json:
+        print(json.dumps([dataclasses.asdict(parameter) for parameter in parameters], indent=2, allow_nan=False))
+    else:
+        print(parameter_table(parameters))
+
+
+main = command(parser, _job)

@@ -1,0 +1,120 @@
+"""Pattern of the rows of a run in MuJoCo's sparse format, with the columns of the body modes, and of their equations.
+
+A suspension moves few coordinates: its own and those of the body. So most of J and of H = M + J' D J is zero. With
+the body eliminated last the factor of H has hardly more numbers than H: 2 500 of 6 400 with four wheels. The cost of a
+step then is proportional to the number of parts, that of a dense factor to its third power.
+
+MuJoCo's own sparse rows contain the coordinates above the two bodies of a connection and no modes, which are bodies of
+their own. The compiled callback copies these rows into a full matrix, writes the laws there as in the dense format, and
+gives MuJoCo the nonzero columns, modes included, in arrays of its own; MuJoCo resets its pointers in every step.
+Equations and tolerance of the solver are those of the dense format.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.element_records import Layout
+from vehicle.engines.simulation.predicted_acceleration import TILE
+from vehicle.engines.simulation.step_records import Solution, SparseRows
+from vehicle.engines.simulation.structures import SPARSE, Offsets
+
+Mask = npt.NDArray[np.bool_]
+
+
+def nonzero_columns(model: mujoco.MjModel, layout: Layout) -> Mask:
+    """Return where the rows of a model with the sparse format may be nonzero, modal columns included; (rows, nv)."""
+    data = mujoco.MjData(model)
+    mujoco.mj_fwdPosition(model, data)
+    nonzero = np.zeros((layout.row_count, model.nv), dtype=np.bool_)
+    nonzero[np.repeat(np.arange(layout.row_count), data.efc_J_rownnz), data.efc_J_colind] = True
+    for row, count, first, last in layout.reach:
+        nonzero[row : row + count, first:last] = True
+    return nonzero
+
+
+def sparse_rows(nonzero: Mask | None, offsets: Offsets) -> tuple[SparseRows, tuple[object, ...]]:
+    """Return the sparse Jacobian of a run.
+
+    Args:
+        nonzero: nonzero columns of the rows, (rows, nv); None for a state in the dense format.
+        offsets: offsets in MuJoCo's structures.
+
+    Returns:
+        The record, and the arrays of the pattern, to which it contains only addresses.
+    """
+    if nonzero is None:
+        none = np.zeros(0, dtype=np.int64)
+        return SparseRows(np.zeros((0, 0)), np.zeros(0), none, none, none, none, 0), ()
+    counts = np.count_nonzero(nonzero, axis=1).astype(np.int32)
+    starts = np.cumsum([0, *counts[:-1]], dtype=np.int32)
+    # Number of following rows with the same columns.
+    following = np.zeros(len(nonzero), dtype=np.int32)
+    for row in range(len(nonzero) - 2, -1, -1):
+        following[row] = following[row + 1] + 1 if np.array_equal(nonzero[row], nonzero[row + 1]) else 0
+    rows, columns = np.nonzero(nonzero)
+    jacobian, values = np.zeros((len(nonzero), TILE * -(-nonzero.shape[1] // TILE))), np.zeros(rows.size)
+    pattern = (counts, starts, following, columns.astype(np.int32), values)
+    record = SparseRows(
+        jacobian=jacobian,
+        values=values,
+        places=rows * jacobian.shape[1] + columns,
+        offsets=np.array([offsets.pointers[name] for name in SPARSE], dtype=np.int64),
+        addresses=np.array([array.ctypes.data for array in pattern], dtype=np.int64),
+        replaced=np.zeros(len(SPARSE) + 1, dtype=np.int64),
+        size=offsets.nonzeros,
+    )
+    return record, pattern
+
+
+def solution_of(model: mujoco.MjModel, layout: Layout, nonzero: Mask | None) -> Solution:
+    """Return the record of the equations of a step, with the pattern of H = M + J' D J and of its factor.
+
+    Args:
+        model: model of the run.
+        layout: its elements.
+        nonzero: nonzero columns of the rows, (rows, nv); None for a state in the dense format: an empty record.
+    """
+    if nonzero is None:
+        empty: dict[str, Any] = dict.fromkeys(("inertia", "singles", "frictions"), np.zeros((0, 2), dtype=np.int64))
+        empty |= dict.fromkeys(("columns", "starts", "tiles"), np.zeros(0, dtype=np.int64))
+        empty |= dict.fromkeys(("right", "acceleration", "weight", "limited"), np.zeros(0))
+        return Solution(size=0, groups=np.zeros((0, 4), dtype=np.int64), matrix=np.zeros((0, 0)), **empty)
+    count = -(-model.nv // TILE)
+    inertia = np.column_stack([np.repeat(np.arange(model.nv), model.M_rownnz), model.M_colind]).astype(np.int64)
+    pattern = np.eye(count, dtype=np.bool_)
+    pattern[inertia[:, 0] // TILE, inertia[:, 1] // TILE] = True
+    groups, columns, grouped = [], list[int](), set[int]()
+    for row, number in np.unique(layout.reach[:, :2], axis=0):
+        tiles = np.unique(np.flatnonzero(nonzero[row : row + number].any(axis=0)) // TILE)
+        groups.append((row, number, len(columns), len(columns) + len(tiles)))
+        columns += [int(tile) for tile in tiles]
+        grouped |= set(range(row, row + number))
+        pattern[np.ix_(tiles, tiles)] = True
+    # Elimination of a row of tiles, the last one first, couples all its columns.
+    for block in range(count - 1, -1, -1):
+        filled = np.flatnonzero(pattern[block, :block])
+        pattern[np.ix_(filled, filled)] = True
+    rows_of_tiles = [np.flatnonzero(pattern[block, : block + 1]) for block in range(count)]
+    single = [(row, int(np.argmax(nonzero[row]))) for row in range(len(nonzero)) if row not in grouped]
+    singles = np.array(single, dtype=np.int64).reshape(-1, 2)
+    frictions = singles[singles[:, 0] >= np.min(layout.dampers.frictions, initial=len(nonzero))]
+    return Solution(
+        size=int(model.nv),
+        inertia=inertia,
+        groups=np.array(groups, dtype=np.int64).reshape(-1, 4),
+        columns=np.array(columns, dtype=np.int64),
+        singles=singles,
+        frictions=frictions,
+        starts=np.cumsum([0, *map(len, rows_of_tiles)], dtype=np.int64),
+        tiles=np.concatenate(rows_of_tiles).astype(np.int64),
+        matrix=np.zeros((TILE * count, TILE * count)),
+        right=np.zeros(TILE * count),
+        acceleration=np.zeros(TILE * count),
+        weight=np.zeros(len(nonzero)),
+        limited=np.zeros(len(frictions)),
+    )

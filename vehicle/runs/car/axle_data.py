@@ -1,0 +1,200 @@
+"""Stiffnesses, masses and geometry of an axle of a car in its design position.
+
+Wheel rate k_w and roll rate come from the static equilibrium of the axle with its bushings (`AxleStatics`): vertical
+load per travel of the wheel centre, body held, contact points that roll freely, both wheels alike and against each
+other. All else follows from them:
+
+    ride rate          1 / k_r = 1 / k_w + 1 / k_t
+    roll stiffness     K = k_opposite t_c t_p / 2 of the suspension, k_t t_p^2 / 2 of the tyres, both in series
+    ride frequency     sqrt(2 k_r / m_s) / 2 pi, with the sprung mass m_s that the axle carries
+
+with the tracks t_c of the wheel centres and t_p of the contact points. The unsprung mass of an axle is the sum of
+m dz / dz_w, the mass that rises with both wheels: an arm counts by the travel of its centre of gravity. Geometry,
+motion ratios and unsprung mass are those of ideal joints.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle.engines.simulation.axle_curves import design_slopes, geometry_curve, opposite_rates, position_rate
+from vehicle.engines.simulation.axle_statics import AxleStatics
+from vehicle.engines.simulation.wheel_geometry import WheelGeometry
+from vehicle.errors import SimulationError
+from vehicle.runs.car.axle import axle_statics, direction_to_middle
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RollStiffness:
+    """Roll stiffness of an axle [N m/rad].
+
+    Attributes:
+        springs: springs, bushings and preloads.
+        bars: springs on hinges between the sides: anti-roll bar, torsion of a beam.
+        tyres: tyres.
+    """
+
+    springs: float
+    bars: float
+    tyres: float
+
+    @property
+    def suspension(self) -> float:
+        """Springs and bars [N m/rad]."""
+        return self.springs + self.bars
+
+    @property
+    def total(self) -> float:
+        """Suspension and tyres in series [N m/rad]."""
+        return self.suspension * self.tyres / (self.suspension + self.tyres)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AxleData:
+    """Axle of a car in its design position; values of one wheel are those of the right one. None: not defined.
+
+    Attributes:
+        name: table of the vehicle file.
+        template: its template.
+        wheels: names of the wheels.
+        x_m: position of the wheel centres along the car [m].
+        front: True for an axle in front of the centre of gravity.
+        track_m: distance of the contact points [m].
+        radius_m: loaded radius [m].
+        load_n: static load by wheel [N].
+        unsprung_kg: unsprung mass of both wheels.
+        sprung_kg: mass that the axle carries above its unsprung mass.
+        wheel_rate_n_per_m: stiffness at the wheel without its tyre.
+        spring_n_per_m: stiffness of the springs of one side in their static position.
+        spring_ratio: compression of the spring per wheel travel [-].
+        spring_at_wheel_n_per_m: sum of k i^2 of the springs of one side.
+        damper_ratio: compression of the damper per wheel travel [-].
+        damper_n_s_per_m: damping constant of the modes with sliding dampers: the smallest slope of the law.
+        curved_damper: True if the law of the damper has other slopes too.
+        tyre_n_per_m: vertical stiffness of the tyre.
+        ride_rate_n_per_m: wheel rate and tyre in series.
+        ride_frequency_hz: see the module.
+        roll: roll stiffness.
+        geometry: roll centre, swing arms, support angles, steering axis.
+        ideal: True if geometry, ratios and unsprung mass are those of ideal joints; False if ideal joints lock the
+            axle, so that its bushings yield.
+    """
+
+    name: str
+    template: str
+    wheels: tuple[str, ...]
+    x_m: float
+    front: bool
+    track_m: float
+    radius_m: float
+    load_n: Mapping[str, float]
+    unsprung_kg: float
+    sprung_kg: float
+    wheel_rate_n_per_m: float
+    spring_n_per_m: float | None
+    spring_ratio: float | None
+    spring_at_wheel_n_per_m: float | None
+    damper_ratio: float | None
+    damper_n_s_per_m: float | None
+    curved_damper: bool
+    tyre_n_per_m: float
+    ride_rate_n_per_m: float
+    ride_frequency_hz: float | None
+    roll: RollStiffness
+    geometry: WheelGeometry
+    ideal: bool
+
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"AxleData({self.name}, {sum(self.load_n.values()):.0f} N, wheel rate "
+            f"{1e-3 * self.wheel_rate_n_per_m:.2f} N/mm, roll centre {1e3 * self.geometry.roll_centre_height_m:.0f} mm)"
+        )
+
+
+def axle_data(car: Any, name: str) -> AxleData:
+    """Compute the data of an axle.
+
+    Args:
+        car: the car, with standing tyres.
+        name: table of the axle in the vehicle file.
+
+    Raises:
+        ConfigurationError: the table has no wheel.
+        SimulationError: the axle has no equilibrium near its design position.
+    """
+    vehicle = car.vehicle
+    wheels = [wheel for wheel in vehicle.composition.wheels if wheel.axle == name]
+    right = wheels[0]
+    loads = {wheel.name: float(car.static.tyre_load[wheel.name]) for wheel in wheels}
+    elastic = axle_statics(car, name, ideal=False)
+    rate = float(design_slopes(elastic)["wheel_rate_n_per_m"] or math.nan)
+    track = abs(wheels[0].patch[1] - wheels[1].patch[1])
+    tyre = float(car.matrices.tyre_stiffness[vehicle.wheels.index(right.name)])
+    towards = direction_to_middle(car, name)
+    ideal, moving = True, axle_statics(car, name, ideal=True)
+    try:
+        geometry = geometry_curve(moving, [0.0], towards=towards)[0]
+    except SimulationError:
+        ideal, moving = False, axle_statics(car, name, ideal=False)
+        geometry = geometry_curve(moving, [0.0], towards=towards)[0]
+    motion = position_rate(moving, [0.0, 0.0], opposite=False)
+    unsprung = float(motion.mass_moment)
+    sprung = sum(loads.values()) / vehicle.gravity - unsprung if vehicle.gravity else math.nan
+    springs = [
+        (spring.pull(0.0)[1], -float(ratio))
+        for spring, ratio in zip(moving.parts.springs, motion.springs, strict=True)
+        if right.side * moving.data.site_xpos[spring.lower][1] > 0.0
+    ]
+    dampers = [
+        -float(ratio)
+        for strut, ratio in zip(moving.parts.struts, motion.dampers, strict=True)
+        if right.side * moving.data.xanchor[strut.joint][1] > 0.0
+    ]
+    own_damper = next(
+        (damper for damper in vehicle.composition.dampers if damper.name.endswith(f"_{right.name}")), None
+    )
+    ride = rate * tyre / (rate + tyre)
+    return AxleData(
+        name=name,
+        template=str(vehicle.table[name]["template"]),
+        wheels=tuple(loads),
+        x_m=right.center[0],
+        front=towards > 0.0,
+        track_m=track,
+        radius_m=right.center[2] - right.patch[2],
+        load_n=loads,
+        unsprung_kg=unsprung,
+        sprung_kg=sprung,
+        wheel_rate_n_per_m=rate,
+        spring_n_per_m=sum(stiffness for stiffness, _ in springs) if springs else None,
+        spring_ratio=springs[0][1] if springs else None,
+        spring_at_wheel_n_per_m=sum(stiffness * ratio**2 for stiffness, ratio in springs) if springs else None,
+        damper_ratio=dampers[0] if dampers else None,
+        damper_n_s_per_m=None
+        if own_damper is None
+        else float(car.matrices.viscous[vehicle.composition.dampers.index(own_damper)]),
+        curved_damper=own_damper is not None and own_damper.law.viscous_law != "linear",
+        tyre_n_per_m=tyre,
+        ride_rate_n_per_m=ride,
+        ride_frequency_hz=math.sqrt(2.0 * ride / sprung) / (2.0 * math.pi) if sprung > 0.0 < ride else None,
+        roll=_roll_stiffness(elastic, tyre, abs(wheels[0].center[1] - wheels[1].center[1]), track),
+        geometry=geometry,
+        ideal=ideal,
+    )
+
+
+def _roll_stiffness(axle: AxleStatics, tyre: float, centre_track: float, track: float) -> RollStiffness:
+    """Return the roll stiffness of an axle.
+
+    Args:
+        axle: axle with its bushings.
+        tyre: vertical stiffness of a tyre [N/m].
+        centre_track: distance of the wheel centres [m].
+        track: distance of the contact points [m].
+    """
+    springs, bars = (0.5 * centre_track * track * rate for rate in opposite_rates(axle))
+    return RollStiffness(springs=springs, bars=bars, tyres=0.5 * tyre * track**2)

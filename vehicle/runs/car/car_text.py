@@ -1,0 +1,195 @@
+"""Data of a car as tables of text, for the console and for the report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from vehicle.model.parameters.parameter_list import Parameter, value_text
+from vehicle.runs.car.axle_data import AxleData
+from vehicle.runs.car.car_data import STATES, CarData
+
+DEGREES = math.pi / 180.0
+"""One degree [rad]."""
+
+SOURCE_WIDTH = 60
+"""Maximum number of letters of a source in the table of parameters."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TextTable:
+    """Table of text cells; `heads` may be empty."""
+
+    title: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    notes: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Aligned columns: the first to the left, further ones to the right if there is a head."""
+        lines = [row for row in (self.heads, *self.rows) if row]
+        widths = [max(len(row[column]) for row in lines) for column in range(len(lines[0]))]
+        aligned = []
+        for row in lines:
+            cells = [row[0].ljust(widths[0])]
+            cells += [
+                cell.rjust(width) if self.heads else cell for cell, width in zip(row[1:], widths[1:], strict=True)
+            ]
+            aligned.append("  ".join(cells).rstrip())
+        return "\n".join([*aligned, *self.notes])
+
+
+def number(value: float | None, decimals: int = 0) -> str:
+    """Return a number with a number of decimals; a dash for a quantity that is not defined."""
+    return "-" if value is None or not math.isfinite(value) else f"{value:z.{decimals}f}"
+
+
+AXLE_ROWS: dict[str, Callable[[AxleData], str]] = {
+    "template": lambda axle: axle.template,
+    "static wheel load, right / left [N]": lambda axle: " / ".join(number(load) for load in axle.load_n.values()),
+    "sprung mass [kg]": lambda axle: number(axle.sprung_kg, 1),
+    "unsprung mass, both wheels [kg]": lambda axle: number(axle.unsprung_kg, 1),
+    "track [mm]": lambda axle: number(1e3 * axle.track_m),
+    "loaded tyre radius [mm]": lambda axle: number(1e3 * axle.radius_m),
+    "spring stiffness [N/mm]": lambda axle: number(_milli(axle.spring_n_per_m), 2),
+    "motion ratio, spring / wheel": lambda axle: number(axle.spring_ratio, 3),
+    "motion ratio, damper / wheel": lambda axle: number(axle.damper_ratio, 3),
+    "damping constant, sliding [N s/m]": lambda axle: number(axle.damper_n_s_per_m),
+    "wheel rate [N/mm]": lambda axle: number(_milli(axle.wheel_rate_n_per_m), 2),
+    "  spring times ratio squared [N/mm]": lambda axle: number(_milli(axle.spring_at_wheel_n_per_m), 2),
+    "tyre stiffness [N/mm]": lambda axle: number(_milli(axle.tyre_n_per_m), 1),
+    "ride rate [N/mm]": lambda axle: number(_milli(axle.ride_rate_n_per_m), 2),
+    "ride frequency [Hz]": lambda axle: number(axle.ride_frequency_hz, 2),
+    "roll stiffness, springs [N m/deg]": lambda axle: number(axle.roll.springs * DEGREES),
+    "roll stiffness, anti-roll bar or beam [N m/deg]": lambda axle: number(axle.roll.bars * DEGREES),
+    "roll stiffness, tyres [N m/deg]": lambda axle: number(axle.roll.tyres * DEGREES),
+    "roll stiffness, all in series [N m/deg]": lambda axle: number(axle.roll.total * DEGREES),
+    "roll centre above ground [mm]": lambda axle: number(1e3 * axle.geometry.roll_centre_height_m, 1),
+    "front-view swing arm [m]": lambda axle: number(axle.geometry.front_swing_arm_m, 2),
+    "side-view swing arm [m]": lambda axle: number(axle.geometry.side_swing_arm_m, 2),
+    "support angle, brake force [deg]": lambda axle: number(axle.geometry.brake_support_deg, 2),
+    "support angle, drive force [deg]": lambda axle: number(axle.geometry.drive_support_deg, 2),
+    "caster [deg]": lambda axle: number(axle.geometry.caster_deg, 2),
+    "kingpin inclination [deg]": lambda axle: number(axle.geometry.kingpin_inclination_deg, 2),
+    "caster trail [mm]": lambda axle: number(1e3 * axle.geometry.caster_trail_m, 1),
+    "scrub radius [mm]": lambda axle: number(1e3 * axle.geometry.scrub_radius_m, 1),
+}
+"""Rows of the table of axles."""
+
+SUPPORT_NOTE = (
+    "anti-dive, anti-lift and anti-squat: for an axle that takes all of the brake or drive force; the vehicle file has "
+    "no distribution, so multiply by the share of the axle"
+)
+
+
+def _milli(value: float | None) -> float | None:
+    return None if value is None else 1e-3 * value
+
+
+def car_tables(data: CarData) -> list[TextTable]:
+    """Return the tables of a car: the whole car, its axles, its modes.
+
+    Args:
+        data: the car.
+    """
+    return [_whole_car(data), _axles(data), _modes(data)]
+
+
+def car_text(data: CarData) -> str:
+    """Return all values of a car but its parameters as text."""
+    changes = f"; {'; '.join(data.overrides)}" if data.overrides else ""
+    first = f"{data.name}, tyres {data.tyres}{changes}"
+    notes = [f"note: {note}" for note in data.notes]
+    return "\n".join([first, *(f"\n{table}" for table in car_tables(data)), *(["", *notes] if notes else [])])
+
+
+def _whole_car(data: CarData) -> TextTable:
+    x, y, z = data.cog_m
+    ixx, iyy, izz, izx = data.inertia_kg_m2
+    loads = sum(sum(axle.load_n.values()) for axle in data.axles)
+    rows = [
+        (
+            "mass",
+            f"{data.mass_kg:.1f} kg: sprung {data.sprung_kg:.1f}, unsprung {data.unsprung_kg:.1f}; "
+            f"trimmed body {data.trimmed_body_kg:g}",
+        ),
+        (
+            "CoG",
+            f"{1e3 * data.cog_behind_front_m:.0f} mm behind the {data.axles[0].name} wheels, {1e3 * y:z.0f} mm to the "
+            f"right, {1e3 * data.cog_height_m:.0f} mm above the ground; x {x:.4f}, y {y:z.4f}, z {z:.4f} m",
+        ),
+        ("inertia", f"Ixx {ixx:.1f}, Iyy {iyy:.1f}, Izz {izz:.1f}, integral of z x {izx:.1f} kg m2, about the CoG"),
+    ]
+    if data.wheelbase_m is not None:
+        rows.append(("wheelbase", f"{1e3 * data.wheelbase_m:.0f} mm"))
+    if loads:
+        parts = [f"{axle.name} {sum(axle.load_n.values()):.0f} N" for axle in data.axles]
+        parts += [f"{name} {load:.0f} N" for name, load in data.support_n.items()]
+        rows.append(("static loads", f"{', '.join(parts)}; {100 * data.front_share:.1f} % on {data.axles[0].name}"))
+    return TextTable(title="Car", heads=(), rows=tuple(rows))
+
+
+def _axles(data: CarData) -> TextTable:
+    rows = [(name, *(cell(axle) for axle in data.axles)) for name, cell in AXLE_ROWS.items()]
+    notes: tuple[str, ...] = ()
+    if data.wheelbase_m is not None:
+        total = [sum(getattr(axle.roll, part) for axle in data.axles) for part in ("suspension", "total")]
+        shares = [
+            ("share of roll stiffness, suspension [%]", "suspension", total[0]),
+            ("share of roll stiffness, with tyres [%]", "total", total[1]),
+        ]
+        position = list(AXLE_ROWS).index("roll centre above ground [mm]")
+        rows[position:position] = [
+            (name, *(number(100.0 * getattr(axle.roll, part) / whole, 1) for axle in data.axles))
+            for name, part, whole in shares
+        ]
+        percent = [data.support_percent(axle) or (math.nan, math.nan) for axle in data.axles]
+        position = [row[0] for row in rows].index("caster [deg]")
+        rows[position:position] = [
+            ("anti-dive (front) or anti-lift (rear), braking [%]", *(number(brake, 1) for brake, _ in percent)),
+            ("anti-lift (front) or anti-squat (rear), driving [%]", *(number(drive, 1) for _, drive in percent)),
+        ]
+        notes = (SUPPORT_NOTE,)
+    heads = ("axle; values of one wheel: the right one", *(axle.name for axle in data.axles))
+    return TextTable(title="Axles", heads=heads, rows=tuple(rows), notes=notes)
+
+
+def _modes(data: CarData) -> TextTable:
+    motions = list(dict.fromkeys(mode.motion for mode in data.modes))
+    by_state = {(mode.motion, mode.dampers): mode for mode in data.modes}
+    rows = []
+    for motion in motions:
+        cells = []
+        for state in STATES:
+            mode = by_state[motion, state]
+            ratio = None if mode.damping_ratio is None else 100.0 * mode.damping_ratio
+            cells += [number(mode.frequency_hz, 2), number(ratio, 1), number(100.0 * mode.share)]
+        rows.append((motion, *cells))
+    heads = ("mode", *(f"{word}" for state in STATES for word in (f"{state} [Hz]", "damping [%]", "share [%]")))
+    note = "share: of this motion in the kinetic energy of the mode; python -m vehicle modes lists all modes"
+    return TextTable(title="Modes, dampers stuck and sliding", heads=heads, rows=tuple(rows), notes=(note,))
+
+
+def parameter_table(parameters: Sequence[Parameter], *, shortened: bool = True) -> TextTable:
+    """Return the table of parameters.
+
+    Args:
+        parameters: the parameters.
+        shortened: True to cut long values and sources to the width of a screen.
+    """
+
+    def cut(text: str, width: int) -> str:
+        return text if not shortened or len(text) <= width else text[: width - 4] + " ..."
+
+    rows = tuple(
+        (
+            entry.path,
+            cut(value_text(entry.value), 28),
+            entry.unit,
+            cut(entry.range, 28),
+            cut(entry.source, SOURCE_WIDTH),
+        )
+        for entry in parameters
+    )
+    return TextTable(title="Parameters", heads=("parameter", "value", "unit", "range", "source"), rows=rows)

@@ -1,0 +1,35 @@
+"""Section of a report about the car: drawing, masses, stiffnesses, geometry and parameters."""
+
+from __future__ import annotations
+
+from vehicle.drawing.rendering.car_drawing import plot_car
+from vehicle.drawing.rendering.wireframe import car_wireframe
+from vehicle.runs.car.car_text import TextTable, car_tables, parameter_table
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import Markup, folded, joined, table, tag
+from vehicle.runs.report.svg_figure import drawing
+
+
+def car_section(run: FinishedRun) -> Markup:
+    """Return drawing and tables of the car of a run, as of `python -m vehicle show`; all parameters are folded."""
+    data = run.car.show()
+    wire = car_wireframe(run.car.model)
+    whole, axles, modes = car_tables(data)
+    parameters = parameter_table(data.parameters, shortened=False)
+    return joined(
+        [
+            drawing(lambda path: plot_car(path, wire, data), f"Drawing of {data.name} with dimensions"),
+            _table(whole),
+            _table(axles),
+            _table(modes),
+            *(tag("p", note) for note in data.notes),
+            folded(f"All {len(parameters.rows)} parameters", table(parameters.heads, parameters.rows, text_columns=5)),
+        ]
+    )
+
+
+def _table(text: TextTable) -> Markup:
+    """Return a table of text as an HTML table with its notes."""
+    heads = text.heads or (text.title, "")
+    columns = 1 if text.heads else len(heads)
+    return joined([table(heads, text.rows, text_columns=columns), *(tag("p", note) for note in text.notes)])
