@@ -147,8 +147,8 @@ def road_options(
     group.add_argument(
         "--contact",
         choices=("patch", "cams"),
-        help="patch: the tyre averages the road over its contact patch; cams: it envelops the road as two elliptical "
-        "cams do; patch by default, cams on an obstacle",
+        help="patch: the road is averaged over the contact patch; cams: two elliptical cams envelop the road; patch by "
+        "default, cams on an obstacle",
     )
     return group
 

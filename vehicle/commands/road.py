@@ -54,7 +54,7 @@ def class_or_profile(text: str) -> str | Path:
     """Return the class of ISO 8608, the text of an obstacle, or the file of a profile, of the value of --road.
 
     Raises:
-        ConfigurationError: the value is none of them.
+        ConfigurationError: the value has another form.
     """
     from vehicle.signals.excitation.obstacle import SHAPES, is_obstacle
 

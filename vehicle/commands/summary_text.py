@@ -81,7 +81,7 @@ def _comfort(summary: RunSummary) -> list[str]:
 
 
 def _obstacle(summary: RunSummary) -> list[str]:
-    """Return the lines of an obstacle; none for another input."""
+    """Return the lines of a run over an obstacle."""
     values = summary.get("obstacle")
     if values is None:
         return []

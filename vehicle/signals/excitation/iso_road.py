@@ -85,7 +85,7 @@ class IsoRoad:
         highest: maximum wavenumber [cycles/m].
         coherence: g of the tracks [-]; None for an isotropic surface, 1 for equal and 0 for independent tracks.
         patch: length a of the contact patch [m], over which the tyre averages the road: factor sinc(n a).
-        envelope: cams of the tyre, in place of the average over the contact patch; None for the average.
+        envelope: cams of the tyre, in place of the average over the contact patch.
 
     Raises:
         ConfigurationError: a value out of range.

@@ -47,7 +47,7 @@ class MeasuredRoad:
         source: name of the file.
         notices: messages on unusual content that was accepted.
         patch: length of the contact patch [m], over which a tyre averages the road; 0 for a point.
-        envelope: cams of the tyre, in place of the average over the contact patch; None for the average.
+        envelope: cams of the tyre, in place of the average over the contact patch.
         corners: True for a road that is straight between its points, whatever their distances.
     """
 
@@ -137,7 +137,7 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
             OpenCRG surface, whose reference line is under the middle of the car.
         track: distance of the tracks of the car [m], for a surface.
         patch: length of the contact patch [m] over which the profile is averaged.
-        envelope: cams of the tyre, in place of the average; None for the average.
+        envelope: cams of the tyre, in place of the average.
 
     Raises:
         ConfigurationError: the file does not exist.

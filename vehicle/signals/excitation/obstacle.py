@@ -141,17 +141,17 @@ class Obstacle:
 
     @property
     def begin(self) -> float:
-        """Distance of the beginning of the obstacle [m]; 0 without a place."""
+        """Return the distance of the beginning of the obstacle [m], 0 without a place."""
         return self.place or 0.0
 
     @property
     def length(self) -> float:
-        """Distance from the beginning to the end of the obstacle [m]."""
+        """Return the distance from the beginning to the end of the obstacle [m]."""
         return float(self._outline()[0][-1])
 
     @property
     def words(self) -> str:
-        """Description of the obstacle, for messages and headers."""
+        """Return a description of the obstacle for messages and headers."""
         shape = SHAPES[self.name]
         sizes = ", ".join(
             f"{size_name} {size:g}{'' if size_name == 'number' else ' mm'}"

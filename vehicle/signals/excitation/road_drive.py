@@ -39,8 +39,8 @@ IN_NAMES = str.maketrans({":": "_", "@": "_at_"})
 """Replacements in the text of an obstacle for names of files."""
 
 BEFORE_S, AFTER_S = 0.5, 3.0
-"""Default times on an obstacle [s]: from the start of the evaluation to the obstacle, and from the last wheel behind it
-to the end. In 3 s a motion of 1 Hz with a damping ratio of 0.2 decays to 2 %."""
+"""Default times [s] between the start of the evaluation and the obstacle, and between the last wheel leaving the
+obstacle and the end. In 3 s a motion of 1 Hz with a damping ratio of 0.2 decays to 2 %."""
 
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
@@ -55,7 +55,7 @@ class RoadDrive:
         speed: speed V [km/h].
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
-        duration: length [s]; None for 60 s of a class, a whole profile, or an obstacle and 3 s after it.
+        duration: length [s]; by default 60 s of a class, a whole profile, or an obstacle and 3 s after it.
         rate: sampling rate [Hz].
         seed: seed of a class.
         coherence: coherence of the tracks of a class; None for an isotropic surface.
@@ -109,7 +109,7 @@ class RoadDrive:
 
     @property
     def obstacle(self) -> Obstacle | None:
-        """Obstacle on the road, with its distance; None for another road."""
+        """Return the obstacle on the road, if there is one."""
         if not isinstance(self.road, str) or not is_obstacle(self.road):
             return None
         obstacle = Obstacle.parse(self.road)

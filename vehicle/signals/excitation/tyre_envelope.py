@@ -1,7 +1,7 @@
-"""Enveloping of a road by a tyre: two elliptical cams one behind the other.
+"""Enveloping of a road by a tyre with two elliptical cams, a front cam and a rear cam.
 
-The centre of each cam is as low as the profile z(x) allows. Its lower edge at the offset u from its centre is b - b e(u)
-above its lowest point, with e(u) = (1 - |u/a|^c)^(1/c). The lowest point of a cam at X is at the height
+The centre of each cam is as low as the profile z(x) allows. The lower edge at the offset u from the centre is
+b - b e(u) above the lowest point, with e(u) = (1 - |u/a|^c)^(1/c). The lowest point of a cam at X is at the height
 
     Z(X) = max over |x - X| <= a of [z(x) + b e(x - X)] - b,
 
@@ -132,7 +132,7 @@ class TyreEnvelope:
 
     @property
     def words(self) -> str:
-        """Description of the cams, for messages and headers."""
+        """Return a description of the cams for messages and headers."""
         size = f"{2e3 * self.half_length:.4g} x {2e3 * self.half_height:.4g} mm, {1e3 * self.distance:.3g} mm apart"
         return f"two elliptical cams of {size}"
 
