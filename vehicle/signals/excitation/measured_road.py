@@ -73,6 +73,8 @@ class MeasuredRoad:
     @property
     def words(self) -> str:
         """Description of the road, for messages and headers."""
+        if self.corners:
+            return f"{self.source}, {contact_words(self.patch, self.envelope)}"
         step = self.length / (self.distance.size - 1)
         points = f"a point every {step:.3g} m" if self.sampled else f"straight between {self.distance.size} points"
         sampling = f"{self.length:.4g} m, {points}, {contact_words(self.patch, self.envelope)}"

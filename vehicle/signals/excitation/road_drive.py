@@ -92,8 +92,6 @@ class RoadDrive:
                 raise ConfigurationError(
                     "--coherence: valid for a road class only, not for a measured profile; omit it"
                 )
-            if not 0.0 <= self.patch < 1.0:
-                raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
         elif is_obstacle(self.road):
             if self.coherence is not None:
                 raise ConfigurationError("--coherence: valid for a road class only, not for an obstacle; omit it")
@@ -103,6 +101,8 @@ class RoadDrive:
                 f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of a "
                 "measured profile, or an obstacle, as cleat:20x50"
             )
+        if not 0.0 <= self.patch < 1.0:
+            raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
         if self.contact is not None and self.contact not in CONTACTS:
             raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(CONTACTS)}")
         _ = self.envelope
