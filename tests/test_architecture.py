@@ -23,7 +23,7 @@ WINGS = {
     "engines": ("simulation", "linear", "reduced", "lumped"),
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "comparison", "output", "report"),
-    "studies": ("replication", "sweeps", "tuning", "optimisation"),
+    "studies": ("design", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -53,14 +53,16 @@ ROOMS: dict[str, set[str]] = {
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
+    "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
-    | {"reduced", "simulation", "threads"},
+    | {"reduced", "rendering", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "parameters", "records", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation", "version"},
-    "commands": {"analysis", "assembly", "car", "comparison", "excitation", "flexbody", "linear", "optimisation"}
+    "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "linear"}
     | {
+        "optimisation",
         "output",
         "parameters",
         "records",

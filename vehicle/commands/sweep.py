@@ -66,11 +66,14 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.runs.car import Car
+    from vehicle.runs.output.folder import write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.executors import executor_factory
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.store import ROWS
+    from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
+    from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
     from vehicle.studies.sweeps.sweep_table import read_variations
 
     if bool(options.vary) == bool(options.table):
@@ -94,13 +97,21 @@ def _job(options: argparse.Namespace) -> None:
     except KeyboardInterrupt:
         print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
         raise
+    cars = ranked_cars(table)
+    drawn = cars is not None and can_be_drawn(cars)
+    if cars is not None and drawn:
+        caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
+        units = {path: str(car.vehicle.quantity_of(path).get("unit", "")) for path in cars.paths}
+        write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, units, caption))
     if not options.quiet:
-        differences = f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
+        more = f"{PICTURE}, " if drawn else ""
+        more += f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
         print(
             f"{folder}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
-            f"{plan.skip:g} s on; table.csv, {differences}sweep.json, rows.jsonl, timing.csv"
+            f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
-        print("comfort_*: unweighted RMS of the seat rail, 2 to 50 Hz; *_weighted_*: weighted RMS (ISO 2631-1)")
+        if cars is not None:
+            print("\n".join(ranking_lines(cars)))
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:

@@ -43,6 +43,21 @@ class MassProperties:
         tensor = self.inertia + _steiner(np.array([self.mass]), np.atleast_2d(self.cog - cog))
         return MassProperties(mass=total, cog=np.asarray(cog), inertia=tensor + _steiner(masses, positions - cog))
 
+    def without(self, parts: MassProperties) -> MassProperties:
+        """Return the mass properties of what is left of this body without some of its parts.
+
+        m' = m - m_p, m' c' = m c - m_p c_p, and I' = I - I_p, each tensor about c'.
+
+        Args:
+            parts: mass properties of these parts, lighter than the body.
+        """
+        mass = self.mass - parts.mass
+        cog = (self.mass * self.cog - parts.mass * parts.cog) / mass
+        whole, part = (
+            entry.inertia + _steiner(np.array([entry.mass]), np.atleast_2d(entry.cog - cog)) for entry in (self, parts)
+        )
+        return MassProperties(mass=mass, cog=np.asarray(cog), inertia=whole - part)
+
     def rigid_motions(self, positions: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the six mass-normalised rigid motions, R' M R = 1: translations, then rotations about the CoG.
 

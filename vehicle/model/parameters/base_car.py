@@ -28,18 +28,33 @@ def vehicle_table(path: Path, above: tuple[Path, ...] = ()) -> dict[str, Any]:
     """
     file = vehicle_file(path)
     table = read_table(file)
-    if "base" not in table:
+    if (base := base_file(file)) is None:
         return table
-    name = convert(str, table.pop("base"), "base")
+    del table["base"]
+    if base.resolve() in (*above, file.resolve()):
+        raise ConfigurationError(f"base: {file} is its own base, directly or not; name another car")
+    return with_body(vehicle_table(base, (*above, file.resolve())), table)
+
+
+def base_file(file: Path) -> Path | None:
+    """Return the vehicle file of the base of a vehicle file; None if it has no base.
+
+    Args:
+        file: path of the file.
+
+    Raises:
+        ConfigurationError: the file cannot be read, or its base is no vehicle file.
+    """
+    table = read_table(file)
+    if "base" not in table:
+        return None
+    name = convert(str, table["base"], "base")
     beside = file.parent / name
     if not beside.is_file() and name not in CARS:
         raise ConfigurationError(
             f"base: found {name!r}; must be a shipped car ({', '.join(CARS)}) or a vehicle file in the same folder"
         )
-    base = beside if beside.is_file() else vehicle_file(name)
-    if base.resolve() in (*above, file.resolve()):
-        raise ConfigurationError(f"base: {file} is its own base, directly or not; name another car")
-    return with_body(vehicle_table(base, (*above, file.resolve())), table)
+    return beside if beside.is_file() else vehicle_file(name)
 
 
 def with_body(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

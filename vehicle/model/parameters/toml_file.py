@@ -116,19 +116,20 @@ def as_table(instance: Any) -> dict[str, Any]:
     }
 
 
-def write_text(instance: Any, header: str = "") -> str:
+def write_text(instance: Any, header: str = "", describe: Callable[[str], Mapping[str, Any]] | None = None) -> str:
     """Return the TOML text of a parameter object, with unit and meaning of each value as a comment.
 
     Args:
         instance: the object.
         header: first lines of the text, without the comment sign.
+        describe: function of the path of a value that returns its "unit" and "meaning"; by default its declaration.
 
     Returns:
         The text; `build(type(instance), tomllib.loads(text))` returns an equal object.
     """
     lines = [f"# {line}".rstrip() for line in header.splitlines()]
-    describe = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
-    _write(as_table(instance), "", lines, describe)
+    declared = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
+    _write(as_table(instance), "", lines, describe or declared)
     return "\n".join(lines).strip() + "\n"
 
 

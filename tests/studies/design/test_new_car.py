@@ -1,0 +1,255 @@
+"""New cars: stated numbers are met, what is not stated follows its source, a car that cannot be is rejected by name."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+import scipy
+
+from tests.validation import validated
+from vehicle.commands.new import main
+from vehicle.engines.linear.ride_modes import RideModes
+from vehicle.engines.simulation.axle_ride import axle_ride
+from vehicle.engines.simulation.car_masses import car_masses
+from vehicle.errors import ConfigurationError
+from vehicle.runs.car import Car, Road
+from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
+from vehicle.studies.design.stated_numbers import stated_numbers
+
+SEDAN = {
+    "kerb-mass": 1697.6, "front-axle-load": 870.8, "cog-height": 0.4844, "wheelbase": 2.757, "track-front": 1.5,
+    "track-rear": 1.499, "tyre-radius": 0.305, "ride-frequency-front": 1.473, "ride-frequency-rear": 1.281,
+    "pitch-frequency": 1.941, "wheel-hop-front": 11.93, "wheel-hop-rear": 13.94, "damping-ratio-front": 0.548,
+    "damping-ratio-rear": 0.363, "roll-stiffness-front": 1198.0, "roll-stiffness-rear": 643.0,
+}  # fmt: skip
+"""Numbers of the shipped sedan, rounded as a data sheet has them."""
+
+
+def made(folder, *words, source="sedan"):
+    """Run the command; return the printed checks and the car that is read from its file."""
+    assert main([str(folder), "--from", source, "--json", *words]) == 0
+    return Car.load(folder / "vehicle.toml")
+
+
+def words(numbers):
+    return [word for name, value in numbers.items() for word in (f"--{name}", str(value))]
+
+
+@pytest.fixture(scope="module")
+def compact(tmp_path_factory):
+    """A car of seven numbers, far from the sedan."""
+    numbers = {"kerb-mass": 1350, "front-axle-load": 820, "cog-height": 0.53, "wheelbase": 2.6, "track-front": 1.52,
+               "track-rear": 1.48, "tyre-radius": 0.31, "ride-frequency-front": 1.2, "ride-frequency-rear": 1.4,
+               "damping-ratio-front": 0.3}  # fmt: skip
+    return made(tmp_path_factory.mktemp("new") / "compact", *words(numbers))
+
+
+def test_masses_and_lengths_are_met(compact):
+    """Closed form: axle loads m g b / L and m g a / L; all else is read from the model of the written file."""
+    whole, loads = car_masses(compact.model), compact.static.tyre_load
+    wheels = {wheel.name: wheel for wheel in compact.vehicle.composition.wheels}
+    assert whole.mass == pytest.approx(1350.0, rel=1e-8)
+    validated(
+        "Static equilibrium",
+        "new car of 1350 kg, 820 kg on its front axle: axle loads",
+        np.array([loads["fr"] + loads["fl"], loads["rr"] + loads["rl"]]) / 9.81,
+        np.array([820.0, 530.0]),
+        source="closed form: the scales under the axles, statement of the user",
+        rel=1e-3,
+        unit="kg",
+    )
+    behind = whole.cog[0] - wheels["fr"].center[0]
+    assert behind == pytest.approx(2.6 * 530.0 / 1350.0, rel=1e-6)
+    assert whole.cog[2] - wheels["fr"].patch[2] == pytest.approx(0.53, abs=1e-6)
+    assert wheels["rl"].center[0] - wheels["fl"].center[0] == pytest.approx(2.6, abs=1e-6)
+    assert wheels["fr"].center[1] - wheels["fl"].center[1] == pytest.approx(1.52, abs=1e-6)
+    assert wheels["rr"].center[1] - wheels["rl"].center[1] == pytest.approx(1.48, abs=1e-6)
+    assert {round(wheel.center[2] - wheel.patch[2], 6) for wheel in wheels.values()} == {0.31}
+
+
+def test_frequencies_are_met(compact):
+    front, rear = (axle_ride(compact.model, axle) for axle in ("front", "rear"))
+    validated(
+        "Linear system",
+        "new car of ride frequencies 1.2 and 1.4 Hz: ride frequencies of its model",
+        np.array([front.ride_frequency, rear.ride_frequency]),
+        np.array([1.2, 1.4]),
+        source="closed form: statement of the user, sqrt(K_r / m_s) / 2 pi",
+        rel=1e-2,
+        unit="Hz",
+    )
+    assert front.damping_ratio == pytest.approx(0.3, rel=1e-3)
+    # Not stated: the damping ratio of the template.
+    assert rear.damping_ratio == pytest.approx(axle_ride(Car.load("sedan").model, "rear").damping_ratio, rel=1e-3)
+
+
+@pytest.mark.parametrize("axle", ["front", "rear"])
+def test_wheel_rate_and_unsprung_mass_follow_from_the_matrices_too(axle):
+    """Second derivation: body and engine held in the matrices of the whole car, on tyres that roll."""
+    ride = axle_ride(Car.load("sedan").model, axle)
+    matrices = Car.load("sedan", {"driving.speed": 20.0}).matrices
+    system, wheels = matrices.system, matrices.system.inputs
+    sides = [index for index, wheel in enumerate(wheels) if wheel.startswith(axle[0])]
+    tyres = matrices.tyre_rows.T * matrices.tyre_stiffness @ matrices.tyre_rows
+    held = np.vstack([system.constraints, matrices.body_rows["body"], matrices.body_rows["engine"],
+                      matrices.tyre_rows])  # fmt: skip
+    travel = np.zeros(len(held))
+    travel[len(held) - len(wheels) + np.array(sides)] = 1.0
+    stiffness, free = system.stiffness - tyres, scipy.linalg.null_space(held)
+    prescribed = np.linalg.lstsq(held, travel, rcond=None)[0]
+    # Least squares: no stiffness opposes the rotation of a rolling wheel about its axle.
+    motion = (
+        prescribed - free @ np.linalg.lstsq(free.T @ stiffness @ free, free.T @ stiffness @ prescribed, rcond=1e-12)[0]
+    )
+    rate = float(motion @ stiffness @ motion) / 2.0
+    mass = float(motion @ system.mass @ motion) / 2.0
+    validated(
+        "Suspension kinematics",
+        f"sedan, {axle} axle: wheel rate of the axle on rolling tyres",
+        ride.wheel_rate,
+        rate,
+        source="second derivation: K of the whole car with body and engine held, statically condensed",
+        rel=1e-4,
+        unit="N/m",
+    )
+    assert ride.unsprung_mass == pytest.approx(mass, rel=1e-4)
+
+
+def test_ride_modes_are_those_of_the_list():
+    car = Car.load("sedan")
+    listed = {mode.description: mode.frequency for mode in car.modes("sliding")}
+    modes = RideModes(car.matrices)
+    assert modes.pitch_frequency() == pytest.approx(listed["body pitch (Ry)"], rel=1e-9)
+    assert modes.hop_frequency(("fr", "fl")) == pytest.approx(listed["front wheel hop, sides in phase"], rel=1e-9)
+    assert modes.hop_frequency(("rr", "rl")) == pytest.approx(listed["rear wheel hop, sides in phase"], rel=1e-9)
+
+
+def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
+    car = made(tmp_path / "same", *words(SEDAN))
+    checks = json.loads(capsys.readouterr().out)["checks"]
+    assert {name for name, check in checks.items() if check["stated"]} == {name.replace("-", "_") for name in SEDAN}
+    assert max(abs(check["deviation"]) for check in checks.values()) < 1e-4
+    road = Road("B", speed=80, duration=10)
+    same, sedan = (one.run(road, engine="reduced").comfort().overall for one in (car, Car.load("sedan")))
+    validated(
+        "Published cars",
+        "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h",
+        same,
+        sedan,
+        source="second derivation: the shipped sedan",
+        rel=0.03,
+        unit="m/s2",
+    )
+
+
+def test_five_numbers_run_in_both_engines(tmp_path):
+    numbers = {"kerb-mass": 1450, "front-axle-load": 800, "cog-height": 0.55, "wheelbase": 2.65, "track-front": 1.53}
+    car = made(tmp_path / "five", *words(numbers))
+    values = [car.run(Road("B", speed=80, duration=3), engine=engine).comfort().overall for engine in
+              ("reduced", "mujoco")]  # fmt: skip
+    assert values[0] == pytest.approx(values[1], rel=0.05) and 0.3 < values[0] < 3.0
+
+
+def test_every_value_says_where_it_comes_from(compact):
+    text = (compact.folder / "vehicle.toml").read_text()
+    lines = [line for line in text.splitlines() if " = " in line and not line.startswith("#")]
+    assert len(lines) > 100
+    for line in lines:
+        assert re.search(r"# \[[^\]]+\] .*(given|estimated|template sedan|rigid|products of|about the)", line), line
+    assert "mass = 874.496  # [kg] kerb mass 1350 kg (given), front axle load 820 kg (given), less 475.50 kg" in text
+    assert "main_spring" in text and "from ride frequency front 1.2 Hz (given)" in text
+    damping_ratio = axle_ride(Car.load("sedan").model, "rear").damping_ratio
+    assert f"estimated: damping ratio rear of sedan, {damping_ratio:.4g}" in text
+
+
+def test_a_numbers_file_a_damper_test_and_a_load(tmp_path, capsys):
+    (tmp_path / "test.csv").write_text("velocity [m/s],force [N]\n-1,-900\n-0.1,-180\n0,0\n0.1,320\n1,1600\n")
+    (tmp_path / "numbers.toml").write_text(
+        'kerb_mass = 1500.0\ndamper_curve_front = "test.csv"\nwheel_hop_front = 12.5\n'
+        '[load.driver]\nmass = 75.0\nat = "seat"\n'
+    )
+    car = made(tmp_path / "loaded", "--numbers", str(tmp_path / "numbers.toml"), "--pitch-frequency", "1.8")
+    assert car.vehicle.table["front"]["damper"]["force"] == [-900.0, -180.0, 0.0, 320.0, 1600.0]
+    assert sum(car.static.tyre_load.values()) / 9.81 == pytest.approx(1575.0, rel=1e-6)
+    modes = RideModes(car.matrices)
+    assert modes.pitch_frequency() == pytest.approx(1.8, rel=1e-2)
+    assert modes.hop_frequency(("fr", "fl")) == pytest.approx(12.5, rel=1e-2)
+    assert json.loads(capsys.readouterr().out)["checks"]["kerb_mass"]["value"] == pytest.approx(1500.0)
+
+
+def test_the_command_line_takes_precedence_over_the_file(tmp_path):
+    (tmp_path / "numbers.toml").write_text("kerb_mass = 1500.0\nwheelbase = 2.7\n")
+    stated = stated_numbers(tmp_path / "numbers.toml", {"kerb_mass": 1400.0, "wheelbase": None})
+    assert (stated.kerb_mass, stated.wheelbase) == (1400.0, 2.7)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "message"),
+    [
+        ("--kerb-mass 500", "--kerb-mass 500 kg: .* already weigh 475.5 kg; must be at least 575.5 kg"),
+        ("--kerb-mass 1500 --front-axle-load 1800", "--front-axle-load: .* must be inside the wheelbase of 2.757"),
+        ("--cog-x 3", "--cog-x: the centre of gravity would be 3.000 m behind the front axle"),
+        ("--kerb-mass 1500 --front-axle-load 800 --rear-axle-load 800", "together 1600 kg, must be the kerb mass"),
+        ("--ride-frequency-front 0.4", "with --ride-frequency-front 0.4.*main_spring.stiffness: too soft"),
+        ("--roll-stiffness-rear 100", "--roll-stiffness-rear 100: needs a negative rear.beam_torsion"),
+        ("--track-front 0.8", "--track-front 0.8 m: front.hardpoints.arm_front would be 5 mm beyond the middle"),
+        ("--pitch-frequency 1.2", "--pitch-frequency 1.2 Hz: with these ride frequencies it needs Iyy"),
+        ("--roll-inertia 200", "the body would have I.*check --yaw-inertia"),
+        ("--wheel-hop-front 80", "--wheel-hop-front: found 80.0 Hz, must be at most 30.0"),
+        ("--pitch-frequency 2 --pitch-inertia 3000", "either gives the other; leave one of the two out"),
+        ("--damper-curve-front none.csv", "front.damper.curve: .*none.csv: no such file"),
+    ],
+)
+def test_a_car_that_cannot_be_is_rejected_by_name(numbers, message, tmp_path, capsys):
+    assert main([str(tmp_path / "bad"), "--from", "sedan", *numbers.split()]) == 2
+    assert re.search(message, capsys.readouterr().err)
+    assert not (tmp_path / "bad").exists()
+
+
+def test_templates_without_four_wheels_and_names_of_shipped_cars_are_rejected(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["mine", "--from", "focus"]) == 2
+    assert "needs two axles with two wheels each" in capsys.readouterr().err
+    assert main(["sedan", "--from", "sedan"]) == 2
+    assert "is the name of a shipped car" in capsys.readouterr().err
+
+
+def test_estimates_are_inside_the_survey_for_a_measured_car():
+    """BMW 320i of the CommonRoad vehicle models: m 1093.3 kg, a 1.156 m, b 1.423 m, I_z 1791.6 kg m2."""
+    geometry = AxleGeometry(track=1.375, front=1.156196, rear=1.422717)
+    indices = [index.mean for index in SURVEY.values()]
+    yaw = SURVEY["k_z^2 / a b"]
+    expected = 1791.599
+    validated(
+        "Published cars",
+        "BMW 320i: yaw inertia estimated by the mean of 73 measured cars",
+        geometry.inertia(1093.295, indices)[2],
+        expected,
+        source="publication: CommonRoad vehicle models 2017, parameters of vehicle 2; tolerance: range of the 73 cars",
+        within=(expected * yaw.least / yaw.mean, expected * yaw.most / yaw.mean),
+        unit="kg m2",
+    )
+    back = geometry.indices(1093.295, geometry.inertia(1093.295, indices))
+    assert back == pytest.approx(indices, rel=1e-12)
+
+
+def test_survey_inertia_is_that_of_the_whole_car(tmp_path):
+    car = made(tmp_path / "survey", "--inertia", "survey", "--kerb-mass", "1500", "--front-axle-load", "850")
+    whole, wheels = car_masses(car.model), {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
+    a = whole.cog[0] - wheels["fr"].center[0]
+    b = wheels["rr"].center[0] - whole.cog[0]
+    assert whole.inertia[1, 1] == pytest.approx(1.042 * 1500.0 * a * b, rel=1e-6)
+    assert whole.inertia[2, 2] == pytest.approx(1.091 * 1500.0 * a * b, rel=1e-6)
+    track = (1.500124 + 1.4986) / 2.0
+    assert math.sqrt(whole.inertia[0, 0] / 1500.0) / track == pytest.approx(0.409, rel=1e-4)
+
+
+def test_contradictions_are_found_before_any_computation():
+    with pytest.raises(ConfigurationError, match="the curve is the damping"):
+        stated_numbers(None, {"damping_ratio_front": 0.3, "damper_curve_front": "a.csv"})
+    with pytest.raises(ConfigurationError, match="nearest known name is kerb_mass"):
+        stated_numbers(None, {"kerb_mas": 3.0})

@@ -1,0 +1,77 @@
+"""Ranking of the cars of a sweep by comfort, its printed table and its picture."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vehicle.studies.sweeps.case import Case, SignalFile
+from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
+from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
+from vehicle.studies.sweeps.sweep_table import SweepTable
+
+UNITS = {"comfort_overall": "m/s2", "seat_rail_weighted_overall": "m/s2"}
+
+
+def table_of(values, paths, inputs=("a.csv", "b.csv")):
+    """A table whose car number i, with parameters `values[i]`, has the weighted value i + 1 on the first input and
+    i + 3 on the second."""
+    cases, results = [], []
+    for number, row in enumerate(values):
+        for place, name in enumerate(inputs):
+            texts = tuple(f"{path}={value}" for path, value in zip(paths, row, strict=True))
+            cases.append(Case(source=SignalFile(path=name, wheel="fl"), overrides=texts))
+            weighted = number + 1.0 + 2.0 * place
+            results.append(Result(values={"comfort_overall": 2.0 * weighted, "seat_rail_weighted_overall": weighted}))
+    return SweepTable(cases=cases, results=results, units=UNITS, made={})
+
+
+def ranked(table):
+    cars = ranked_cars(table)
+    assert cars is not None
+    return cars
+
+
+def test_cars_are_ranked_by_the_mean_over_the_inputs():
+    table = table_of([("30", "1"), ("10", "1"), ("20", "1")], ["front.spring", "fixed"])
+    cars = ranked(table)
+    assert cars.paths == ["front.spring"] and cars.inputs == 2 and cars.point == "seat rail"
+    assert cars.order == [0, 1, 2] and cars.weighted.tolist() == [2.0, 3.0, 4.0]
+    assert cars.change(2) == pytest.approx(100.0) and cars.unweighted[1] == 6.0
+    lines = ranking_lines(cars)
+    assert lines[1].split() == ["30", "2", "base", "4"] and lines[2].split() == ["10", "3", "+50.00", "%", "6"]
+    assert lines[-1] == "most comfortable is the first car: front.spring = 30"
+
+
+def test_a_failed_run_takes_its_car_out():
+    table = table_of([("30",), ("10",), ("20",)], ["front.spring"])
+    failed = [replace(table.results[0], values={}, reason="stopped"), *table.results[1:]]
+    cars = ranked(replace(table, results=failed))
+    assert cars.order == [1, 2] and math.isnan(cars.weighted[0]) and math.isnan(cars.change(1))
+    assert ranking_lines(cars)[1].split() == ["10", "3", "-", "6"]
+    everything = [replace(result, values={}, reason="stopped") for result in table.results]
+    assert ranked_cars(replace(table, results=everything)) is None
+
+
+def test_many_cars_are_cut_and_the_first_stays():
+    table = table_of([(str(100 - i),) for i in range(30)], ["a"], inputs=("a.csv",))
+    falling = [replace(r, values={k: 40.0 - v for k, v in r.values.items()}) for r in table.results]
+    lines = ranking_lines(ranked(replace(table, results=falling)))
+    assert lines[1].split()[0] == "71" and lines[13].split()[:3] == ["100", "39", "base"]
+    assert lines[14] == "and 17 more cars in table.csv" and lines[-1].startswith("most comfortable: a = 71 (-74.36 %")
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_pictures(tmp_path, count):
+    values = [tuple(str(v) for v in row) for row in np.array(np.meshgrid(*[[1, 2, 3]] * count)).reshape(count, -1).T]
+    cars = ranked(table_of(values, ["a", "b", "c"][:count]))
+    assert can_be_drawn(cars)
+    draw_ranked(tmp_path / "sweep.png", cars, {"a": "N"}, "tyres standing")
+    assert (tmp_path / "sweep.png").stat().st_size > 15_000
+
+
+def test_texts_are_not_drawn():
+    assert not can_be_drawn(ranked(table_of([("soft",), ("hard",)], ["law"])))
+    assert not can_be_drawn(None)

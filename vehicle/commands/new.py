@@ -1,0 +1,122 @@
+"""`python -m vehicle new`: make a car from a template car and stated numbers."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.command_line import command
+from vehicle.commands.options import FORCE_HELP, command_parser, message_options
+from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.quantity import field_quantity
+from vehicle.model.parameters.shipped import CARS
+
+if TYPE_CHECKING:
+    from vehicle.studies.design.new_car import NewCar
+
+GROUPS = {
+    "mass": ("kerb_mass", "front_axle_load", "rear_axle_load", "cog_x", "cog_height"),
+    "lengths": ("wheelbase", "track_front", "track_rear", "tyre_radius"),
+    "inertia": ("roll_inertia", "pitch_inertia", "yaw_inertia"),
+    "ride": ("ride_frequency_front", "ride_frequency_rear", "pitch_frequency", "wheel_hop_front", "wheel_hop_rear"),
+    "dampers": ("damping_ratio_front", "damping_ratio_rear", "damper_curve_front", "damper_curve_rear"),
+    "roll": ("roll_stiffness_front", "roll_stiffness_rear"),
+}
+"""Titles of the help, and the numbers of each."""
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    from vehicle.studies.design.stated_numbers import StatedNumbers, option
+
+    parser = command_parser("new", "Make a car from a template car and its masses, lengths and frequencies.")
+    parser.add_argument("folder", type=Path, metavar="NAME", help="folder of the new car; its last part is the name")
+    parser.add_argument(
+        "--from",
+        dest="source",
+        required=True,
+        metavar="CAR",
+        help=f"template: a shipped car with four wheels ({', '.join(CARS)}), or a vehicle file",
+    )
+    parser.add_argument(
+        "--numbers",
+        type=Path,
+        metavar="FILE.toml",
+        help="numbers by the names of these options with '_' for '-', as kerb_mass = 1450, and loads as [load.driver]",
+    )
+    for title, names in GROUPS.items():
+        group = parser.add_argument_group(title)
+        for name in names:
+            declared = field_quantity(StatedNumbers, name)
+            file = declared["is_file"]
+            unit = f" [{declared['unit']}]" if declared["unit"] != "-" else ""
+            group.add_argument(
+                option(name), type=str if file else float, metavar="FILE" if file else "X",
+                help=f"{declared['meaning']}{unit}",
+            )  # fmt: skip
+    inertia = field_quantity(StatedNumbers, "inertia")
+    parser.add_argument(
+        "--inertia", choices=inertia["choices"], help=f"{inertia['meaning']}; {inertia['default']} by default"
+    )
+    parser.add_argument("--json", action="store_true", help="print the checks as JSON")
+    parser.add_argument("--force", action="store_true", help=FORCE_HELP)
+    message_options(parser)
+    return parser
+
+
+def _job(options: argparse.Namespace) -> None:
+    # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.model.parameters.quantity import NAME_PATTERN
+    from vehicle.model.parameters.shipped import vehicle_file
+    from vehicle.runs.output.folder import output_folder, write_whole
+    from vehicle.runs.output.free_names import named
+    from vehicle.studies.design.new_car import new_car, template_files
+    from vehicle.studies.design.stated_numbers import NAMES, stated_numbers
+
+    name = options.folder.name
+    if not NAME_PATTERN.fullmatch(name):
+        raise ConfigurationError(f"NAME {str(options.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
+    if name in CARS and options.folder == Path(name):
+        raise ConfigurationError(f"NAME {name}: is the name of a shipped car, which --vehicle would read; take another")
+    stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia")})
+    source = vehicle_file(options.source)
+    try:
+        folder = named(options.held, options.folder, force=options.force, protect=(source,))
+    except ConfigurationError as error:
+        raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
+    result = new_car(name, options.source, stated)
+    with output_folder(folder, force=options.force) as temporary:
+        write_whole(temporary / "vehicle.toml", lambda file: file.write_text(result.text, encoding="utf-8"))
+        for file in template_files(source, result.car):
+            content = file.read_bytes()
+            write_whole(temporary / file.name, lambda path, content=content: path.write_bytes(content))  # type: ignore[misc]
+    file = folder / "vehicle.toml"
+    print(json.dumps(_checks(result, file), indent=2) if options.json else _report(result, file))
+
+
+def _report(result: NewCar, file: Path) -> str:
+    """Return the checks as text: each number, its stated value and the value of the car."""
+    lines = [f"{file}: {result.car.vehicle.name}", f"{'':<34}{'stated':>10}{'car':>12}{'deviation':>12}"]
+    for check in result.checks:
+        unit = f" [{check.unit}]" if check.unit != "-" else ""
+        stated = "-" if check.stated is None else f"{check.stated:.6g}"
+        deviation = "" if check.stated is None else f"{100.0 * check.deviation:z.3f} %"
+        lines.append(f"{check.name.replace('_', ' ') + unit:<34}{stated:>10}{check.value:>12.6g}{deviation:>12}")
+    lines += [f"note: {text}" for text in result.notes]
+    lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
+    return "\n".join(lines)
+
+
+def _checks(result: NewCar, file: Path) -> dict[str, Any]:
+    """Return the checks for JSON."""
+    rows = {
+        check.name: {"unit": check.unit, "stated": check.stated, "value": check.value, "deviation": check.deviation}
+        for check in result.checks
+    }
+    return {"file": str(file), "checks": rows, "notes": list(result.notes)}
+
+
+main = command(parser, _job)

@@ -1,0 +1,33 @@
+"""Mass properties of the parts of a compiled car in its design position."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.model.flexbody.mass_properties import MassProperties
+from vehicle.model.parameters.load_mass import Load
+
+
+def car_masses(car: CarModel, *, body: bool = True) -> MassProperties:
+    """Return mass, centre of gravity and inertia of a car without its loads.
+
+    Args:
+        car: compiled car, with a rigid body.
+        body: False to leave out the body.
+    """
+    model, data = car.model, mujoco.MjData(car.model)
+    mujoco.mj_forward(model, data)
+    skipped = {part.name for part in car.vehicle.composition.parts if isinstance(part.numbers, Load)}
+    if not body:
+        skipped.add("body")
+    bodies = [
+        number
+        for number in range(1, model.nbody)
+        if model.body_mocapid[number] < 0 and str(model.body(number).name) not in skipped
+    ]
+    points = MassProperties.of_points(model.body_mass[bodies], data.xipos[bodies])
+    frames = data.ximat[bodies].reshape(-1, 3, 3)
+    inertia = np.einsum("bij,bj,bkj->ik", frames, model.body_inertia[bodies], frames)
+    return MassProperties(mass=points.mass, cog=points.cog, inertia=points.inertia + inertia)

@@ -1,0 +1,1 @@
+"""Design of a new car from a template car and stated masses, lengths and frequencies."""

@@ -1,0 +1,191 @@
+"""Body of a new car: what is left of the stated car after all other parts.
+
+    m_b = m - sum m_i,   m_b c_b = m c - sum m_i c_i,   I_b = I - sum (I_i + m_i (|r_i|^2 1 - r_i r_i'))   about c,
+
+and I_b is then taken about c_b. The parts are those of the compiled model: axles, engine, seats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.car_masses import car_masses
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.errors import ConfigurationError
+from vehicle.model.flexbody.mass_properties import MassProperties
+from vehicle.model.parameters.vehicle import vehicle_of
+from vehicle.model.parameters.whole_body import put
+from vehicle.runs.car import Car
+from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
+from vehicle.studies.design.moved_points import Sources
+from vehicle.studies.design.stated_numbers import StatedNumbers, option
+from vehicle.studies.design.template_car import TemplateCar
+
+Vector = npt.NDArray[np.float64]
+
+LIGHTEST_BODY = 100.0
+"""Smallest mass of a body [kg], see `TrimmedBody`."""
+ROUND_OFF = 1e-9
+"""Product of inertia, as a share of the sum of the moments, that counts as zero."""
+LOAD_AGREES = 1e-6
+"""Deviation of an axle load, as a share of it, at which the position of the centre of gravity is settled."""
+
+
+def kerb_model(table: Mapping[str, Any], template: TemplateCar) -> CarModel:
+    """Return the compiled model of a vehicle table without its loads."""
+    kerb = {key: value for key, value in table.items() if key != "load"}
+    return Car(vehicle_of(kerb, template.file.parent), folder=template.file.parent).model
+
+
+def axle_loads(car: CarModel, template: TemplateCar) -> dict[str, float]:
+    """Return the static load of each axle [kg], by "front" and "rear"."""
+    loads, g = car.static.tyre_load, car.vehicle.gravity
+    return {word: sum(loads[wheel.name] for wheel in wheels) / g for word, wheels in template.wheels.items()}
+
+
+def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> tuple[dict[str, Any], Sources]:
+    """Return the vehicle table with the body of the stated masses, and the sources of its numbers.
+
+    Args:
+        table: vehicle table with the lengths of the new car.
+        template: the template car.
+        stated: numbers of the new car.
+
+    Raises:
+        ConfigurationError: a car that cannot be: lighter than its parts, centre of gravity outside the wheelbase,
+            moments of inertia below those of the parts.
+    """
+    before = car_masses(template_model := kerb_model(template.table, template))
+    loads = axle_loads(template_model, template)
+    share = loads["rear"] / sum(loads.values())
+    mass, front, rear = stated.kerb_mass, stated.front_axle_load, stated.rear_axle_load
+    if mass is None:
+        mass = before.mass if front is None or rear is None else front + rear
+    wheelbase = stated.wheelbase or template.wheelbase
+    if rear is not None:
+        share = rear / mass
+    elif front is not None:
+        share = 1.0 - front / mass
+    elif stated.cog_x is not None:
+        share = stated.cog_x / wheelbase
+    if not 0.0 < share < 1.0:
+        stated_names = [
+            name for name in ("front_axle_load", "rear_axle_load", "cog_x") if getattr(stated, name) is not None
+        ]
+        raise ConfigurationError(
+            f"{', '.join(map(option, stated_names))}: the centre of gravity would be {share * wheelbase:.3f} m "
+            f"behind the front axle, must be inside the wheelbase of {wheelbase:g} m (kerb mass {mass:g} kg)"
+        )
+    parts = car_masses(kerb_model(table, template), body=False)
+    if mass - parts.mass < LIGHTEST_BODY:
+        raise ConfigurationError(
+            f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts of {template.name} already "
+            f"weigh {parts.mass:.1f} kg; must be at least {parts.mass + LIGHTEST_BODY:.1f} kg, or start from a car "
+            "with lighter parts"
+        )
+    radius = stated.tyre_radius or template.tyre_radius
+    ground = template.wheels["front"][0].center[2] - radius
+    height = before.cog[2] - template.ground if stated.cog_height is None else stated.cog_height
+    cog = np.array([template.front_x + share * wheelbase, before.cog[1], ground + height])
+    table, along = dict(table), cog[0]
+    for _ in range(5):
+        cog[0] = along
+        whole = MassProperties(mass=mass, cog=cog, inertia=_inertia(template, stated, before, mass, share))
+        body = whole.without(parts)
+        put(table, _body_numbers(body))
+        achieved = axle_loads(kerb_model(table, template), template)
+        error = achieved["rear"] / sum(achieved.values()) - share
+        # Tyres with a rotational stiffness support a part of the moment.
+        if stated.cog_x is not None or abs(error) < LOAD_AGREES:
+            break
+        along -= error * wheelbase
+    return table, _sources(template, stated, parts.mass, template_indices(template, before))
+
+
+def template_indices(template: TemplateCar, before: MassProperties) -> tuple[float, float, float]:
+    """Return the indices i_x, i_y, i_z of the template car [-]; `before`: its mass properties."""
+    front = float(before.cog[0]) - template.front_x
+    geometry = AxleGeometry(track=template.mean_track, front=front, rear=template.wheelbase - front)
+    return geometry.indices(before.mass, np.diag(before.inertia).tolist())
+
+
+def _inertia(template: TemplateCar, stated: StatedNumbers, before: MassProperties, mass: float, share: float) -> Vector:
+    """Return the inertia tensor of the new car about its CoG: stated or estimated moments; products of the template."""
+    tracks = [stated.of_axle("track", word) or template.track(word) for word in template.wheels]
+    wheelbase = stated.wheelbase or template.wheelbase
+    geometry = AxleGeometry(track=float(np.mean(tracks)), front=share * wheelbase, rear=(1.0 - share) * wheelbase)
+    of_survey = [index.mean for index in SURVEY.values()]
+    indices = of_survey if stated.inertia == "survey" else template_indices(template, before)
+    names = ("roll_inertia", "pitch_inertia", "yaw_inertia")
+    estimates = zip(names, geometry.inertia(mass, indices), strict=True)
+    moments = [getattr(stated, name) or value for name, value in estimates]
+    return mass / before.mass * (before.inertia - np.diag(np.diag(before.inertia))) + np.diag(moments)
+
+
+def _body_numbers(body: MassProperties) -> dict[str, Any]:
+    """Return the parameters of the body by path.
+
+    Raises:
+        ConfigurationError: a moment of inertia is not physical.
+    """
+    moments = np.diag(body.inertia)
+    for axis, (name, moment) in enumerate(zip(("roll", "pitch", "yaw"), moments, strict=True)):
+        others = moments.sum() - moment
+        if not 0.0 < moment < others:
+            raise ConfigurationError(
+                f"the body would have I{'xyz'[axis] * 2} = {moment:.0f} kg m2, must be above 0 and below the "
+                f"sum of the two others ({others:.0f} kg m2): check {option(f'{name}_inertia')} and the other moments, "
+                f"{option('cog_height')} and {option('kerb_mass')}"
+            )
+    ixx, iyy, izz = (float(f"{value:.9g}") for value in moments)
+    inertia = {"about": "cog", "ixx": ixx, "iyy": iyy, "izz": izz}
+    for name, entry in (("ixy", (0, 1)), ("izx", (2, 0)), ("iyz", (1, 2))):
+        if abs(body.inertia[entry]) > ROUND_OFF * moments.sum():
+            inertia[name] = -float(f"{body.inertia[entry]:.9g}")
+    return {
+        "body.mass": float(f"{body.mass:.9g}"),
+        "body.cog": [round(float(value), 9) + 0.0 for value in body.cog],
+        "body.inertia": inertia,
+    }
+
+
+def _sources(template: TemplateCar, stated: StatedNumbers, parts: float, of_template: Sequence[float]) -> Sources:
+    """Return the sources of the numbers of the body."""
+    as_template = f"template {template.name}"
+
+    def source(*names: str, otherwise: str = as_template) -> str:
+        return ", ".join(stated.stated(name) for name in names if getattr(stated, name) is not None) or otherwise
+
+    position = source(
+        "front_axle_load", "rear_axle_load", "cog_x", otherwise=f"axle loads in the ratio of {as_template}"
+    )
+    masses = source("kerb_mass", "front_axle_load", "rear_axle_load")
+    height = source("cog_height", otherwise=f"CoG height of {as_template}")
+    estimates = []
+    for (word, index), template_index in zip(SURVEY.items(), of_template, strict=True):
+        cars = "73 cars of NHTSA's database (SAE 1999-01-1336)"
+        if stated.inertia == "survey":
+            estimates.append(f"estimated: {word} = {index.mean}, mean of {cars}")
+        else:
+            span = f"{index.least} to {index.most} in {cars}"
+            estimates.append(f"estimated: {word} = {template_index:.3f} as in {as_template}; {span}")
+    sources = {
+        "body.mass": f"{masses}, less {parts:.2f} kg of the other parts",
+        "body.cog": f"{position}; {height}; less the other parts",
+        "body.flexible": "rigid: no shapes of this body are known",
+        "body.attachment_flexibility": "rigid: likewise",
+        "body.inertia.about": "about the centre of gravity",
+    }
+    for axis, (name, estimate) in zip(
+        ("ixx", "iyy", "izz"), zip(("roll", "pitch", "yaw"), estimates, strict=True), strict=True
+    ):
+        sources[f"body.inertia.{axis}"] = f"{source(f'{name}_inertia', otherwise=estimate)}; less the other parts"
+    for product in ("ixy", "izx", "iyz"):
+        sources[f"body.inertia.{product}"] = (
+            f"products of {as_template}, in proportion to the mass; less the other parts"
+        )
+    return sources

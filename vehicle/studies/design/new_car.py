@@ -1,0 +1,214 @@
+"""Make a new car from a template car and stated numbers, write its vehicle file, check the stated numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.engines.simulation.car_masses import car_masses
+from vehicle.errors import SimulationError
+from vehicle.model.parameters.instance import instances
+from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.quantity import field_quantity
+from vehicle.model.parameters.template import own_templates
+from vehicle.model.parameters.whole_body import put
+from vehicle.runs.car import Car
+from vehicle.studies.design.car_file import sources_of, vehicle_text
+from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
+from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_model
+from vehicle.studies.design.moved_points import Sources, moved_points
+from vehicle.studies.design.ride_solution import Target, new_car_of, quantities, solved, targets_of
+from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers
+from vehicle.studies.design.template_car import TemplateCar, template_car
+from vehicle.threads import one_blas_thread
+
+LOADS_MET, FREQUENCIES_MET = 1e-3, 1e-2
+"""Largest relative deviation of masses and lengths, and of frequencies, damping ratios and roll stiffnesses."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Check:
+    """Stated number and the value of the new car.
+
+    Attributes:
+        name: name of the number, a field of `StatedNumbers`.
+        unit: its unit.
+        stated: stated value; None without a statement.
+        value: value of the new car.
+    """
+
+    name: str
+    unit: str
+    stated: float | None
+    value: float
+
+    @property
+    def deviation(self) -> float:
+        """Relative deviation of the value from the stated one [-]; 0 without a stated one."""
+        return 0.0 if self.stated is None else self.value / self.stated - 1.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NewCar:
+    """A new car.
+
+    Attributes:
+        car: the car, ready to run.
+        text: its vehicle file.
+        checks: each number of the car with its stated value.
+        notes: messages about estimates and about parts of the template that are left out.
+    """
+
+    car: Car
+    text: str
+    checks: tuple[Check, ...]
+    notes: tuple[str, ...]
+
+
+@one_blas_thread()
+def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
+    """Make a new car.
+
+    Args:
+        name: name of the new car.
+        source: template: name of a shipped car, or a vehicle file.
+        stated: numbers of the new car; all others are those of the template, or estimated.
+
+    Returns:
+        The car, whose numbers are met within `LOADS_MET` and `FREQUENCIES_MET`.
+
+    Raises:
+        ConfigurationError: a car that cannot be; the message has the number that must change.
+        SimulationError: a number is not met.
+    """
+    template = template_car(source)
+    table, sources = moved_points(template, stated)
+    table, of_body = balanced(table, template, stated)
+    sources |= of_body | _curves(table, template, stated)
+    if stated.load:
+        table["load"] = dict(stated.load)
+        sources |= {f"load.{load}": "given" for load in stated.load}
+    targets = targets_of(template, stated)
+    table = solved({**table, "name": name}, template, targets)
+    sources |= {"name": "given", **_sources_of_targets(targets, stated, template)}
+    car = new_car_of(table, template)
+    checks = _checks(car, template, stated)
+    _require_met(checks)
+    header = (
+        f"{name}: made by `python -m vehicle new` from the template {template.name}.\n"
+        "Behind each value: [unit] where it comes from: given, estimated by ..., or the template with its own source.\n"
+        "Frame: x to the rear, y to the driver's right, z up. SI units."
+    )
+    text = vehicle_text(car.vehicle, header, sources, template.name, sources_of(template.file))
+    return NewCar(car=car, text=text, checks=checks, notes=_notes(car, template, stated))
+
+
+def template_files(source: Path, car: Car) -> list[Path]:
+    """Return the templates of a user that a new car needs in its folder.
+
+    Args:
+        source: vehicle file of the template car.
+        car: the new car.
+    """
+    folders = (source.parent, source.parent / "templates")
+    names = [str(instance.numbers["template"]) for instance in instances(car.vehicle.table, folders).values()]
+    return own_templates(names, folders)
+
+
+def _curves(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers) -> Sources:
+    """Put the stated damper curves into a vehicle table; return their sources."""
+    sources = Sources()
+    for word in AXLES:
+        if (file := stated.of_axle("damper_curve", word)) is None:
+            continue
+        for path in template.element_paths(word)["damper"]:
+            numbers = {k: v for k, v in value_at(table, path).items() if k not in ("viscous", "velocity", "force")}
+            numbers |= {"viscous_law": "table", "curve": str(Path(file).absolute())}
+            put(table, {path: numbers})  # type: ignore[dict-item]
+            sources |= {f"{path}.{key}": f"given: {Path(file).name}" for key in ("viscous_law", "velocity", "force")}
+    return sources
+
+
+def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: TemplateCar) -> Sources:
+    """Return the sources of the solved parameters."""
+    sources = Sources()
+    for target in targets:
+        if getattr(stated, target.name) is not None:
+            text = f"from {stated.stated(target.name)}"
+        else:
+            text = f"estimated: {target.name.replace('_', ' ')} of {template.name}, {target.value:.4g}"
+        if target.name == "pitch_frequency":
+            sources |= {"body.inertia.izz": f"scaled with Iyy, which is {text}"}
+        sources |= {path.removesuffix(".z"): text for path in target.paths if path != "body.inertia.izz"}
+        for path in target.paths:
+            if path.endswith(".z"):
+                sources[path.removesuffix(".z")] = f"z {text}; x and y of template {template.name}"
+    return sources
+
+
+def _checks(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
+    """Return all numbers of the new car with their stated values."""
+    kerb = kerb_model(car.vehicle.table, template)
+    whole, loads = car_masses(kerb), axle_loads(kerb, template)
+    wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
+    front, rear = ([wheels[wheel.name] for wheel in template.wheels[word]] for word in AXLES)
+    values = {
+        "kerb_mass": whole.mass,
+        "front_axle_load": loads["front"],
+        "rear_axle_load": loads["rear"],
+        "cog_x": float(whole.cog[0]) - front[0].center[0],
+        "cog_height": float(whole.cog[2]) - front[0].patch[2],
+        "wheelbase": rear[0].center[0] - front[0].center[0],
+        "track_front": front[0].center[1] - front[1].center[1],
+        "track_rear": rear[0].center[1] - rear[1].center[1],
+        "tyre_radius": front[0].center[2] - front[0].patch[2],
+        **{f"{axis}_inertia": float(whole.inertia[i, i]) for i, axis in enumerate(("roll", "pitch", "yaw"))},
+        **quantities(car, template, modes=True),
+    }
+    return tuple(
+        Check(
+            name=name,
+            unit=field_quantity(StatedNumbers, name)["unit"],
+            stated=getattr(stated, name),
+            value=values[name],
+        )
+        for name in NAMES
+        if name in values
+    )
+
+
+def _require_met(checks: tuple[Check, ...]) -> None:
+    """Raise an error if a stated number is not met; the pitch inertia is met by the pitch frequency instead."""
+    exact = {entry.name for entry in fields(StatedNumbers) if entry.metadata.get("unit") in ("kg", "m", "kg m2")}
+    for check in checks:
+        if abs(check.deviation) > (LOADS_MET if check.name in exact else FREQUENCIES_MET):
+            raise SimulationError(
+                f"{check.name}: stated {check.stated:g} {check.unit}, the car has {check.value:g}; this combination of "
+                "numbers is not met: leave one of them out"
+            )
+
+
+def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str, ...]:
+    """Return the notes: inertia outside the survey, values of the template, parts left out."""
+    kerb = kerb_model(car.vehicle.table, template)
+    whole = car_masses(kerb)
+    wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
+    pairs = [[wheels[wheel.name] for wheel in template.wheels[word]] for word in AXLES]
+    track = float(np.mean([right.center[1] - left.center[1] for right, left in pairs]))
+    behind, ahead = float(whole.cog[0]) - pairs[0][0].center[0], pairs[1][0].center[0] - float(whole.cog[0])
+    indices = AxleGeometry(track=track, front=behind, rear=ahead).indices(whole.mass, np.diag(whole.inertia).tolist())
+    notes = []
+    for (word, index), value in zip(SURVEY.items(), indices, strict=True):
+        if not index.least <= value <= index.most:
+            notes.append(
+                f"{word} is {value:.3f}, outside the range of 73 measured cars, {index.least} to {index.most}: check "
+                "inertia, pitch frequency and axle loads, or take --inertia survey"
+            )
+    notes.append(
+        f"as in {template.name}: parts of axles and engine, bushings, mounts, damper friction, tyre slip; these values "
+        "are marked 'template' in the file"
+    )
+    return (*notes, *(f"not taken over from {template.name}: {text}" for text in template.left_out))

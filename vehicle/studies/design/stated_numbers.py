@@ -1,0 +1,164 @@
+"""Stated numbers of a new car; all are optional, and the template car supplies the others."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.toml_file import build, read_table
+
+AXLES = ("front", "rear")
+"""Words for the two axles in the names of the numbers."""
+
+BODY: dict[str, Any] = {
+    "at_least": 0.3,
+    "at_most": 8.0,
+    "why": "bodies of cars move at 1 to 2 Hz, of race cars up to 6 Hz",
+}
+HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars hop at 8 to 16 Hz"}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StatedNumbers:
+    """Numbers of a car; None: not stated. `option` returns its name on a command line."""
+
+    kerb_mass: float | None = quantity(
+        "kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None
+    )
+    front_axle_load: float | None = quantity(
+        "kg", "load of the front axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+    )
+    rear_axle_load: float | None = quantity(
+        "kg", "load of the rear axle on the scales, without [load]", above=0.0, at_most=2e4, default=None
+    )
+    cog_x: float | None = quantity(
+        "m", "centre of gravity behind the front axle, instead of an axle load", above=0.0, default=None
+    )
+    cog_height: float | None = quantity("m", "centre of gravity above the ground", above=0.0, at_most=3.0, default=None)
+    wheelbase: float | None = quantity("m", "distance of the axles", above=0.0, default=None)
+    track_front: float | None = quantity("m", "distance of the front wheels", above=0.0, default=None)
+    track_rear: float | None = quantity("m", "distance of the rear wheels", above=0.0, default=None)
+    tyre_radius: float | None = quantity("m", "loaded radius: wheel centre above the ground", above=0.0, default=None)
+    roll_inertia: float | None = quantity(
+        "kg m2", "Ixx of the car about its centre of gravity, without [load]", above=0.0, default=None
+    )
+    pitch_inertia: float | None = quantity(
+        "kg m2", "Iyy of the car about its centre of gravity, without [load]", above=0.0, default=None
+    )
+    yaw_inertia: float | None = quantity(
+        "kg m2", "Izz of the car about its centre of gravity, without [load]", above=0.0, default=None
+    )
+    inertia: str = quantity(
+        "-",
+        "moments that are not stated: radii of gyration in proportion to those of the template, or means of 73 cars",
+        choices=("template", "survey"),
+        default="template",
+    )
+    ride_frequency_front: float | None = quantity("Hz", "ride frequency of the front axle", default=None, **BODY)
+    ride_frequency_rear: float | None = quantity("Hz", "ride frequency of the rear axle", default=None, **BODY)
+    pitch_frequency: float | None = quantity(
+        "Hz", "pitch mode of the car, dampers sliding; gives the pitch inertia", default=None, **BODY
+    )
+    wheel_hop_front: float | None = quantity(
+        "Hz", "hop mode of the front wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **HOP
+    )
+    wheel_hop_rear: float | None = quantity(
+        "Hz", "hop mode of the rear wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **HOP
+    )
+    damping_ratio_front: float | None = quantity(
+        "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
+    )
+    damping_ratio_rear: float | None = quantity(
+        "-", "damping ratio of the rear axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None
+    )
+    damper_curve_front: str | None = quantity(
+        "-", "damper test of the front axle: table of velocity and force", is_file=True, default=None
+    )
+    damper_curve_rear: str | None = quantity(
+        "-", "damper test of the rear axle: table of velocity and force", is_file=True, default=None
+    )
+    roll_stiffness_front: float | None = quantity(
+        "N m/deg", "roll stiffness of the front axle without the tyres; gives the stabilizer", above=0.0, default=None
+    )
+    roll_stiffness_rear: float | None = quantity(
+        "N m/deg",
+        "roll stiffness of the rear axle without the tyres; gives the stabilizer, or the torsion of the beam",
+        above=0.0,
+        default=None,
+    )
+    load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
+
+    def __post_init__(self) -> None:
+        validate(self)
+        for first, second, why in (
+            ("pitch_frequency", "pitch_inertia", "either gives the other"),
+            ("damping_ratio_front", "damper_curve_front", "the curve is the damping"),
+            ("damping_ratio_rear", "damper_curve_rear", "the curve is the damping"),
+            ("cog_x", "front_axle_load", "both give the position of the centre of gravity"),
+            ("cog_x", "rear_axle_load", "both give the position of the centre of gravity"),
+        ):
+            if getattr(self, first) is not None and getattr(self, second) is not None:
+                raise ConfigurationError(f"{option(first)} and {option(second)}: {why}; leave one of the two out")
+        mass, front, rear = self.kerb_mass, self.front_axle_load, self.rear_axle_load
+        if (
+            mass is not None
+            and front is not None
+            and rear is not None
+            and abs(front + rear - mass) > LOADS_AGREE * mass
+        ):
+            raise ConfigurationError(
+                f"{option('front_axle_load')} {front:g} kg and {option('rear_axle_load')} {rear:g} kg: together "
+                f"{front + rear:g} kg, must be the kerb mass of {mass:g} kg; leave one of the three out"
+            )
+        for name, load in self.load.items():
+            build(Load, {key: value for key, value in load.items() if key not in ("at", "on")}, f"load.{name}")
+
+    def of_axle(self, name: str, axle: str) -> Any:
+        """Return a number of an axle: `name` followed by its word."""
+        return getattr(self, f"{name}_{axle}")
+
+    def stated(self, name: str) -> str:
+        """Return the text of a number: "kerb mass 1450 kg (given)"."""
+        unit = self.__dataclass_fields__[name].metadata["unit"]
+        unit = "" if unit == "-" else f" {unit}"
+        return f"{name.replace('_', ' ')} {getattr(self, name):g}{unit} (given)"
+
+
+LOADS_AGREE = 5e-4
+"""Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
+
+NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in ("load", "inertia"))
+
+
+def option(name: str) -> str:
+    """Return the option of a number on the command line: "--kerb-mass"."""
+    return f"--{name.replace('_', '-')}"
+
+
+def stated_numbers(file: Path | None, more: Mapping[str, Any]) -> StatedNumbers:
+    """Return the numbers of a TOML file and of a command line, which takes precedence.
+
+    Args:
+        file: TOML file with the names of `StatedNumbers` and tables [load.NAME]; None without a file.
+        more: numbers by name, which may be None.
+
+    Raises:
+        ConfigurationError: an unknown name, a value out of range, or numbers that contradict each other.
+    """
+    table = {} if file is None else read_table(file)
+    for name in ("damper_curve_front", "damper_curve_rear"):
+        if file is not None and isinstance(table.get(name), str):
+            table[name] = str(file.parent / table[name])
+    table |= {name: value for name, value in more.items() if value is not None}
+    try:
+        return build(StatedNumbers, table)
+    except ConfigurationError as error:
+        text = str(error).replace("StatedNumbers.", "")
+        key = text.split(":")[0]
+        raise ConfigurationError(f"{option(key)}{text[len(key) :]}" if key in NAMES else text) from None

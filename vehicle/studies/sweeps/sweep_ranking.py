@@ -1,0 +1,132 @@
+"""Cars of a sweep ranked by comfort: mean over all inputs, best car, base car, and their printed table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
+
+Vector = npt.NDArray[np.float64]
+
+WEIGHTED = ("seat_weighted_overall", "seat_rail_weighted_overall")
+"""Columns by which cars are ranked, ISO 2631-1: on the cushion of a car with a seat, otherwise at the seat rail."""
+
+UNWEIGHTED = "comfort_overall"
+"""Column of the unweighted comfort value, 2 to 50 Hz."""
+
+SHOWN = 12
+"""Maximum number of cars in the printed table."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RankedCars:
+    """Cars of a sweep with their comfort as the mean over all inputs.
+
+    Attributes:
+        point: "seat" or "seat rail", the point of the weighted values.
+        paths: varied parameters.
+        cells: values of the parameters of each car, as texts; (cars, paths).
+        weighted: weighted RMS (ISO 2631-1) [m/s2], NaN if a run of the car failed; (cars,).
+        unweighted: unweighted RMS of the seat rail, 2 to 50 Hz [m/s2]; (cars,).
+        order: cars with a value, most comfortable first.
+        inputs: number of inputs.
+    """
+
+    point: str
+    paths: Sequence[str]
+    cells: Sequence[Sequence[str]]
+    weighted: Vector
+    unweighted: Vector
+    order: Sequence[int]
+    inputs: int
+
+    @property
+    def best(self) -> int:
+        """Car with the lowest weighted value."""
+        return self.order[0]
+
+    def change(self, car: int) -> float:
+        """Return the change of the weighted value from the first car [%]; NaN without a value of the first car."""
+        return 100.0 * (float(self.weighted[car]) / float(self.weighted[0]) - 1.0)
+
+    def numbers(self) -> Vector | None:
+        """Return the parameters as numbers, (cars, paths); None if a value is a text or a vector."""
+        try:
+            return np.array([[float(cell) for cell in row] for row in self.cells])
+        except ValueError:
+            return None
+
+
+def ranked_cars(table: SweepTable) -> RankedCars | None:
+    """Return the cars of a sweep in the order of comfort; None for another measure, or if every car has a failed run.
+
+    Args:
+        table: table of a sweep with `ComfortMeasure`.
+    """
+    ranked_by = next((name for name in WEIGHTED if name in table.units), None)
+    if ranked_by is None or UNWEIGHTED not in table.units:
+        return None
+    paths = table.paths()
+    rows: dict[tuple[str, ...], list[int]] = {}
+    for number, case in enumerate(table.cases):
+        cells = tuple(parameter_cells(case, paths))
+        rows.setdefault(cells, []).append(number)
+    # The speed of rolling tyres is a parameter of the input: it has the same value in all cars, or in those of a road.
+    varied = [column for column in range(len(paths)) if len({cells[column] for cells in rows}) > 1]
+    cars: dict[tuple[str, ...], list[int]] = {}
+    for cells, numbers in rows.items():
+        cars.setdefault(tuple(cells[column] for column in varied if paths[column] != "driving.speed"), []).extend(
+            numbers
+        )
+    names = [paths[column] for column in varied if paths[column] != "driving.speed"]
+    weighted, unweighted = (
+        np.array([float(np.mean(table.column(name)[numbers])) for numbers in cars.values()])
+        for name in (ranked_by, UNWEIGHTED)
+    )
+    order = [int(car) for car in np.argsort(weighted, kind="stable") if math.isfinite(weighted[car])]
+    if not order:
+        return None
+    return RankedCars(
+        point=ranked_by.partition("_weighted")[0].replace("_", " "),
+        paths=names,
+        cells=list(cars),
+        weighted=weighted,
+        unweighted=unweighted,
+        order=order,
+        inputs=len({case.source for case in table.cases}),
+    )
+
+
+def ranking_lines(cars: RankedCars) -> list[str]:
+    """Return the printed table: parameters, comfort and change from the first car, most comfortable car first."""
+    shown = list(cars.order[:SHOWN])
+    if 0 in cars.order and 0 not in shown:
+        shown.append(0)
+    heads = [*cars.paths, "weighted [m/s2]", "change", "2 to 50 Hz [m/s2]"]
+    rows = [
+        [
+            *cars.cells[car],
+            f"{cars.weighted[car]:.4g}",
+            "base" if car == 0 else f"{cars.change(car):+.2f} %" if math.isfinite(cars.change(car)) else "-",
+            f"{cars.unweighted[car]:.4g}",
+        ]
+        for car in shown
+    ]
+    widths = [max(len(row[column]) for row in [heads, *rows]) for column in range(len(heads))]
+    lines = ["  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)) for row in [heads, *rows]]
+    left = len(cars.order) - len(shown)
+    if left > 0:
+        lines.append(f"and {left} more cars in table.csv")
+    over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
+    lines.append(f"weighted: RMS of the {cars.point} (ISO 2631-1); 2 to 50 Hz: unweighted RMS of the seat rail{over}")
+    best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
+    if best and cars.best == 0:
+        lines.append(f"most comfortable is the first car: {best}")
+    elif best:
+        lines.append(f"most comfortable: {best} ({cars.change(cars.best):+.2f} % weighted)")
+    return lines
