@@ -227,10 +227,6 @@ def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join([lines[0], "|" + "---|" * len(columns), *lines[1:]])
 
 
-OWN_COLUMNS = ("name", "found", "within", "why")
-"""Columns of a table on user data."""
-
-
 def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return the rows as a Markdown table."""
     columns = ("name", "place", "published", "ours", "deviation", "within", "status", "source", "why")
@@ -248,7 +244,6 @@ class Findings:
         notes: paragraphs below the table.
         data: further numbers for `results.json`, under their own keys.
         values: lines for the console, as fitted values.
-        own_data: True for user data, without published values: the rows contain only our values.
         tyres: state of the tyres of the cars, see `tyre_words`.
     """
 
@@ -258,7 +253,6 @@ class Findings:
     notes: Sequence[str] = ()
     data: Mapping[str, Any] = field(default_factory=dict)
     values: Sequence[str] = ()
-    own_data: bool = False
     tyres: str = ""
 
     def write(self, folder: Path) -> str:
@@ -266,10 +260,6 @@ class Findings:
         left = self.unjudged or {}
         rows = [asdict(claim) for claim in self.claims if claim.name not in left]
         counts, legend, table = headline(rows), [LEGEND], claim_table(rows)
-        if self.own_data:
-            rows = [{"name": r["name"], "found": r["ours"], "within": r["within"], "why": r["why"]} for r in rows]
-            counts, legend = f"{sum(row['within'] for row in rows)} of {len(rows)} checks hold", []
-            table = markdown(OWN_COLUMNS, [[cell(name, row[name]) for name in OWN_COLUMNS] for row in rows])
         notes = [f"Tyres: {self.tyres}."] if self.tyres else []
         notes += [*(f"Not judged here: {name}: {why}." for name, why in left.items()), *self.notes]
         write_text(

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
@@ -41,8 +40,7 @@ def chosen_engine(asked: str) -> str:
     engine. The comfort value of the reduced engine still agrees within
     a few tenths of a percent, which the full study checks on its corner points.
     """
-    reduced = "reduced" if has_compiler() else "mujoco"
-    return reduced if asked == "auto" else asked
+    return "reduced" if asked == "auto" else asked
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

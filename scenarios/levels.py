@@ -21,7 +21,6 @@ from scenarios.evidence_claims import evidence_claim
 from scenarios.frf_claims import axis_claims, coherence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION, level_signal
 from scenarios.study import car_study, computed_by, estimator_text, setting
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.names import across
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -90,9 +89,8 @@ def rigid_lines(runs: CarRuns) -> Vector:
 def less_friction(runs: CarRuns) -> FrequencyResponse:
     """Return the FRFs of the high level with a tenth of the friction, rows as `CHANNELS`."""
     friction = 0.1 * runs.car().vehicle.damper.coulomb_friction
-    engine = "reduced" if has_compiler() else None
     case = runs.case(
-        level_signal("high", runs.wheel, quick=False), [f"damper.coulomb_friction={friction!r}"], engine=engine
+        level_signal("high", runs.wheel, quick=False), [f"damper.coulomb_friction={friction!r}"], engine="reduced"
     )
     return runs([case])[0].frf(channels_of(runs.wheel))
 

@@ -22,7 +22,6 @@ from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.model.laws.damper import damper_law
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
@@ -100,8 +99,6 @@ def counts_of_seeds(runs: CarRuns, count: int) -> dict[str, list[int]]:
         runs: the car.
         count: seeds.
     """
-    if not has_compiler():
-        return {name: [] for name in LAWS}
     wheel = runs.wheel
     channels = [f"{point}_{wheel}_acc_{axis}" for point in ("damper_top", "knuckle") for axis in AXES]
     counts: dict[str, list[int]] = {}

@@ -56,24 +56,14 @@ ROOMS: dict[str, set[str]] = {
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "rendering", "simulation", "threads"},
-    "tuning": {"analysis", "car", "excitation", "parameters", "records", "threads"},
+    "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
+    | {"report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation", "version"},
     "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "linear"}
-    | {
-        "optimisation",
-        "output",
-        "parameters",
-        "records",
-        "rendering",
-        "replication",
-        "report",
-        "simulation",
-        "sweeps",
-        "threads",
-        "version",
-    },
+    | {"optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
+    | {"sweeps", "threads", "tuning", "version"},
     "threads": set(),
     "version": set(),
     "compiler": set(),

@@ -12,7 +12,6 @@ import numpy.typing as npt
 from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import changes
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Car
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ
@@ -77,13 +76,12 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
     """Run both bumps with many seeds of the noise, and the high bump also with other friction limits.
 
     Args:
-        runs: runs of the car, with the reduced engine if there is a compiler: the parts rotate by less than its
-            limit of validity.
+        runs: runs of the car, with the reduced engine: the parts rotate by less than its limit of validity.
         reading: of the printed amplitude.
         frictions: friction limits Fd [N].
         count: number of seeds.
     """
-    engine = "reduced" if has_compiler() else "mujoco"
+    engine = "reduced"
     ends: dict[float, list[float]] = {friction: [] for friction in frictions}
     kept: dict[tuple[float, str], list[tuple[float, float]]] = {}
     fastest: dict[float, list[float]] = {size: [] for size in SIZES}

@@ -47,7 +47,6 @@ from scenarios.comfort_sensitivity.histories import (
 )
 from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 
@@ -137,10 +136,9 @@ def beyond_cases(comfort: ComfortRuns) -> list[Case]:
         case for base in (DEGRESSIVE, RIGID_BODY) for variation in SOURCE for case in comfort.all_cases(variation, base)
     ]
     edges = [case for edge in EDGES_HZ for road in ROAD_RMS for case in comfort.cases((), road, edge=edge)]
-    # Without numba there is no reduced engine to be compared.
     checks = [
         case
-        for car in (corners(comfort) if has_compiler() else {}).values()
+        for car in corners(comfort).values()
         for road in ROAD_RMS
         for engine in ENGINES
         for case in comfort.cases(car, road, engine=engine, count=1)
@@ -205,8 +203,6 @@ def corners(comfort: ComfortRuns) -> dict[str, Changes]:
 
 def check_table(comfort: ComfortRuns) -> str:
     """Return the differences of both engines on the first record as a Markdown table."""
-    if not has_compiler():
-        return "The reduced engine was not compared with MuJoCo: it needs numba."
     rows = []
     for road in ROAD_RMS:
         reference: tuple[float, float] | None = None

@@ -19,7 +19,6 @@ from scenarios.road.figures import draw_classes, draw_friction
 from scenarios.road.findings import check_table, class_table, friction_claims, friction_table, scaling_claim, words
 from scenarios.road.runs import Ride, RideRuns
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import VEHICLES
 
@@ -76,7 +75,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
         *(words(*each) for each in subjects),
     ]
     data: dict[str, Any] = {"rides": [{**asdict(ride), **asdict(rides(ride))} for ride in (*grid, *varied)]}
-    if not quick and has_compiler():
+    if not quick:
         notes += checks(rides, folder, list(cars)[-1], roads)
     seconds = clock.perf_counter() - started
     return Findings(

@@ -1,11 +1,8 @@
 """Automatic fit of parameters to FRFs and bump records, which Bommer (2006) tuned by hand (section 3.2).
 
 python -m scenarios.tuning [--output DIR] [--quick] [--jobs N] [--vehicle FILE.toml] [--force]
-python -m scenarios.tuning --frf measured_low.uff --level low --frf measured_high.csv --level my_signal.csv
-    [--record my_bump.mf4 --signal my_bump.csv]... [--map knuckle_fr_acc_z="Dof 12 +Z"]...
-    [--fit damper.viscous=500:5000:1500]... [--channel NAME]... [--band 3:45] [--spacing 0.3] [--window 4]
 
-Without --frf and --record: data of a hidden car with 3 % noise, from the authors' starting values.
+Data of a hidden car with 3 % noise, from the authors' starting values. `python -m vehicle tune` fits measured files.
 """
 
 from __future__ import annotations
@@ -13,6 +10,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -26,8 +24,6 @@ from scenarios.tuning.claims import (
     fit_notes,
     fit_numbers,
     frozen_note,
-    own_claims,
-    value_lines,
 )
 from scenarios.tuning.data import (
     AUTHORS,
@@ -36,26 +32,22 @@ from scenarios.tuning.data import (
     NOISE,
     QUICK,
     SLIDING,
-    TEXT,
     make_measurements,
-    parse_parameters,
 )
-from scenarios.tuning.figures import correlation_figure, level_figure, parameter_figure, record_figure
-from scenarios.tuning.own_data import own_measurements
+from scenarios.tuning.figures import parameter_figure
 from vehicle.commands.command_line import ProgressLine
-from vehicle.commands.compare import drift_option, mapping_options
-from vehicle.commands.input_options import record_options
-from vehicle.commands.parser import Parser
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
-from vehicle.studies.tuning.car_fit import require_fittable
+from vehicle.runs.output.folder import write_whole
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
 from vehicle.studies.tuning.least_squares import Target, fit
-from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
+from vehicle.studies.tuning.measured_targets import SPACING, MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.tuning_figures import plot_correlation, plot_histories, plot_responses
+from vehicle.studies.tuning.tuning_text import value_lines
 
 
 class Tuning:
@@ -102,7 +94,8 @@ class Tuning:
                 engine=engine or self.runs.engine,
                 jobs=self.runs.jobs,
             )
-            return again([again.case(measurement.signal, changes) for measurement in measurements])
+            signals = [measurement.signal for measurement in measurements if measurement.signal is not None]
+            return again([again.case(signal, changes) for signal in signals])
 
         return full_steps(result, [measurement.target for measurement in measurements], simulate)
 
@@ -167,126 +160,21 @@ def study(runs: CarRuns, folder: Path, *, quick: bool) -> Findings:
     )
 
 
-def own_study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
-    """Fit parameters to FRFs and time histories of files."""
-    tuning = Tuning(runs)
-    parameters: Sequence[Range] = parse_parameters(options.fit, tuning.vehicle)
-    require_fittable(parameters, tuning.vehicle)
-    measurements = own_measurements(options, runs.car())
-    notices = [f"- {text}" for entry in measurements for text in entry.notices]
-    for text in notices:
-        print(f"notice: {text.removeprefix('- ')}", file=sys.stderr, flush=True)
-    if not options.fit:
-        stuck = all(isinstance(entry.target, FrfTarget) and entry.target.signal is None for entry in measurements)
-        parameters = [entry for entry in AUTHORS if not stuck or entry.path not in SLIDING]
-    result = tuning.fit("fit", parameters, [entry.target for entry in measurements])
-    final = None if options.quick else tuning.finish(result, measurements, None)
-    result = result if final is None else final.result
-    files = [path.name for path in (*options.frf, *options.record)]
-    _draw(folder, tuning, result, measurements, ", ".join(files))
-    parameter_figure(folder / "parameters.png", {"fit": result}, {})
-    return Findings(
-        title=f"Parameters fitted to {', '.join(files)}",
-        claims=own_claims(result, final),
-        tyres=tuning.vehicle.driving.words,
-        notes=[*fit_notes("The fit", result, final), *(["The files:\n\n" + "\n".join(notices)] if notices else [])],
-        data={"all": fit_numbers(result)},
-        values=value_lines(result, tuning.vehicle),
-        own_data=True,
-    )
-
-
 def _draw(
     folder: Path, tuning: Tuning, result: TuningResult, measurements: Sequence[MeasuredTarget], source: str
 ) -> None:
     """Draw data, start and fit of every target, and the correlations."""
     start = tuning.build({measurement.path: measurement.start for measurement in result.parameters})
     end = tuning.build(result.values)
-    for index, measurement in enumerate(measurements):
-        if isinstance(measurement.target, FrfTarget):
-            level_figure(
-                folder / f"frf_{index + 1}_{measurement.target.name}.png", measurement.target, start, end, source
-            )
-    records = [measurement.target for measurement in measurements if isinstance(measurement.target, RecordTarget)]
-    if records:
-        record_figure(folder / "records.png", records, start, end, source)
-    correlation_figure(folder / "correlation.png", result)
-
-
-def add_options(study_options: Parser) -> None:
-    """Add the options of this study."""
-    study_options.add_argument(
-        "--frf",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="measured FRFs, or accelerations with the plate, in any format of `inspect`; repeatable",
-    )
-    study_options.add_argument(
-        "--record",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="own time histories, of a bump or of anything else, in any format of `inspect`; repeatable",
-    )
-    own_group = study_options.scoped_group(
-        "own data", needs="--frf or --record", active=lambda options: bool(options.frf or options.record)
-    )
-    responses = study_options.scoped_group("own FRFs", needs="--frf", active=lambda options: bool(options.frf))
-    records = study_options.scoped_group(
-        "own time histories", needs="--record", active=lambda options: bool(options.record)
-    )
-    responses.add_argument(
-        "--level",
-        action="append",
-        default=[],
-        metavar="low|FILE.csv",
-        help="one for each --frf: low takes the linear car with stuck dampers; else the displacement signal that the "
-        "FRFs were measured with",
-    )
-    records.add_argument(
-        "--signal",
-        action="append",
-        default=[],
-        metavar="FILE",
-        help="one for each --record: the displacement of the plate, which begins with the record",
-    )
-    records.add_argument(
-        "--delay", type=float, default=0.0, metavar="S", help="the records began this long after it [s]"
-    )
-    drift_option(records)
-    records.add_argument("--stretch", metavar="FROM:TO", help="part of the signals that counts for --record [s]")
-    records.add_argument(
-        "--lowpass", type=float, default=100.0, metavar="HZ", help="records are compared below it; %(default)g Hz"
-    )
-    mapping_options(own_group)
-    record_options(own_group, "", channel=False)
-    own_group.add_argument(
-        "--fit",
-        action="append",
-        default=[],
-        metavar=TEXT,
-        help="parameter, its bounds and where the fit begins; those of Bommer 2006 by default; may be repeated",
-    )
-    own_group.add_argument(
-        "--channel",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help=f"channel that counts; by default {', '.join(CHANNELS)} of FRFs, all but the plates of records; may be "
-        "repeated",
-    )
-    responses.add_argument(
-        "--band", default=f"{BAND[0]:g}:{BAND[1]:g}", metavar="LOW:HIGH", help="fitted frequencies [Hz]; %(default)s"
-    )
-    responses.add_argument(
-        "--spacing", type=float, default=SPACING, metavar="HZ", help="distance of the frequencies [Hz]; %(default)g"
-    )
-    responses.add_argument(
-        "--window", type=float, metavar="S", help="the FRFs were averaged over Hann windows this long"
-    )
+    for index, measurement in enumerate(measurements, 1):
+        target = measurement.target
+        if isinstance(target, FrfTarget):
+            file = folder / f"frf_{index}_{target.name}.png"
+            write_whole(file, partial(plot_responses, target=target, start=start, fitted=end, source=source))
+        else:
+            file = folder / f"time_{index}_{target.name}.png"
+            write_whole(file, partial(plot_histories, target=target, start=start, fitted=end, source=source))
+    write_whole(folder / "correlation.png", partial(plot_correlation, result=result))
 
 
 LONGEST_STEP = 5e-4
@@ -296,12 +184,10 @@ LONGEST_STEP = 5e-4
 def _study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     step = f"solver.timestep={min(LONGEST_STEP, runs.car().vehicle.solver.step)!r}"
     runs = CarRuns(vehicle=runs.vehicle, overrides=(*runs.overrides, step), engine=runs.engine, jobs=runs.jobs)
-    if options.frf or options.record:
-        return own_study(runs, folder, options)
     return study(runs, folder, quick=options.quick)
 
 
-main = car_study("tuning", _study, add_options)
+main = car_study("tuning", _study)
 
 
 if __name__ == "__main__":

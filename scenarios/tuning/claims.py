@@ -9,8 +9,6 @@ from typing import Any
 
 from scenarios.claims import OWN_CHECK, Claim, markdown
 from scenarios.tuning.data import NOISE, SLIDING
-from vehicle.model.parameters.paths import unit_of
-from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.full_steps import SMALL, FullSteps
 from vehicle.studies.tuning.identifiability import WIDEST
@@ -28,20 +26,6 @@ def demonstration_claims(final: FullSteps, from_records: FullSteps | None, true:
         claims += [_recovered(f"{path}, bump records alone", from_records.result, path, true[path]) for path in SLIDING]
         claims.append(_checked("bump records alone", from_records))
     return claims
-
-
-def own_claims(result: TuningResult, final: FullSteps | None) -> list[Claim]:
-    """Return the rows on a minimum inside the bounds, and on the final check."""
-    claims = [
-        OWN_CHECK.statement(
-            "the fit ends at a minimum within its bounds",
-            "yes",
-            result.message if not result.at_bound else f"at a bound: {', '.join(result.at_bound)}",
-            result.converged and not result.at_bound,
-            "a value at a bound means wrong bounds, or a model that cannot follow the data",
-        )
-    ]
-    return claims if final is None else [*claims, _checked("the fit", final)]
 
 
 def _recovered(name: str, result: TuningResult, path: str, true: float) -> Claim:
@@ -72,28 +56,6 @@ def _checked(name: str, final: FullSteps) -> Claim:
         final.settled,
         f"Gauss-Newton steps with the Jacobian of the fast models; the last must be below {SMALL:g} standard errors",
     )
-
-
-def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
-    """Return fitted values with their standard errors and units, and the options that set them in every command.
-
-    Args:
-        result: of a fit.
-        vehicle: the car, for the units.
-    """
-    width = max((len(parameter.path) for parameter in result.parameters), default=0)
-    lines = []
-    for parameter in result.parameters:
-        error, start = result.standard_errors.get(parameter.path, math.nan), f"started at {parameter.start:g}"
-        spread = f"+- {error:.2g}" if math.isfinite(error) else "not identified by the data, held"
-        lines.append(
-            f"{parameter.path:<{width}}  {result.values[parameter.path]:.6g} {spread} "
-            f"{unit_of(vehicle, parameter.path)}, {start}"
-        )
-    settings = " ".join(
-        f"--set {parameter.path}={result.values[parameter.path]:.8g}" for parameter in result.parameters
-    )
-    return [*lines, settings]
 
 
 def data_note(measurements: Sequence[MeasuredTarget], engine: str, quick: bool) -> str:

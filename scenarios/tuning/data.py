@@ -10,10 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.car_runs import CarRuns
-from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
-from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import channel_units
 from vehicle.runs.car import Run
 from vehicle.runs.output.folder import write_whole
@@ -23,7 +21,6 @@ from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records.frf_file import read_frf, write_frf
 from vehicle.signals.records.table import Record
-from vehicle.studies.tuning.car_fit import ranges_of
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
@@ -168,24 +165,3 @@ SLIDING = ("damper.viscous", "damper.coulomb_friction")
 
 QUICK = ("bushings.suspension_mount.stiffness.z", "damper.coulomb_friction")
 """Fitted with --quick; the others stay at the values of the vehicle file, which the data then have too."""
-
-TEXT = "PATH=LOWER:UPPER or PATH=LOWER:UPPER:START"
-
-
-def parse_parameters(texts: Sequence[str], vehicle: Vehicle) -> tuple[Range, ...]:
-    """Parse the parameters of the option --fit; the default start is the value of the vehicle.
-
-    Raises:
-        ConfigurationError: a text, a path or a bound is wrong.
-    """
-    parameters: list[Range] = []
-    for text in texts:
-        path, separator, numbers = text.partition("=")
-        try:
-            values = [float(number) for number in numbers.split(":")]
-        except ValueError:
-            values = []
-        if not separator or len(values) not in (2, 3):
-            raise ConfigurationError(f"--fit {text}: needed is {TEXT}, as in damper.viscous=500:5000:1500")
-        parameters += ranges_of(vehicle, {path: (values[0], values[1], *values[2:])})
-    return tuple(parameters)

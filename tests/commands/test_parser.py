@@ -112,6 +112,7 @@ SAME_IDEA = {
     "--wheel": "a wheel of the car",
     "--speed": "speed of the car; on a road also a channel of its record",
     "--video": "a film",
+    "--from": "where something begins: at a time of a file, or with a template car",
 }
 """Options whose values are written in several ways, and the one meaning that they have."""
 

@@ -18,7 +18,6 @@ from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.signals.excitation.bump import bump
 
 
@@ -58,7 +57,6 @@ def test_first_slips_and_what_is_not_judged(results):
     assert {"histories_vertical.png", "histories_horizontal.png", "friction.png", "ring_down.png"} < names
 
 
-@pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 def test_seeds_differ_by_their_noise_and_a_stuck_damper_is_told():
     stuck = 1e5
     seeds = many_seeds(CarRuns(), "height", (125.0, stuck), 2)

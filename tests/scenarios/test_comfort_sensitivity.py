@@ -34,15 +34,12 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_peak,
 )
 from scenarios.evidence import LEVELS, evidence_of, status_of
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
-
-needs_reduced = pytest.mark.skipif(not has_compiler(), reason="the reduced engine needs numba")
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +49,6 @@ def results(tmp_path_factory):
     return folder
 
 
-@needs_reduced
 def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert {path.name for path in results.iterdir()} == {
@@ -81,7 +77,6 @@ def observe(cases, folder):
     return [SimpleNamespace(**numbers) for numbers in comfort(cases)]
 
 
-@needs_reduced
 def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale(tmp_path):
     # All but friction is linear and gravity's part is a constant: x(2 Fd, 2 z) = 2 x(Fd, z), with the smooth law
     # reaching its limit at twice the velocity. So the curve over Fd and the one over the level of the road are one.
@@ -98,7 +93,6 @@ def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale(
     assert two.lowest_load - static == pytest.approx(2.0 * (single.lowest_load - static), rel=1e-6)
 
 
-@needs_reduced
 def test_the_lead_is_left_out():
     measure = RoadMeasure(lead=3.0, wheel="fl")
     run = Car.load().run(question().source.signal(), engine="reduced", channels=measure.channels)
@@ -113,7 +107,6 @@ def test_the_lead_is_left_out():
     assert RoadMeasure(lead=0.0, wheel="fl")(run)["slip"] != late["slip"]
 
 
-@needs_reduced
 def test_histories_of_several_cars_are_those_of_their_runs(tmp_path):
     comfort = ComfortRuns(CarRuns(engine="reduced"), Records(count=1, duration=8.0, lead=3.0), tmp_path)
     soft = ("damper.coulomb_friction=62.5",)
@@ -125,7 +118,6 @@ def test_histories_of_several_cars_are_those_of_their_runs(tmp_path):
     assert comfort.histories([soft], "smooth")[0] is both[1]
 
 
-@needs_reduced
 def test_a_run_that_fails_stops_the_study_with_its_reason(tmp_path):
     with pytest.raises(SimulationError, match=r"road, damper\.coulomb_friction=-5.*must be"):
         observe([question(("damper.coulomb_friction=-5",))], tmp_path)
@@ -206,7 +198,6 @@ def test_an_end_that_disagrees_tells_what_experiments_changed():
     )
 
 
-@needs_reduced
 def test_levels_are_windows_of_all_cars_of_a_figure(tmp_path):
     comfort = ComfortRuns(CarRuns(engine="auto"), Records(count=2, duration=30.0, lead=2.0), tmp_path)
     levels = road_levels(comfort)
@@ -320,7 +311,7 @@ def test_the_options_choose_records_and_engine():
     with pytest.raises(ConfigurationError, match="at least 1"):
         records_of(parser.parse_args(["--records", "0"]))
     assert chosen_engine("mujoco") == "mujoco"
-    assert chosen_engine("auto") == ("reduced" if has_compiler() else "mujoco")
+    assert chosen_engine("auto") == "reduced"
 
 
 class Answers(ComfortRuns):
@@ -337,7 +328,6 @@ class Answers(ComfortRuns):
         return results
 
 
-@needs_reduced
 def test_what_goes_beyond_the_source_is_asked_at_once_and_reported(tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(beyond, "draw_variation", lambda path, *_, **__: drawn.append(path.name))

@@ -10,7 +10,6 @@ import pytest
 from scenarios.road.__main__ import main
 from scenarios.road.findings import friction_claims, ratio, scaling_claim
 from scenarios.road.runs import Ride, RideRuns, one_sided_tyres
-from tests.scenarios.test_comfort_sensitivity import needs_reduced
 from vehicle.model.parameters.force_elements import Bushing
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -32,7 +31,6 @@ def car(tmp_path_factory):
     return path
 
 
-@needs_reduced
 def test_a_short_study(car, tmp_path):
     folder = tmp_path / "road"
     assert main(["--output", str(folder), "--quick", "--vehicle", str(car)]) == 0
@@ -47,7 +45,6 @@ def test_a_short_study(car, tmp_path):
     assert content["rows"] == []  # one short record judges nothing
 
 
-@needs_reduced
 def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
     """u = a U(F / a): the reduced engine is linear except for the dampers, solved iteratively to 1e-9 N."""
     runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)

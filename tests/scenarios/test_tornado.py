@@ -8,10 +8,9 @@ import pytest
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import ComfortRuns, Records
 from scenarios.tornado import PARAMETERS, Bar, bar_table, ends, main, tornado_claims
-from tests.scenarios.test_comfort_sensitivity import made, needs_reduced
+from tests.scenarios.test_comfort_sensitivity import made
 
 
-@needs_reduced
 def test_a_short_study_ranks_the_parameters(tmp_path):
     folder = tmp_path / "tornado"
     assert main(["--output", str(folder), "--quick"]) == 0

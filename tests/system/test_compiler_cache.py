@@ -15,20 +15,11 @@ from vehicle import compiler
 ROOT = Path(__file__).resolve().parents[2]
 
 SECOND_PROCESS = """
-import numpy as np
-from vehicle.model.laws.damper import RECORD
-from vehicle.model.laws.control_laws import SETTING
-from vehicle.engines.reduced.controlled_dampers import Control
-from vehicle.engines.reduced.pole_stepping import compiled_stepping
-from vehicle.engines.reduced.slope_force import SlopeForces
-march = compiled_stepping(2)
-state, force, laws, curves = np.zeros((2, 3)), np.zeros(2), np.zeros(2, dtype=RECORD), np.zeros((2, 4, 1))
-curves[:, 0], curves[:, 3] = np.inf, 1.0  # one piece without an end
-march(np.zeros((14, 3)), np.zeros((7, 2)), np.zeros((2, 2)), np.eye(2), laws, curves, np.zeros((3, 2)), state,
-      np.zeros(2), force, 1, 1, np.zeros((4, 8)), np.zeros((4, 2)), np.zeros((4, 2)), np.zeros((4, 2)),
-      Control(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=SETTING), np.zeros((0, 8)), np.zeros((0, 2)),
-              np.zeros((0, 2)), np.zeros((0, 9)), np.zeros(1, dtype=np.int64), np.zeros((4, 0, 4))),
-      SlopeForces(np.zeros((0, 8)), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0)))
+from vehicle.engines.reduced.time_stepping import compiled_stepping
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.random_road import random_road
+Car.load().run(random_road(rms=1e-4, seed=1, wheel="fr", duration=1.5), engine="reduced", channels=["seat_rail_acc_z"])
+march = compiled_stepping()
 print(sum(march.stats.cache_hits.values()), sum(march.stats.cache_misses.values()))
 """
 

@@ -17,6 +17,7 @@ COMMANDS = (
     "report",
     "drive",
     "optimise",
+    "tune",
     "new",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""

@@ -113,10 +113,11 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
+    from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
     from vehicle.studies.optimisation.car_search import plan_search, require_counts
     from vehicle.studies.optimisation.car_table import CARS
-    from vehicle.studies.optimisation.problem import parsed_range, parsed_tolerance
+    from vehicle.studies.optimisation.problem import parsed_tolerance
     from vehicle.studies.optimisation.search_files import read_other_front
     from vehicle.studies.sweeps.executors import executor_factory
 
@@ -124,7 +125,7 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_search(
         car,
-        [parsed_range(text) for text in options.vary],
+        [parsed_variation("--vary", text).range() for text in options.vary],
         chosen_inputs(options, car.vehicle),
         options.minimise,
         maximise=options.maximise,

@@ -29,7 +29,8 @@ def command_parser(name: str, description: str) -> Parser:
     return parser
 
 
-VEHICLE_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}; the car of Bommer 2006 by default"
+CAR_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}"
+VEHICLE_HELP = f"{CAR_HELP}; the car of Bommer 2006 by default"
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -39,9 +38,10 @@ def parser() -> Parser:
         "--vary",
         action="append",
         default=[],
-        metavar="PATH=V1,V2,...",
-        help="values of a parameter, as damper.coulomb_friction=62.5,125, or of a component of a vector, as "
-        "bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: every combination",
+        metavar="PATH=VALUES",
+        help="values of a parameter, as damper.coulomb_friction=62.5,125, or 62.5:125:6 for six equally spaced ones; "
+        "of a component of a vector, as bushings.tyre.stiffness.z=2e5,2.5e5; a whole vector is [x,y,z]; repeated: "
+        "every combination",
     )
     parser.add_argument(
         "--table",
@@ -77,7 +77,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.sweep_table import read_variations
 
     if bool(options.vary) == bool(options.table):
-        raise ConfigurationError("give either --vary PATH=V1,V2 (once or more) or --table FILE.csv")
+        raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
     changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
@@ -125,24 +125,18 @@ def every_combination(texts: Sequence[str]) -> Combinations:
     """Return all combinations of `--vary`; the last path varies fastest.
 
     Raises:
-        ConfigurationError: an option is not PATH=V1,V2,...
+        ConfigurationError: an option is not PATH=A,B,C or PATH=A:B:N, or a path occurs twice.
     """
     from vehicle.errors import ConfigurationError
+    from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.studies.sweeps.case_table import Combinations
 
     columns: dict[str, list[str]] = {}
     for text in texts:
-        path, separator, listed = text.partition("=")
-        # A comma within brackets belongs to a vector.
-        items = [item.strip() for item in re.split(r",(?![^\[]*\])", listed)]
-        if not separator or not path.strip() or not all(items):
-            raise ConfigurationError(
-                f"--vary {text}: must be PATH=V1,V2,... as in damper.coulomb_friction=62.5,125; the path of one "
-                "component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
-            )
-        if path.strip() in columns:
-            raise ConfigurationError(f"--vary {path.strip()}: given twice; list all its values in one option")
-        columns[path.strip()] = [f"{path.strip()}={item}" for item in items]
+        variation = parsed_variation("--vary", text)
+        if variation.path in columns:
+            raise ConfigurationError(f"--vary {variation.path}: given twice; list all its values in one option")
+        columns[variation.path] = [f"{variation.path}={value}" for value in variation.listed()]
     return Combinations(list(columns.values()))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car
@@ -43,13 +43,13 @@ def road(car: Car, level: str, duration: float) -> Signal:
     return drive(surface, speed=SPEED, wheels=wheels, duration=duration)
 
 
-def run_reduced(car: Car, signal: Signal, *, present_load: bool = True) -> Recording:
+def run_reduced(car: Car, signal: Signal, *, present_load: bool = True, step: float | None = None) -> Recording:
     """A run with present or static wheel loads on slopes.
 
     Args:
         car: the car.
         signal: road.
-        present_load: see `simulate_reduced`.
+        present_load, step: see `simulate_reduced`.
     """
     return simulate_reduced(
         car.poles,
@@ -58,6 +58,7 @@ def run_reduced(car: Car, signal: Signal, *, present_load: bool = True) -> Recor
         record_rate=car.vehicle.solver.record_rate,
         tyre_load=car.static.tyre_load,
         present_load=present_load,
+        step=step,
     )
 
 
@@ -90,8 +91,8 @@ def test_engines_differ_by_arcs_of_the_wheels_alone(name: str, level: str, arcs:
             assert rms(even[2] - even[1]) > 0.9 * rms(even[1]), channel
 
 
-def test_a_batch_takes_static_loads_on_slopes() -> None:
-    """That matters along x alone, and not in the sum over the axes."""
+def test_a_batch_of_rolling_cars_is_the_single_run_at_its_step() -> None:
+    """Current loads on slopes, and small lateral motion beside large vertical motion, in single precision."""
     car = Car.load("sedan", [f"driving.speed={SPEED}"])
     signal = road(car, "B", 4.0)
     channels = [f"seat_rail_acc_{axis}" for axis in "xyz"]
@@ -104,10 +105,9 @@ def test_a_batch_takes_static_loads_on_slopes() -> None:
         tyre_load=2 * [car.static.tyre_load],
         channels=channels,
     ).recording(1)
-    present, static = (run_reduced(car, signal, present_load=load) for load in (True, False))
+    present, static = (run_reduced(car, signal, present_load=load, step=COARSE_STEP) for load in (True, False))
     for channel in channels:
-        # Not point by point: single precision leaves noise along y above 100 Hz, 2 % of the rail.
-        assert abs(rms(batch[channel]) / rms(static[channel]) - 1.0) < 1e-3, channel
-    total, other = (np.sqrt(sum(rms(run[channel]) ** 2 for channel in channels)) for run in (batch, present))
-    assert abs(total / other - 1.0) < 2e-3
-    assert 1e-2 < rms(present[channels[0]] - batch[channels[0]]) / rms(present[channels[0]]) < 0.1
+        # Point by point; from differences of the states, round-off would be 2 % along y.
+        assert rms(batch[channel] - present[channel]) < 3e-3 * rms(present[channel]), channel
+        assert abs(rms(batch[channel]) / rms(present[channel]) - 1.0) < 2e-5, channel
+    assert 1e-2 < rms(present[channels[0]] - static[channels[0]]) / rms(present[channels[0]]) < 0.1

@@ -11,7 +11,7 @@ import pytest
 
 from tests.studies.optimisation.search_problems import box
 from vehicle.errors import ConfigurationError
-from vehicle.studies.optimisation.problem import Criterion, Tolerance, parsed_criteria, parsed_range, parsed_tolerance
+from vehicle.studies.optimisation.problem import Criterion, Tolerance, parsed_criteria, parsed_tolerance
 from vehicle.studies.optimisation.trials import Spread, Trials, bands, on_executor, samples_for
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_result import Block, Result
@@ -59,17 +59,7 @@ def test_bad_wishes(minimise, limits, said):
     assert str(caught.value) == said
 
 
-@pytest.mark.parametrize("text", ["damper.viscous", "=1:2", "damper.viscous=1", "damper.viscous=a:2", "d=1:inf"])
-def test_bad_bounds(text):
-    with pytest.raises(ConfigurationError) as caught:
-        parsed_range(text)
-    assert str(caught.value) == f"--vary {text}: must be PATH=LOW:HIGH, as front.damper.viscous=800:4000"
-
-
-def test_bounds_and_tolerances():
-    assert (parsed_range("a.b=-1e3:2").low, parsed_range("a.b=-1e3:2").path) == (-1000.0, "a.b")
-    with pytest.raises(ConfigurationError, match=r"^--vary a=2:2: the lower bound must be below the upper one$"):
-        parsed_range("a=2:2")
+def test_tolerances():
     assert parsed_tolerance("a=15%").value_at(200.0, -0.5) == pytest.approx(185.0)
     assert parsed_tolerance("a=15").value_at(200.0, -0.5) == pytest.approx(192.5)
     with pytest.raises(ConfigurationError, match=r"^--tolerance a=0: must be PATH=NUMBER in the unit"):

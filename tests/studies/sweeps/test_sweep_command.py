@@ -71,9 +71,10 @@ def test_a_table_of_variations(tmp_path):
     ("arguments", "message", "code"),
     [
         ([], "give either --vary", 2),
-        (["--vary", "damper.viscous"], "must be PATH=V1,V2", 2),
-        (["--vary", "damper.viscous=1,,2"], "must be PATH=V1,V2", 2),
+        (["--vary", "damper.viscous"], "must be PATH=A,B,C, PATH=A:B:N", 2),
+        (["--vary", "damper.viscous=1,,2"], "must be PATH=A,B,C, PATH=A:B:N", 2),
         (["--vary", "a=1", "--vary", "a=2"], "given twice", 2),
+        (["--vary", "damper.viscous=1:2"], "contains bounds; needed are values", 2),
         (["--vary", "damper.viscous=1000", "--skip", "3"], "--skip 3 s: allowed is 0 s to less than road, 3 s", 2),
         (["--vary", "damper.viscous=1000", "--skip", "-5"], "--skip -5 s: allowed is 0 s to", 2),
         (["--vary", "damper.viscous=1000", "--skip", "nan"], "--skip nan s: allowed is 0 s to", 2),

@@ -1,4 +1,4 @@
-"""Batch of cars on one signal: eight at once, in single precision, with longer steps than a single run.
+"""Batch of cars on one signal, with longer steps than a single run: eight at once in single precision where possible.
 
 Linear parts are exact at any step, and a stuck damper has third order, so the step only limits the accuracy of the
 instants of sticking and slipping. At `COARSE_STEP` comfort values agree with those of a single run within 0.15 % and
@@ -15,14 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.reduced.batch_factors import car_factors
-from vehicle.engines.reduced.batch_group import BatchGroup
-from vehicle.engines.reduced.batch_layout import LANES
+from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.pole_model import PoleModel
-from vehicle.engines.reduced.pole_stepping import MISSING, has_compiler
 from vehicle.engines.reduced.reduced_run import simulate_reduced
+from vehicle.engines.reduced.step_factors import LARGEST_COUPLING, SLOWEST, CarFactors, car_factors
+from vehicle.engines.reduced.table_layout import LANES, SINGLE
 from vehicle.engines.simulation.recording import Recording, Statistics
-from vehicle.errors import ConfigurationError, MissingPartError
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -82,8 +81,9 @@ def simulate_batch(
 ) -> BatchRuns:
     """Simulate a batch of cars of one topology on the same plates with the reduced engine.
 
-    The values of a car are bitwise independent of the other cars. Cars that `car_factors` leaves out are simulated one
-    at a time by `simulate_reduced`.
+    The values of a car are bitwise independent of the other cars. Cars with controlled or strongly coupled dampers,
+    or with a pole near zero, are simulated one at a time in double precision: the bits of `simulate_reduced` at the
+    same step.
 
     Args:
         models: pole models of the cars, with the same wheels, dampers, bodies and channels.
@@ -98,20 +98,17 @@ def simulate_batch(
         The channels of all cars.
 
     Raises:
-        MissingPartError: numba is not installed.
         ConfigurationError: the list of cars is empty.
     """
-    if not has_compiler():
-        raise MissingPartError(MISSING)
     if not models:
         raise ConfigurationError("simulate_batch: the list of cars is empty")
-    interval = 1.0 / record_rate
-    timestep = interval / int(np.ceil(interval / step - 1e-9))
-    samples = int(np.floor(signal.duration / interval + 1e-6)) + 1
+    samples, every = time_steps(signal, record_rate, step)
+    interval, wheels = 1.0 / record_rate, models[0].matrices.system.inputs
     table = np.empty((len(channels), len(models), samples))
     statistics: dict[int, Statistics] = {}
-    wheels = models[0].matrices.system.inputs
-    factors = car_factors(models, dampers, timestep, [wheels.index(wheel) for wheel in signal.wheels])
+    factors = _single_precision_factors(
+        models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels]
+    )
     for car in {*range(len(models))} - {*factors}:
         run = simulate_reduced(
             models[car],
@@ -120,7 +117,7 @@ def simulate_batch(
             record_rate=record_rate,
             tyre_load=tyre_load[car],
             channels=channels,
-            present_load=False,
+            step=step,
         )
         statistics[car] = run.statistics
         table[:, car] = [run[name] for name in channels]
@@ -129,20 +126,21 @@ def simulate_batch(
     for first in range(0, len(ordered_cars), LANES):
         cars = ordered_cars[first : first + LANES]
         started = clock.perf_counter()
-        group = BatchGroup([models[car] for car in cars], [factors[car] for car in cars], signal, interval, timestep)
-        validities = group.fill(table, cars, channels, [dampers[car] for car in cars], [tyre_load[car] for car in cars])
+        group = GroupRun(
+            [models[car] for car in cars],
+            [factors[car] for car in cars],
+            [dampers[car] for car in cars],
+            [tyre_load[car] for car in cars],
+            signal,
+            interval,
+            every,
+            SINGLE,
+            present_load=models[0].slope.shape[1] > 0,
+        )
+        validities = group.fill(table, cars, channels)
         time_of_car = (clock.perf_counter() - started) / len(cars)
         for car, validity in zip(cars, validities, strict=True):
-            statistics[car] = Statistics(
-                engine="reduced",
-                callback="native",
-                timestep=timestep,
-                steps=(samples - 1) * round(interval / timestep),
-                wall_time=time_of_car,
-                warnings=validity.warnings(),
-                within_validity=validity.within_limits,
-                energies=None,
-            )
+            statistics[car] = group.statistics(validity, samples, time_of_car)
     return BatchRuns(
         time=uniform_time(samples=samples, timestep=interval),
         channels=dict(zip(channels, table, strict=True)),
@@ -150,3 +148,27 @@ def simulate_batch(
         excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
         statistics=tuple(statistics[car] for car in range(len(models))),
     )
+
+
+def _single_precision_factors(
+    models: Sequence[PoleModel], dampers: Sequence[Sequence[Damper]], timestep: float, columns: Sequence[int]
+) -> dict[int, CarFactors]:
+    """Return the factors of the cars for which single precision is sufficient, by their index.
+
+    Args:
+        models, dampers: pole models and damper laws of the cars.
+        timestep: time step [s].
+        columns: indices of the driven plates.
+    """
+    suitable = [
+        car
+        for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
+        if not any(law.controlled for law in laws) and np.min(np.abs(model.poles)) >= SLOWEST
+    ]
+    rolling = models[0].slope.shape[1] > 0
+    factors = car_factors([models[car] for car in suitable], timestep, columns, exact=False, present_load=rolling)
+    return {
+        car: factors_of_car
+        for car, factors_of_car in zip(suitable, factors, strict=True)
+        if factors_of_car.coupling <= LARGEST_COUPLING
+    }

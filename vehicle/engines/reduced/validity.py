@@ -15,8 +15,6 @@ import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices, LinearSegment
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
-from vehicle.engines.reduced.readout import Readout
-from vehicle.engines.reduced.step_factors import StepFactors
 
 Vector = npt.NDArray[np.float64]
 
@@ -135,58 +133,3 @@ def exceeded_segments(segments: Sequence[LinearSegment], low: Vector, high: Vect
         for segment, a, b in zip(segments, low.tolist(), high.tolist(), strict=True)
     ]
     return {segment.name: distance for segment, distance in zip(segments, excess, strict=True) if distance > 0.0}
-
-
-class ValidityWatch:
-    """Monitor of the largest rotations, lowest tyre loads and extreme displacements of a run.
-
-    Args:
-        model: pole model of the car.
-        factors: factors of the step.
-        columns: driven columns, see `Readout`.
-        tyre_load: static tyre loads [N] by wheel.
-        interval: time between two samples [s].
-    """
-
-    def __init__(
-        self,
-        model: PoleModel,
-        factors: StepFactors,
-        columns: Sequence[int],
-        tyre_load: Mapping[str, float],
-        interval: float,
-    ) -> None:
-        self.every = check_stride(interval)
-        self.matrices, self.bodies = (
-            model.matrices,
-            tuple(body for body in model.matrices.body_rows if body not in model.matrices.spinning),
-        )
-        self.rotations, self.tyres, self.stretches = (
-            Readout(outputs, factors, model.pairs, columns)
-            for outputs in (rotation_outputs(model, self.bodies), tyre_outputs(model), segment_outputs(model))
-        )
-        self.static = np.array([tyre_load[wheel] for wheel in model.matrices.system.inputs])
-        self.angle, self.load = np.zeros(len(self.bodies)), self.static.copy()
-        self.low, self.high = np.zeros((2, len(model.matrices.segments)))
-
-    def update(self, states: Vector, plates: Vector, before: Vector) -> None:
-        """Update the extremes by a block of samples; see `Readout.at` for the arguments."""
-        checked = slice(None, None, self.every)
-        rotations = self.rotations.at(states[checked], plates[checked], before[checked]).reshape(
-            len(self.bodies), 3, -1
-        )
-        self.angle = np.maximum(self.angle, np.sqrt(np.max(np.sum(rotations**2, axis=1), axis=1)))
-        loads = self.tyres.at(states[checked], plates[checked], before[checked]) + self.static[:, None]
-        self.load = np.minimum(self.load, np.min(loads, axis=1))
-        if self.matrices.segments:
-            values = self.stretches.at(states, plates, before)
-            self.low, self.high = np.minimum(self.low, values.min(axis=1)), np.maximum(self.high, values.max(axis=1))
-
-    def result(self) -> Validity:
-        """Return the extremes of the run."""
-        return Validity(
-            angles=dict(zip(self.bodies, self.angle.tolist(), strict=True)),
-            loads=dict(zip(self.matrices.system.inputs, self.load.tolist(), strict=True)),
-            one_sided=self.matrices.one_sided,
-            exceeded=exceeded_segments(self.matrices.segments, self.low, self.high),
-        )

@@ -1,8 +1,9 @@
-"""Range of a parameter: sampled uniformly, or fitted from a start value."""
+"""Range of a parameter: sampled uniformly, or fitted from a start value; and the texts of values and ranges."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -50,6 +51,92 @@ class Range:
     def value(self, logarithm: float) -> float:
         """Return the value at u = ln(value / start)."""
         return self.start * math.exp(logarithm)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Variation:
+    """Values or bounds of a parameter as the text of an option: `a,b,c`, `a:b:n` or `a:b`.
+
+    Attributes:
+        option: the option as typed, for messages.
+        path: path of the parameter, see `vehicle.model.parameters.paths`.
+        values: values as texts; empty for bounds.
+        bounds: lower and upper bound; None for values.
+    """
+
+    option: str
+    path: str
+    values: tuple[str, ...] = ()
+    bounds: tuple[float, float] | None = None
+
+    def listed(self) -> tuple[str, ...]:
+        """Return the values.
+
+        Raises:
+            ConfigurationError: the text contains bounds without a number of values.
+        """
+        if self.bounds is not None:
+            raise ConfigurationError(
+                f"{self.option}: contains bounds; needed are values, as PATH=A,B,C, or PATH=A:B:N for N equally spaced "
+                f"ones: {self.path}={self.bounds[0]:g}:{self.bounds[1]:g}:5"
+            )
+        return self.values
+
+    def range(self) -> Range:
+        """Return the range between the bounds, without a start value.
+
+        Raises:
+            ConfigurationError: the text contains values.
+        """
+        if self.bounds is None:
+            raise ConfigurationError(
+                f"{self.option}: contains values; needed are two bounds, PATH=LOW:HIGH, as damper.viscous=800:4000"
+            )
+        return Range(path=self.path, low=self.bounds[0], high=self.bounds[1])
+
+
+def parsed_variation(option: str, text: str) -> Variation:
+    """Parse the text of an option: `PATH=A,B,C` values, `PATH=A:B:N` equally spaced values, `PATH=A:B` bounds.
+
+    Args:
+        option: name of the option, for messages.
+        text: value of the option.
+
+    Raises:
+        ConfigurationError: an unknown form, descending bounds, or a number of values below 2.
+    """
+    typed = f"{option} {text}"
+    path, separator, content = (part.strip() for part in text.partition("="))
+    # Commas within brackets separate the components of a vector.
+    items = tuple(item.strip() for item in re.split(r",(?![^\[]*\])", content))
+    if not separator or not path or not all(items):
+        raise ConfigurationError(
+            f"{typed}: must be PATH=A,B,C, PATH=A:B:N or PATH=A:B, as in damper.coulomb_friction=62.5,125; the path of "
+            "one component of a vector ends with its axis: bushings.tyre.stiffness.z=2e5,2.5e5"
+        )
+    parts = [_number(part) for part in content.split(":")]
+    if len(items) > 1 or len(parts) == 1 or all(math.isnan(part) for part in parts):
+        return Variation(option=typed, path=path, values=items)
+    if len(parts) not in (2, 3) or not all(math.isfinite(part) for part in parts):
+        raise ConfigurationError(f"{typed}: must be PATH=LOW:HIGH, or PATH=LOW:HIGH:N with N values; all are numbers")
+    low, high = parts[:2]
+    if not low < high:
+        raise ConfigurationError(f"{typed}: the lower bound must be below the upper one")
+    if len(parts) == 2:
+        return Variation(option=typed, path=path, bounds=(low, high))
+    count = int(parts[2])
+    if count != parts[2] or count < 2:
+        raise ConfigurationError(f"{typed}: found {parts[2]:g} values, must be a whole number of at least 2")
+    # The rounding of the sum must not show in the table: 12 digits.
+    spaced = (low + (high - low) * index / (count - 1) for index in range(count))
+    return Variation(option=typed, path=path, values=tuple(f"{float(f'{value:.12g}')!r}" for value in spaced))
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def checked_ranges(ranges: Sequence[Range]) -> tuple[Range, ...]:

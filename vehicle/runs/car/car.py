@@ -21,7 +21,6 @@ from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
-from vehicle.engines.reduced.pole_stepping import has_compiler
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
@@ -328,9 +327,7 @@ class Car:
         loads = [name for name in more if name in self.vehicle.load_channels]
         require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
-        if engine == "auto" and not has_compiler():
-            reason = "numba, which the reduced engine needs, is not installed"
-        elif engine != "mujoco":
+        if engine != "mujoco":
             self.check("reduced")
             recording = simulate_reduced(
                 self.poles,

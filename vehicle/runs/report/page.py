@@ -66,8 +66,11 @@ def report_page(
         done(0.1 + 0.8 * (index + 1) / len(runs))
     before = next((i for i, (_, anchor, _) in enumerate(parts) if anchor == "tables"), len(parts))
     parts.insert(before, ("Modes", "modes", moving_modes(runs, modes)))
+    names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
+    captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
-    page = _document(runs, parts, as_json(car_modes_of(runs, modes)), head)
+    data = as_json(car_modes_of(runs, modes))
+    page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data)
     done(1.0)
     return page
 
@@ -104,22 +107,27 @@ def _of_run(run: FinishedRun, modes: Modes, *, with_car: bool) -> list[tuple[str
     ]
 
 
-def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Markup]], data: str, head: str) -> str:
-    """Return the HTML document; its security policy blocks external content and scripts."""
-    names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
-    title = f"Car on the shaker: {names}"
-    script = _file("modes.js") + _file("print.js")
+def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, str, Markup]], *, modes: str = "") -> str:
+    """Return an HTML document; its security policy blocks external content and scripts.
+
+    Args:
+        title: title of the page.
+        subtitles: lines below the title.
+        parts: title, anchor and content of each section.
+        modes: moving modes as JSON; empty for a page without them.
+    """
+    script = (_file("modes.js") if modes else "") + _file("print.js")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
         f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src 'sha256-{allowed}'"
     )
-    captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
-    top = tag("header", tag("h1", title), tag("p", captions, class_="about"), tag("p", head, class_="about"))
+    top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in subtitles))
     pages = {"responses", "time", "modes", "comparison"}
     body = joined(
         section(name, anchor, content, class_="page" if anchor in pages else None) for name, anchor, content in parts
     )
+    data = f'<script type="application/json" id="mode-data">{modes}</script>\n' if modes else ""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{escaped(policy)}">\n'
@@ -128,7 +136,7 @@ def _document(runs: Sequence[FinishedRun], parts: Sequence[tuple[str, str, Marku
         '<link rel="icon" href="data:,">\n'
         f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
         f"{top}\n{links}\n<main>{body}</main>\n"
-        f'<script type="application/json" id="mode-data">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n'
+        f"{data}<script>{script}</script>\n</body>\n</html>\n"
     )
 
 

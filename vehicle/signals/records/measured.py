@@ -55,6 +55,7 @@ def read_measured(
     inverted: Collection[str] = (),
     window: float | None = None,
     measurement: Measurement | None = None,
+    histories_only: bool = False,
 ) -> Measured:
     """Read channels of a measurement file as frequency responses and time histories of the model.
 
@@ -69,6 +70,8 @@ def read_measured(
         inverted: names of channels whose sign is inverted.
         window: length of Hann windows for estimated responses [s]; by default the whole record is evaluated.
         measurement: contents of the file, if already read.
+        histories_only: True reads time histories alone, which may be short: no frequency response of the file, and
+            none estimated.
 
     Returns:
         Frequency responses [m/s2 per m] and time histories in SI units, as far as contained in the file.
@@ -80,7 +83,7 @@ def read_measured(
     selection = Choice() if choice is None else choice
     file = read_record(path, selection.databases) if measurement is None else measurement
     roles = {name: wanted for name, wanted in selection.channels.items() if name != "time"} or _same_names(
-        file, model_channels
+        file, model_channels, (False,) if histories_only else (True, False)
     )
     unknown = next((name for name in (*roles, *inverted) if name not in model_channels), None)
     if unknown is not None:
@@ -104,7 +107,8 @@ def read_measured(
     spectra = {
         name: wanted
         for name, wanted in roles.items()
-        if is_response(file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)])
+        if not histories_only
+        and is_response(file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)])
     }
     frf: FrfData | None = None
     record: Record | None = None
@@ -125,10 +129,10 @@ def read_measured(
         start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
         record = _record(file, replace(selection, channels={**times, **histories}), inverted)
         notices += record.notices
-        if frf is None:
-            estimate = estimated_frf(record, window)
-            if estimate is not None:
-                frf, estimator = estimate
+        if frf is None and not histories_only:
+            estimated = estimated_frf(record, window)
+            if estimated is not None:
+                frf, estimator = estimated
                 notices.append(f"responses estimated from the time histories: {estimator}")
             elif "m/s2" in record.units.values():
                 notices.append(
@@ -148,10 +152,16 @@ def _is_data(channel: object) -> bool:
     return getattr(channel, "function", "") not in ("coherence", "random error")
 
 
-def _same_names(file: Measurement, model_channels: Sequence[str]) -> dict[str, str]:
-    """Map model channel names to channels named so, or "knuckle_fr_acc_z / plate_fr"; prefer frequency responses."""
+def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequence[bool]) -> dict[str, str]:
+    """Map model channel names to channels named so, or "knuckle_fr_acc_z / plate_fr".
+
+    Args:
+        file: the file.
+        model_channels: channel names of the model.
+        order: True for frequency responses, False for time histories; the first with a name has priority.
+    """
     numbers: dict[str, str] = {}
-    for wants_response in (True, False):
+    for wants_response in order:
         for number, channel in enumerate(file.channels, 1):
             name = channel.name.split(" / plate_")[0]
             if (

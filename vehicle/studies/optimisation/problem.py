@@ -200,21 +200,6 @@ def _criterion(option: str, text: str, sense: float, limit: float, inputs: Seque
     return Criterion(number=number, input_name=input_name, sense=sense, limit=limit)
 
 
-def parsed_range(text: str) -> Range:
-    """Parse a parameter with bounds from the text of an option.
-
-    Raises:
-        ConfigurationError: the text is not PATH=LOW:HIGH with two ascending numbers.
-    """
-    path, _, bounds = (part.strip() for part in text.partition("="))
-    low, _, high = bounds.partition(":")
-    if not path or not math.isfinite(_number(low)) or not math.isfinite(_number(high)):
-        raise ConfigurationError(f"--vary {text}: must be PATH=LOW:HIGH, as front.damper.viscous=800:4000")
-    if not _number(low) < _number(high):
-        raise ConfigurationError(f"--vary {text}: the lower bound must be below the upper one")
-    return Range(path=path, low=_number(low), high=_number(high))
-
-
 def parsed_tolerance(text: str) -> Tolerance:
     """Parse a tolerance from the text of an option.
 

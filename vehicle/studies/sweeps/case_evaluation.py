@@ -13,9 +13,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from vehicle.engines.reduced.batch_layout import LANES
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, BatchRuns, simulate_batch
-from vehicle.engines.reduced.pole_stepping import has_compiler
+from vehicle.engines.reduced.table_layout import LANES
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError, VehicleError
@@ -56,7 +55,7 @@ def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
         are bitwise independent of the other cases.
     """
     results: dict[int, Result] = {}
-    if isinstance(measure, BatchMeasure) and has_compiler():
+    if isinstance(measure, BatchMeasure):
         cars: dict[Hashable, list[int]] = {}
         for number, case in enumerate(cases):
             if case.engine != "mujoco":

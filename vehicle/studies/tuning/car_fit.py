@@ -89,12 +89,12 @@ def require_fittable(parameters: Sequence[Range], vehicle: Vehicle) -> None:
     """
     idle = idle_parameters(vehicle, [f"{parameter.path}={parameter.start!r}" for parameter in parameters])
     if idle:
-        raise ConfigurationError(f"--fit {idle[0]}; add --set")
+        raise ConfigurationError(f"--parameters {idle[0]}; add --set")
     whole = {full_path(vehicle.table, parameter.path): parameter for parameter in parameters}
     for path, static in whole.items():
         sliding = whole.get(path.removesuffix("stribeck_friction") + "coulomb_friction")
         if path.endswith(".stribeck_friction") and sliding is not None and static.low < sliding.high:
             raise ConfigurationError(
-                f"--fit {static.path}={static.low:g}:{static.high:g}: static friction must not be below sliding "
+                f"--parameters {static.path}={static.low:g}:{static.high:g}: static friction must not be below sliding "
                 f"friction, {sliding.path}={sliding.low:g}:{sliding.high:g}; set bounds that do not overlap"
             )

@@ -72,6 +72,11 @@ class FrfTarget:
         return tuple(f"{self.name}, {name}, {part}" for name in self.data.channels for part in ("magnitude", "phase"))
 
     @property
+    def recorded(self) -> tuple[str, ...]:
+        """Return the names of the channels of a run that the target needs."""
+        return (*self.data.channels, f"plate_{self.wheel}_displacement")
+
+    @property
     def deviation(self) -> Vector:
         """Return the standard deviation of ln H [-], (channels, frequencies); NaN where a point is excluded.
 
@@ -93,8 +98,7 @@ class FrfTarget:
             return self.estimated(model)
         if self.signal is None:
             return model.matrix_frf(self.data.channels, self.data.frequency, wheel=self.wheel)
-        channels = [*self.data.channels, f"plate_{self.wheel}_displacement"]
-        return self.estimated(model.run(self.signal, engine="reduced", channels=channels))
+        return self.estimated(model.run(self.signal, engine="reduced", channels=self.recorded))
 
     def estimated(self, run: Run) -> Complex:
         """Estimate the FRFs of a run at the frequencies of the data, (channels, m), with the estimator of the data."""

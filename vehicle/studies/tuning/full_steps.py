@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.runs.car import Run
+from vehicle.runs.car import Car, Run
 from vehicle.studies.tuning.fit_result import TuningResult, target_statistics
 from vehicle.studies.tuning.least_squares import Target
 
@@ -43,7 +43,7 @@ class FullSteps:
 def full_steps(
     result: TuningResult,
     targets: Sequence[Target],
-    simulate: Callable[[Mapping[str, float]], Sequence[Run]],
+    simulate: Callable[[Mapping[str, float]], Sequence[Car | Run]],
     *,
     most_rounds: int = 4,
 ) -> FullSteps:
@@ -57,7 +57,8 @@ def full_steps(
     Args:
         result: result of `fit`.
         targets: targets of the fit, in the same order.
-        simulate: function of {path: value} that returns a run of that car on the signal of each target.
+        simulate: function of {path: value} that returns a run of that car on the signal of each target, or that car
+            for a target without a signal.
         most_rounds: maximum number of full simulations.
 
     Returns:

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.errors import DataError
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.names import CORNERS
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
@@ -19,8 +20,9 @@ from vehicle.signals.records.counterpart import clock_advice, counterparts, run_
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
 from vehicle.signals.records.table import Record
+from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.frf_target import FrfTarget
-from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.record_target import KEPT, RecordTarget
 
 BAND = (3.0, 45.0)
 """Default band of a fit [Hz]: shaker signals excite the car well above 3 Hz, and the body model ends at 43 Hz."""
@@ -29,20 +31,27 @@ SPACING = 0.3
 """Default distance of the fitted frequencies [Hz]: a record of 60 s has 17 lines of 1/60 Hz in this distance, from
 which the FRF is estimated."""
 
+SETTLED = 2.0
+"""Time after which a car that began at rest on a moving plate follows the measured one [s], as for runs on a road: four
+periods of the body bounce near 2 Hz."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MeasuredTarget:
-    """Target of a fit with the plate signal of the measurement and the notices on the file."""
+    """Target of a fit with the plate signal of the measurement and the notices on the file.
+
+    Stuck dampers, whose FRFs are those of the linear car, need no signal.
+    """
 
     target: FrfTarget | RecordTarget
-    signal: Signal
+    signal: Signal | None
     notices: tuple[str, ...] = ()
 
 
 def measured_responses(
     car: Car,
     file: Path | str,
-    signal: Signal | Path | str,
+    signal: Signal | Path | str | None = None,
     channels: Mapping[str, str] | None = None,
     *,
     stuck: bool = False,
@@ -52,21 +61,25 @@ def measured_responses(
     band: tuple[float, float] = BAND,
     spacing: float = SPACING,
     window: float | None = None,
+    averages: float = 1.0,
 ) -> MeasuredTarget:
     """Read measured FRFs of one excitation level as a target of a fit.
 
     Args:
         car: the car, with the channel names of the model.
         file: measurement file of any format, with FRFs, or with time histories of accelerations and their plate.
-        signal: plate displacement of the measurement: a signal, a file, or the name of a shipped file.
+        signal: plate displacement of the measurement: a signal, a file, or the name of a shipped file; by default the
+            plate in the measurement file.
         channels: channel of the model to channel of the file; by default equal names.
-        stuck: True if the dampers stick at this level: the FRFs of the linear car follow from its matrices.
+        stuck: True if the dampers stick at this level: the FRFs of the linear car follow from its matrices, and no
+            signal is needed.
         choice: units, rate and excerpt of the file.
         inverted: channels measured with the opposite sign.
         fitted: channels to be fitted; by default all of `channels`.
         band: lowest and highest frequency [Hz].
         spacing: minimum distance of the frequencies [Hz].
         window: length of the Hann windows of the estimate [s]; by default the whole record is evaluated.
+        averages: number of independent averages of FRFs without a random error; 1 if unknown.
 
     Returns:
         The target; without a measured coherence all lines have equal weights.
@@ -76,27 +89,27 @@ def measured_responses(
         DataError: bad data, no FRF, or too few frequencies.
     """
     path = Path(file)
-    measured = _read(car, path, channels, choice, inverted, window)
+    asked = _asked(choice, channels)
+    measured = _read(car, path, asked, inverted, window)
     frf = measured.frf
     if frf is None:
         raise DataError(
             f"{path}: contains no FRFs, and no plate with accelerations to estimate FRFs from; for time histories use "
-            "--record FILE --signal FILE"
+            "--record FILE"
         )
     data = frf.select(tuple(fitted) or frf.channels, band=band, spacing=spacing)
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
-    plate_signal = _signal(signal, car)
-    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=plate_signal.wheels[0])
-    if stuck:
-        target = replace(target, signal=None)
+    plate_signal = None if stuck else _signal(signal, car, path, measured, asked, inverted)
+    wheel = car.vehicle.shaker_wheel if plate_signal is None else plate_signal.wheels[0]
+    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=wheel, averages=averages)
     return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
 
 
 def measured_histories(
     car: Car,
     file: Path | str,
-    signal: Signal | Path | str,
+    signal: Signal | Path | str | None = None,
     channels: Mapping[str, str] | None = None,
     *,
     choice: Choice | None = None,
@@ -106,48 +119,54 @@ def measured_histories(
     drift: float = 0.0,
     stretch: tuple[float, float] | None = None,
     lowpass: float = 100.0,
-    window: float | None = None,
 ) -> MeasuredTarget:
     """Read measured time histories as a target of a fit, at the times of a run.
 
     Args:
         car: car at the start of the fit; a run of this car shows wrong clocks, signs and units of the file.
         file: measurement file of any format with time histories.
-        signal: plate displacement: a signal, a file, or the name of a shipped file.
+        signal: plate displacement: a signal, a file, or the name of a shipped file; by default the plate in the
+            measurement file, at the times of the record.
         channels, choice, inverted: see `measured_responses`.
         fitted: channels to be fitted; by default all except plates.
         delay: start of the record after the start of the signal [s].
         drift: relative lag of the clock of the record [-].
         stretch: begin and end of the included part of the signal [s]; by default the measured part.
         lowpass: maximum frequency of the comparison of model and measurement [Hz].
-        window: see `measured_responses`; used if the file also contains FRFs.
 
     Returns:
         The target.
 
     Raises:
         ConfigurationError: the file does not exist, the model lacks a channel, or the low-pass is out of range.
-        DataError: bad data, no time history, or no overlap with the signal.
+        DataError: bad data, no time history, no plate signal, no overlap with the signal, or a record that is too
+            short.
     """
-    path, source = Path(file), signal
-    measured, signal = _read(car, path, channels, choice, inverted, window), _signal(source, car)
-    held = None if measured.record is None else measured.record
+    path, contained = Path(file), signal is None
+    asked = _asked(choice, channels)
+    measured = _read(car, path, asked, inverted, None, histories_only=True)
+    held = measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
         raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
+    if contained and (delay, drift) != (0.0, 0.0):
+        raise ConfigurationError(
+            f"{path}: --delay and --drift correct the clock against a signal of another file; this record contains "
+            "its plate. Remove both, or add --signal FILE"
+        )
+    signal = _signal(signal, car, path, measured, asked, inverted)
     if fitted:
         there = ", ".join(names)
         names = [channel for channel in names if channel in fitted]
         if not names:
-            raise DataError(f"{path}: contains no time history of --channel {' '.join(fitted)}; found {there}")
+            raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {there}")
     step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
-    times = run_times(held, delay, drift, measured.start)
+    times = run_times(held, delay, drift, float(held.time[0]) if contained else measured.start)
     inside = np.flatnonzero((grid >= times[0] - 1e-9) & (grid <= times[-1] + 1e-9))
     if inside.size < 3:
-        name = source if isinstance(source, str) else signal.source
         raise DataError(
-            f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {name}, which ends at "
+            f"{path}: measured from {times[0]:.6g} to {times[-1]:.6g} s of the signal {signal.source}, which ends at "
             f"{signal.duration:.6g} s: no overlap; set --delay S, which is added to the measured times"
         )
     histories = {}
@@ -155,8 +174,19 @@ def measured_histories(
         values = at_times(times, held.channels[channel], grid[inside], step)
         histories[channel] = np.interp(np.arange(grid.size), inside, values)  # constant outside the window: excluded
     window_s = (float(grid[inside[0]]), float(grid[inside[-1]]))
+    more: list[str] = []
     if stretch is not None:
         window_s = (max(stretch[0], window_s[0]), min(stretch[1], window_s[1]))
+    elif contained and any("half-cosine ramp" in text for text in signal.notices):
+        window_s = (window_s[0] + SETTLED, window_s[1])
+        more = [f"begins in motion: the first {SETTLED:g} s are left out; --stretch FROM:TO sets other times"]
+    shortest = LEAST_VALUES / (KEPT * lowpass)
+    length = max(window_s[1] - window_s[0], 0.0)
+    if length < shortest:
+        raise DataError(
+            f"{path}: {length:.3g} s of the record count, must be at least {shortest:.3g} s "
+            f"({LEAST_VALUES} independent values below {lowpass:g} Hz); use a longer record or --stretch FROM:TO"
+        )
     units = {channel: held.units[channel] for channel in names}
     record = Record(time=grid, channels=histories, units=units)
     target = RecordTarget(name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass)
@@ -167,30 +197,65 @@ def measured_histories(
         Record(time=run.time, channels=run.recording.channels, units=run.recording.units),
         times,
     )
-    advice = [*clock_advice(parts, step, delay, drift), *sign_and_unit(parts)]
-    return MeasuredTarget(target=target, signal=signal, notices=_notices(path, measured, advice))
+    # The plate of the same file has the same clock.
+    clock = [] if contained else clock_advice(parts, step, delay, drift)
+    advice = [*clock, *sign_and_unit(parts)]
+    return MeasuredTarget(target=target, signal=signal, notices=_notices(path, measured, [*more, *advice]))
+
+
+def _asked(choice: Choice | None, channels: Mapping[str, str] | None) -> Choice:
+    """Return the choice with further channels."""
+    asked = choice or Choice()
+    return replace(asked, channels={**asked.channels, **(channels or {})})
 
 
 def _read(
     car: Car,
     file: Path,
-    channels: Mapping[str, str] | None,
-    choice: Choice | None,
+    asked: Choice,
     inverted: Collection[str],
     window: float | None,
+    *,
+    histories_only: bool = False,
 ) -> Measured:
     """Return the chosen channels of a file under the names of the model."""
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
-    asked = choice or Choice()
-    asked = replace(asked, channels={**asked.channels, **(channels or {})})
-    return read_measured(file, model_channels, asked, inverted=inverted, window=window)
+    return read_measured(file, model_channels, asked, inverted=inverted, window=window, histories_only=histories_only)
 
 
-def _signal(source: Signal | Path | str, car: Car) -> Signal:
-    """Return a signal; read a file with one plate for the shaker wheel; a name without suffix is a shipped file."""
+def _signal(
+    source: Signal | Path | str | None,
+    car: Car,
+    path: Path,
+    measured: Measured,
+    asked: Choice,
+    inverted: Collection[str],
+) -> Signal:
+    """Return the plate signal: a signal, a file, the name of a shipped file, or None for the plate in the measurement.
+
+    A file with one plate is read for the shaker wheel.
+    """
     if isinstance(source, Signal):
         return source
-    return read_signal(find_input(source if "." in str(source) else f"{source}.csv"), wheel=car.vehicle.shaker_wheel)
+    if source is not None:
+        return read_signal(
+            find_input(source if "." in str(source) else f"{source}.csv"), wheel=car.vehicle.shaker_wheel
+        )
+    plates = {} if measured.record is None else measured.record.channels
+    names = {wheel: f"plate_{wheel}_displacement" for wheel in CORNERS.values()}
+    names = {wheel: name for wheel, name in names.items() if name in plates and np.ptp(plates[name]) > 0.0}
+    if not names:
+        raise DataError(
+            f"{path}: contains no input: no moving plate is among its channels. Set --map plate_fl_displacement=NAME "
+            "for the channel of the plate, or --signal FILE after it for the plate displacement of another file"
+        )
+    units = {wheel: asked.units[name] for wheel, name in names.items() if name in asked.units}
+    units |= {role: unit for role, unit in asked.units.items() if role in ("", "time")}
+    roles = {wheel: asked.channels.get(name, name) for wheel, name in names.items()}
+    roles |= {role: name for role, name in asked.channels.items() if role == "time"}
+    signal = read_signal(path, choice=replace(asked, channels=roles, units=units))
+    turned = {wheel: -values if names[wheel] in inverted else values for wheel, values in signal.displacement.items()}
+    return replace(signal, displacement=turned)
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:

@@ -74,6 +74,11 @@ class RecordTarget:
         """Return the names of the rows of the residuals."""
         return tuple(f"{self.name}, {channel}" for channel in self.record.channels)
 
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Return the names of the channels of a run that the target needs."""
+        return tuple(self.record.channels)
+
     def measured(self) -> Vector:
         """Return the filtered measured data in the window, (channels, samples)."""
         return self._filtered(np.array(list(self.record.channels.values())))
@@ -84,7 +89,7 @@ class RecordTarget:
         Raises:
             DataError: the run has other sampling times than the data.
         """
-        names, time = tuple(self.record.channels), self.record.time
+        names, time = self.recorded, self.record.time
         run = model if isinstance(model, Run) else model.run(self.signal, engine="reduced", channels=names)
         if run.time.size != time.size or abs(run.time[-1] - time[-1]) > 1e-6:
             raise DataError(

@@ -1,4 +1,4 @@
-"""Outputs of eight cars from the states at samples: channels and peaks.
+"""Outputs of the cars in a vector from the states at samples: channels and peaks.
 
 An output is a sum over all states, and its weights do not fit in the L1 cache. Therefore a tile of outputs is computed
 at several samples together: each weight is loaded once for all of them.
@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from vehicle.engines.reduced.batch_layout import PAST, TILE, OutputTiles
-from vehicle.engines.reduced.batch_step import compiled_once, inlined
-from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, store
+from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, of_cars, store
+from vehicle.engines.reduced.table_layout import PAST, TILE, OutputTiles
+from vehicle.engines.reduced.time_step import compiled_once, inlined
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 TOGETHER = 4
@@ -43,15 +43,27 @@ def accumulate(tiles: Any, row: int, values: Any, sums: Any) -> Any:
 
 @inlined
 def read_tile(
-    tiles: Any, row: int, x: Any, states: int, samples: Any, plate_z: Any, done: int, differences: bool, zero: Any
+    tiles: Any,
+    row: int,
+    x: Any,
+    changes: Any,
+    states: int,
+    poles: int,
+    samples: Any,
+    plate_z: Any,
+    done: int,
+    differences: bool,
+    zero: Any,
 ) -> Any:
     """Return a tile of outputs at four samples, or of their differences from the previous samples.
 
     Args:
-        tiles: weights, (rows, LANES).
+        tiles: weights, (rows, columns).
         row: first row of the tile.
         x: states of the samples, beginning with the sample before the first.
+        changes: changes of the poles from sample to sample, likewise.
         states: number of states.
+        poles: number of first states whose differences are in `changes`.
         samples: indices of the samples.
         plate_z: plate displacements and their differences; (samples, 2 plates).
         done: row of the first sample in `plate_z`.
@@ -66,7 +78,15 @@ def read_tile(
         (samples[3] + 1) * states,
     )
     if differences:
-        for k in range(states):
+        for k in range(poles):
+            values = (
+                load(changes, (samples[0] + 1) * poles + k),
+                load(changes, (samples[1] + 1) * poles + k),
+                load(changes, (samples[2] + 1) * poles + k),
+                load(changes, (samples[3] + 1) * poles + k),
+            )
+            sums = accumulate(tiles, row + k * TILE, values, sums)
+        for k in range(poles, states):
             values = (
                 load(x, a + k) - load(x, a + k - states),
                 load(x, b + k) - load(x, b + k - states),
@@ -92,17 +112,19 @@ def read_tile(
 
 @inlined
 def store_tile(y: Any, row: int, values: Any) -> None:
-    """Store a tile of outputs in rows."""
-    store(y, row, values[0])
-    store(y, row + 1, values[1])
-    store(y, row + 2, values[2])
+    """Store a tile of outputs of the cars in rows."""
+    store(y, row, of_cars(values[0]))
+    store(y, row + 1, of_cars(values[1]))
+    store(y, row + 2, of_cars(values[2]))
 
 
 @compiled_once
 def fill_outputs(
     tiles: Any,
     x: Any,
+    changes: Any,
     states: int,
+    poles: int,
     plate_z: Any,
     done: int,
     differences: bool,
@@ -117,7 +139,8 @@ def fill_outputs(
     """Compute all tiles of outputs, or of their differences.
 
     Args:
-        tiles, x, states, plate_z, done, differences, zero: see `read_tile`.
+        tiles, x, changes, states, poles, plate_z, done, differences, zero: see
+            `read_tile`.
         begin, stride, size: first sample, stride and end of the samples.
         y: outputs of PAST previous samples and of these; changed in place.
         width: rows of a sample in `y`.
@@ -127,7 +150,9 @@ def fill_outputs(
     for sample in range(begin, size, TOGETHER * stride):
         samples = sample_group(sample, stride, size)
         for tile in range(tiles.shape[0] // weights):
-            sums = read_tile(tiles, tile * weights, x, states, samples, plate_z, done, differences, zero)
+            sums = read_tile(
+                tiles, tile * weights, x, changes, states, poles, samples, plate_z, done, differences, zero
+            )
             row = PAST * width + first + tile * TILE
             store_tile(y, row + samples[0] * width, sums[0])
             store_tile(y, row + samples[1] * width, sums[1])
@@ -138,7 +163,8 @@ def fill_outputs(
 @inlined
 def largest_rotation(values: Any, previous: Any) -> Any:
     """Return the maximum of the square of a rotation and its previous maximum."""
-    return maximum(values[0] * values[0] + values[1] * values[1] + values[2] * values[2], previous)
+    x, y, z = of_cars(values[0]), of_cars(values[1]), of_cars(values[2])
+    return maximum(x * x + y * y + z * z, previous)
 
 
 @compiled_once
@@ -162,21 +188,21 @@ def update_peaks(
         reading: output tiles.
         x, states, plate_z, done, zero, size, y, width: see `fill_outputs`.
         first_check: first sample that is checked.
-        first: first row of the levels in a sample of the outputs; the levels end at a multiple of a tile.
-        peaks: see `vehicle.engines.reduced.batch_stepping.step_batch`; changed in place.
+        first: first row of the levels in a sample of the outputs.
+        peaks: see `vehicle.engines.reduced.time_stepping.step_cars`; changed in place.
     """
     weights = (states + plate_z.shape[1] // 2) * TILE
-    bodies, levels = reading.rotations.shape[0] // weights, reading.levels.shape[0] // weights * TILE
+    bodies = reading.rotations.shape[0] // weights
     for sample in range(first_check, size, TOGETHER * reading.every):
         samples = sample_group(sample, reading.every, size)
         for body in range(bodies):
-            sums = read_tile(reading.rotations, body * weights, x, states, samples, plate_z, done, False, zero)
+            sums = read_tile(reading.rotations, body * weights, x, x, states, 0, samples, plate_z, done, False, zero)
             largest = largest_rotation(sums[1], largest_rotation(sums[0], load(peaks, body)))
             store(peaks, body, largest_rotation(sums[3], largest_rotation(sums[2], largest)))
     for sample in range(0 if reading.always else first_check, size, 1 if reading.always else reading.every):
         # Tyre loads come first and are checked with the rotations.
         is_check = (sample - first_check) % reading.every == 0
-        for k in range(0 if is_check else reading.loads, levels):
+        for k in range(0 if is_check else reading.loads, reading.watched):
             value, low = load(y, (PAST + sample) * width + first + k), bodies + 2 * k
             store(peaks, low, minimum(value, load(peaks, low)))
             store(peaks, low + 1, maximum(value, load(peaks, low + 1)))
@@ -205,7 +231,7 @@ def write_channels(
         buffer: work space for a channel; changed in place.
         out: channels of all cars; (channels, cars, samples).
         begin: index of the sample `early` in `out`.
-        cars: indices of the cars in the lanes.
+        cars: indices of the cars in the columns.
     """
     for channel in range(reading.wanted.shape[0]):
         row = reading.wanted[channel]

@@ -1,4 +1,8 @@
-"""Layout of the tables of a batch: one column for each of eight cars, one row for each number."""
+"""Layout of the tables of a group: one row for each number, one column for each number of a SIMD vector.
+
+In single precision a row has a number of each of eight cars. In double precision its four numbers belong to four parts
+of one car: each part contains a quarter of the poles, and sums over poles are added over the parts.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +13,14 @@ import numpy.typing as npt
 
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
-ELEMENT = np.float32
-"""Number type: single precision."""
+SINGLE, DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
+"""Number types: eight cars, and one car in four parts."""
 
-LANES = 8
-"""Cars in a SIMD vector: 32 bytes, a register of AVX2; tables of more cars would not fit in the L1 cache."""
+VECTOR_BYTES = 32
+"""Size and alignment of a row [byte]: a register of AVX2; tables of more cars would not fit in the L1 cache."""
 
-ALIGNMENT = 32
-"""Alignment of the first row of a table [byte]."""
+LANES = VECTOR_BYTES // SINGLE.itemsize
+"""Cars in a SIMD vector in single precision."""
 
 INNER_BLOCK = 64
 """Samples in an inner block, after which outputs are computed: their states fit in the cache of a core."""
@@ -32,23 +36,28 @@ class TableRows(NamedTuple):
     """First rows of the sections of a table of cars, and their sizes.
 
     Attributes:
-        pairs, reals: numbers of pole pairs and real poles; the table begins with the factors of the pairs.
+        pairs, reals: numbers of pole pairs and real poles in a column; the table begins with the factors of the
+            pairs.
+        iterations: Gauss-Seidel iterations over the dampers.
         real: first row of the factors of the real poles.
         slip: contribution of z' at the end of a step to the damper velocities, dampers by plates.
         gain, ramp: contributions of mean forces and of their slopes, dampers by dampers each.
         law: `pieces` + 1 breakpoints (x, F_c/2, friction over its limit) of each damper.
         pieces: number of segments of the laws.
         limit, full: friction limits; velocities of full friction.
-        inputs: forces, slopes, z' and mean z' of a step.
+        inputs: forces, slopes, z' and mean z' of a step, and the inputs by `vehicle.engines.reduced.feedback`.
         viscous: damping constants in the poles.
         velocity, earlier: current velocities and those of the last step.
         hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
             during the whole step.
+        sensors, past: sensors of `vehicle.engines.reduced.feedback` at the beginning of a step and of the last step.
+        direct: contributions of mean forces, slopes, z' and z to each sensor.
         work: work space for the solution of a step.
     """
 
     pairs: int
     reals: int
+    iterations: int
     real: int
     slip: int
     gain: int
@@ -64,6 +73,9 @@ class TableRows(NamedTuple):
     hold: int
     stuck: int
     stick: int
+    sensors: int
+    past: int
+    direct: int
     work: int
 
 
@@ -74,10 +86,11 @@ class OutputTiles(NamedTuple):
         positions, levels: tiles of the positions of acceleration channels, and of forces and displacements.
         rotations: one tile of rotations for each body.
         loads: number of the levels that are tyre loads, which come first.
+        watched: number of the levels whose extremes are kept, a multiple of TILE.
         every: samples from one check of rotations and tyre loads to the next.
         always: compute levels at every sample; otherwise only at the checks.
         wanted: row of a sample for each channel, positions first; -1 for channels that are not computed here.
-        offset: static value of each channel; (channels, LANES).
+        offset: static value of each channel; (channels, columns).
         weights: weights of the differences of positions for `acceleration`; (2 AHEAD,).
     """
 
@@ -85,6 +98,7 @@ class OutputTiles(NamedTuple):
     levels: Any
     rotations: Any
     loads: int
+    watched: int
     every: int
     always: bool
     wanted: Any
@@ -92,9 +106,9 @@ class OutputTiles(NamedTuple):
     weights: Any
 
 
-def aligned_table(rows: int) -> npt.NDArray[Any]:
-    """Return an aligned table (rows, LANES) of zeros; `simd_vector.load` and `store` need the alignment."""
-    size = rows * LANES * np.dtype(ELEMENT).itemsize
-    buffer = np.zeros(size + ALIGNMENT, dtype=np.uint8)
-    start = -buffer.ctypes.data % ALIGNMENT
-    return buffer[start : start + size].view(ELEMENT).reshape(rows, LANES)
+def aligned_table(rows: int, element: np.dtype[Any]) -> npt.NDArray[Any]:
+    """Return an aligned table (rows, columns) of zeros; `simd_vector.load` and `store` need the alignment."""
+    size = rows * VECTOR_BYTES
+    buffer = np.zeros(size + VECTOR_BYTES, dtype=np.uint8)
+    start = -buffer.ctypes.data % VECTOR_BYTES
+    return buffer[start : start + size].view(element).reshape(rows, VECTOR_BYTES // element.itemsize)

@@ -1,20 +1,17 @@
 """Targets of a fit from a file of the user: another clock, another rate, other units, the noise that was put in."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from scenarios.tuning.__main__ import add_options
-from scenarios.tuning.own_data import own_measurements
-from vehicle.commands.parser import Parser
-from vehicle.errors import DataError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.bump import bump
 from vehicle.signals.records import uff_writer
 from vehicle.signals.records.channel import Channel, uniform_axis
 from vehicle.signals.records.text_format import write_table
+from vehicle.studies.tuning.measured_targets import measured_histories
 
 NOISE = 0.02
 STRIBECK = ("damper.friction_law='stribeck'", "damper.stribeck_friction=160.0", "damper.coulomb_friction=60.0")
@@ -41,24 +38,21 @@ def files(tmp_path_factory):
     return folder
 
 
-def measured(folder: Path, *arguments: str):
-    parser = Parser()
-    add_options(parser)
-    options = ["--record", str(folder / "bump.uff"), "--signal", str(folder / "bump.csv")]
-    options += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", *arguments]
-    (measurement,) = own_measurements(parser.parse_args(options), Car.load())
-    for text in measurement.notices:
+CHANNELS = {"knuckle_fr_acc_z": "Acc", "damper_fr_velocity": "Velocity"}
+
+
+def measured(folder, **options):
+    entry = measured_histories(Car.load(), folder / "bump.uff", folder / "bump.csv", CHANNELS, **options)
+    for text in entry.notices:
         assert text.startswith("bump.uff: ")
-    return measurement.target
+    return entry.target
 
 
 def test_the_delay_that_was_forgotten_is_named(files):
     """By the car where the fit begins, which has another law of friction."""
-    parser = Parser()
-    add_options(parser)
-    options = ["--record", str(files / "bump.uff"), "--signal", str(files / "bump.csv")]
-    options += ["--map", "knuckle_fr_acc_z=Acc", "--map", "damper_fr_velocity=Velocity", "--turn", "damper_fr_velocity"]
-    (measurement,) = own_measurements(parser.parse_args(options), Car.load())
+    measurement = measured_histories(
+        Car.load(), files / "bump.uff", files / "bump.csv", CHANNELS, inverted=["damper_fr_velocity"]
+    )
     (late,) = (text for text in measurement.notices if "--delay" in text)
     advice = re.search(r"--delay (\S+)", late)
     # The other friction law shifts the response by 2.4 ms.
@@ -67,7 +61,7 @@ def test_the_delay_that_was_forgotten_is_named(files):
 
 
 def test_the_residuals_of_the_true_car_are_the_noise(files):
-    target = measured(files, "--delay", "0.2")
+    target = measured(files, delay=0.2)
     assert target.rows == ("bump, knuckle_fr_acc_z", "bump, damper_fr_velocity")
     assert target.window == pytest.approx((0.2, 1.2))
     true, other = (target.residuals(Car.load(overrides=law)) for law in (STRIBECK, ()))
@@ -78,16 +72,42 @@ def test_the_residuals_of_the_true_car_are_the_noise(files):
 
 
 def test_the_part_that_counts(files):
-    assert measured(files, "--delay", "0.2", "--stretch", "0.25:0.9").window == pytest.approx((0.25, 0.9))
+    assert measured(files, delay=0.2, stretch=(0.25, 0.9)).window == pytest.approx((0.25, 0.9))
     late = measured(files)  # taken to begin with the signal: nothing fits
     assert np.sqrt(np.mean(late.residuals(Car.load(overrides=STRIBECK)) ** 2)) > 0.5
     with pytest.raises(DataError, match="no overlap; set --delay S"):
-        measured(files, "--delay", "5")
+        measured(files, delay=5.0)
+    with pytest.raises(DataError, match=r"0.03 s of the record count, must be at least 0.04 s .* longer record"):
+        measured(files, delay=0.2, stretch=(0.25, 0.28))
 
 
 def test_the_channels_that_count(files):
-    assert measured(files, "--delay", "0.2", "--channel", "damper_fr_velocity").rows == ("bump, damper_fr_velocity",)
+    assert measured(files, delay=0.2, fitted=["damper_fr_velocity"]).rows == ("bump, damper_fr_velocity",)
     with pytest.raises(
-        DataError, match=r"no time history of --channel seat_rail_acc_z; found knuckle_fr_acc_z, damper"
+        DataError, match=r"no time history of --channels seat_rail_acc_z; found knuckle_fr_acc_z, damper"
     ):
-        measured(files, "--channel", "seat_rail_acc_z")
+        measured(files, fitted=["seat_rail_acc_z"])
+
+
+def test_a_record_contains_its_plate(tmp_path):
+    """The plate moves at the first sample: the car starts at rest, and the beginning is left out."""
+    run = Car.load().run("high.csv", engine="reduced", channels=["plate_fl_displacement", "knuckle_fl_acc_z"])
+    part = slice(3000, 9000)
+    axis = uniform_axis(6000, run.recording.timestep, 12.5)
+    channels = [
+        Channel(name="Shaker", values=-1e3 * run["plate_fl_displacement"][part], unit="mm", axis=axis),
+        Channel(name="Acc", values=run["knuckle_fl_acc_z"][part], unit="m/s2", axis=axis),
+    ]
+    file = tmp_path / "road.uff"
+    uff_writer.write(file, channels, "made")
+    names = {"plate_fl_displacement": "Shaker", "knuckle_fl_acc_z": "Acc"}
+    entry = measured_histories(Car.load(), file, None, names, inverted=["plate_fl_displacement"])
+    assert entry.signal is not None and entry.signal.wheels == ("fl",)
+    assert entry.target.window == pytest.approx((2.0, 5.999))
+    assert any("begins in motion: the first 2 s are left out" in text for text in entry.notices)
+    # What is left of the start at rest: sticking is remembered longer than two seconds at single instants.
+    assert np.sqrt(np.mean(entry.target.residuals(Car.load()) ** 2)) < 0.02
+    with pytest.raises(ConfigurationError, match="this record contains its plate"):
+        measured_histories(Car.load(), file, None, names, delay=0.1)
+    with pytest.raises(DataError, match=r"contains no input: no moving plate .* --signal FILE"):
+        measured_histories(Car.load(), file, None, {"knuckle_fl_acc_z": "Acc"})

@@ -1,0 +1,328 @@
+"""`python -m vehicle tune CAR`: fit parameters of a car to measured FRFs and time histories."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.command_line import ProgressLine, command
+from vehicle.commands.compare import clock_of, drift_option, mapping_options, measured_choice
+from vehicle.commands.destination import output_folder_of
+from vehicle.commands.input_options import record_options
+from vehicle.commands.options import (
+    CAR_HELP,
+    command_parser,
+    engine_option,
+    message_options,
+    output_options,
+    set_option,
+)
+from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.shipped import vehicle_file
+
+if TYPE_CHECKING:
+    from vehicle.model.parameters.ranges import Range
+    from vehicle.runs.car import Car
+    from vehicle.studies.tuning.measured_targets import MeasuredTarget
+    from vehicle.studies.tuning.posterior_text import NamedPosterior
+
+OUTPUT = Path("runs/tune")
+
+
+class _Measurement(argparse.Action):
+    """Action that adds measurement files to the list of all, in the order of the command line."""
+
+    def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
+        listed = getattr(namespace, "measurements", None) or []
+        content = str(option).removeprefix("--")
+        added = [argparse.Namespace(content=content, file=file, signal=None, stuck=False) for file in values]
+        namespace.measurements = [*listed, *added]
+        namespace.latest = added
+
+
+class _OfMeasurement(argparse.Action):
+    """Action that sets an option of the measurement files of the preceding --frf or --record."""
+
+    def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
+        latest = getattr(namespace, "latest", None)
+        if not latest:
+            raise ConfigurationError(f"{option}: belongs to the --frf or --record before it; place it after one")
+        for each in latest:
+            if self.dest == "stuck" and each.content != "frf":
+                raise ConfigurationError(f"--stuck: belongs to --frf; {each.file} contains time histories")
+            setattr(each, self.dest, values if self.nargs is None else True)
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    parser = command_parser("tune", "Fit parameters of a car to measured FRFs and time histories.")
+    parser.add_argument("car", type=vehicle_file, metavar="CAR", help=CAR_HELP)
+    set_option(parser)
+    parser.add_argument(
+        "--parameters",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="PATH=LOW:HIGH",
+        help="parameters to fit and their bounds above 0, in their unit, as front.damper.viscous=800:4000; the fit "
+        "begins at the value of the car, which --set changes",
+    )
+    parser.set_defaults(measurements=[], latest=[])
+    files = parser.add_argument_group("measurements")
+    files.add_argument(
+        "--frf",
+        nargs="+",
+        type=Path,
+        action=_Measurement,
+        metavar="FILE",
+        help="measured FRFs, or accelerations and plate as time histories, in any format of `inspect`; repeatable",
+    )
+    files.add_argument(
+        "--record",
+        nargs="+",
+        type=Path,
+        action=_Measurement,
+        metavar="FILE",
+        help="measured time histories, of a bump or of another input, in any format of `inspect`; repeatable",
+    )
+    files.add_argument(
+        "--signal",
+        action=_OfMeasurement,
+        metavar="FILE",
+        help="plate displacement of the files of the preceding --frf or --record; the plate in each file by default",
+    )
+    files.add_argument(
+        "--stuck",
+        nargs=0,
+        action=_OfMeasurement,
+        help="the dampers stick at the level of the preceding --frf: linear car, no plate signal needed",
+    )
+    mapping_options(files)
+    record_options(files, "", channel=False)
+    files.add_argument(
+        "--channels",
+        metavar="NAME,...",
+        help="fitted channels of the model; by default all in the files",
+    )
+    responses = parser.scoped_group("FRFs", needs="--frf", active=lambda options: _has_files(options, "frf"))
+    responses.add_argument(
+        "--band", default="3:45", metavar="A:B", help="fitted frequencies [Hz]; %(default)s by default"
+    )
+    responses.add_argument(
+        "--spacing",
+        type=float,
+        default=0.3,
+        metavar="HZ",
+        help="minimum distance of the fitted frequencies [Hz]; %(default)g by default",
+    )
+    responses.add_argument(
+        "--window",
+        type=float,
+        metavar="S",
+        help="length of the Hann windows of measured FRFs [s]; those of the model are estimated in the same way; by "
+        "default the whole record is evaluated",
+    )
+    responses.add_argument(
+        "--averages",
+        type=float,
+        default=1.0,
+        metavar="N",
+        help="number of independent averages of FRFs from a file without random errors; with 1, the default, their "
+        "noise is overestimated",
+    )
+    records = parser.scoped_group(
+        "time histories", needs="--record", active=lambda options: _has_files(options, "record")
+    )
+    records.add_argument(
+        "--delay",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="time between the start of --signal and the start of the record [s]; 0 by default",
+    )
+    drift_option(records)
+    records.add_argument(
+        "--stretch", metavar="FROM:TO", help="fitted part of the signal [s]; the whole record by default"
+    )
+    records.add_argument(
+        "--lowpass",
+        type=float,
+        default=100.0,
+        metavar="HZ",
+        help="corner of the low-pass filter on measurement and model [Hz]; %(default)g by default",
+    )
+    parser.add_argument(
+        "--posterior", action="store_true", help="posterior distribution of the parameters given the FRFs (emcee)"
+    )
+    posterior = parser.scoped_group("posterior", needs="--posterior", active=lambda options: options.posterior)
+    posterior.add_argument(
+        "--samples", type=int, default=256, metavar="K", help="cars of the emulator; %(default)s by default"
+    )
+    posterior.add_argument(
+        "--discrepancy",
+        type=float,
+        default=10.0,
+        metavar="PERCENT",
+        help="standard deviation of the error of the model in each third octave [%%]; %(default)g by default",
+    )
+    posterior.add_argument(
+        "--rival",
+        nargs="+",
+        default=[],
+        metavar="PATH=VALUE",
+        help="another law with its evidence against the fitted one: settings, as damper.viscous_law=degressive, and "
+        "further parameters with bounds, as damper.degressive_viscous=2e3:1e4",
+    )
+    engine_option(parser, "mujoco")
+    output_options(parser, OUTPUT)
+    parser.add_argument("--json", action="store_true", help="print the content of tune.json")
+    message_options(parser, quiet=True)
+    return parser
+
+
+def _has_files(options: argparse.Namespace, content: str) -> bool:
+    return any(each.content == content for each in options.measurements)
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.model.parameters.ranges import parsed_variation
+    from vehicle.runs.car import Car
+    from vehicle.runs.output.folder import output_folder
+    from vehicle.studies.tuning.car_fit import ranges_of, require_fittable
+    from vehicle.studies.tuning.frf_target import FrfTarget
+    from vehicle.studies.tuning.posterior import require_posterior
+    from vehicle.studies.tuning.posterior_text import posterior_lines
+    from vehicle.studies.tuning.tuned_car import tuned_car
+    from vehicle.studies.tuning.tuning_files import NUMBERS, write_tuning
+    from vehicle.studies.tuning.tuning_text import tuning_text
+
+    if not options.measurements:
+        raise ConfigurationError("no measurement: add --frf FILE or --record FILE")
+    if not options.parameters:
+        raise ConfigurationError("no parameter to fit: add --parameters PATH=LOW:HIGH, as damper.viscous=800:4000")
+    car = Car.load(options.car, options.overrides)
+    bounds = [parsed_variation("--parameters", text).range() for text in options.parameters]
+    parameters = ranges_of(car.vehicle, {entry.path: (entry.low, entry.high) for entry in bounds})
+    require_fittable(parameters, car.vehicle)
+    files = tuple(each.file for each in options.measurements)
+    protect = tuple(Path(each.signal) for each in options.measurements if each.signal is not None)
+    folder = output_folder_of(options, OUTPUT, protect=(*files, *protect))
+    targets = _measured(options, car)
+    if not (options.quiet or options.json):
+        for text in dict.fromkeys(text for target in targets for text in target.notices):
+            print(f"notice: {text}", file=sys.stderr, flush=True)
+    if options.posterior:
+        require_posterior([each.target for each in targets if isinstance(each.target, FrfTarget)])
+    line = ProgressLine("fit       ", enabled=not options.quiet)
+    tuned = tuned_car(
+        car,
+        parameters,
+        targets,
+        engine=options.engine,
+        # The number of cars is not known before: 12 for each parameter is usual.
+        progress=lambda count, _: line(0.7 * count / (count + 6.0 * len(parameters))),
+        simulated=lambda count: line(0.7 + 0.3 * count / (count + 2.0)),
+    )
+    posteriors = _posteriors(options, car, parameters, targets) if options.posterior else []
+    line(1.0)
+    with output_folder(folder, force=options.force, protect=(*files, *protect)) as work:
+        names = write_tuning(work, tuned, f"python -m vehicle tune {shlex.join(options.words)}", posteriors)
+    if options.json:
+        content = (folder / NUMBERS).read_text(encoding="utf-8")
+        print(json.dumps(json.loads(content), indent=2, allow_nan=False))
+    elif not options.quiet:
+        print(tuning_text(tuned))
+        if posteriors:
+            print("\n".join(posterior_lines(posteriors, car.vehicle)))
+        print(f"{folder}: {', '.join(names)}")
+
+
+def _measured(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
+    """Return the targets of all measurement files."""
+    from vehicle.studies.tuning.measured_targets import measured_histories, measured_responses
+
+    choice = measured_choice(options)
+    shared: dict[str, Any] = {
+        "choice": choice,
+        "inverted": options.turned,
+        "fitted": options.channels.split(",") if options.channels else (),
+    }
+    delay, drift = clock_of(options)
+    targets = []
+    for each in options.measurements:
+        if each.content == "frf":
+            target = measured_responses(
+                car,
+                each.file,
+                each.signal,
+                stuck=each.stuck,
+                band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
+                spacing=options.spacing,
+                window=options.window,
+                averages=options.averages,
+                **shared,
+            )
+        else:
+            stretch = _pair("--stretch", options.stretch, "FROM:TO in s, as 4.9:6.5") if options.stretch else None
+            target = measured_histories(
+                car,
+                each.file,
+                each.signal,
+                delay=delay,
+                drift=drift,
+                stretch=stretch,
+                lowpass=options.lowpass,
+                **shared,
+            )
+        targets.append(target)
+    return targets
+
+
+def _posteriors(
+    options: argparse.Namespace, car: Car, parameters: Sequence[Range], measured: Sequence[MeasuredTarget]
+) -> list[NamedPosterior]:
+    """Return the posteriors of the fitted law and of its rival."""
+    from vehicle.model.parameters.ranges import parsed_variation
+    from vehicle.runs.car import Car
+    from vehicle.studies.tuning.car_fit import ranges_of
+    from vehicle.studies.tuning.frf_target import FrfTarget
+    from vehicle.studies.tuning.posterior import emulated_car, posterior_of
+
+    targets = [each.target for each in measured if isinstance(each.target, FrfTarget)]
+    laws: list[tuple[str, Car, Sequence[Range]]] = [("fitted law", car, parameters)]
+    if options.rival:
+        rival = [parsed_variation("--rival", text) for text in options.rival]
+        settings = [f"{each.path}={each.values[0]}" for each in rival if each.bounds is None]
+        fixed = {each.path for each in rival if each.bounds is None}
+        other = Car.load(options.car, [*options.overrides, *settings])
+        bounds = {each.path: each.bounds for each in rival if each.bounds is not None}
+        middles = {path: (low, high, (low * high) ** 0.5) for path, (low, high) in bounds.items()}
+        shared = [entry for entry in parameters if entry.path not in {*fixed, *bounds}]
+        laws.append(("rival law", other, [*shared, *ranges_of(other.vehicle, middles)]))
+    posteriors = []
+    for name, law_car, law_parameters in laws:
+        progress = ProgressLine(f"{name:<10}", enabled=not options.quiet)
+        emulated = emulated_car(law_car, law_parameters, targets, cars=options.samples, progress=progress)
+        posteriors.append((name, posterior_of(emulated, discrepancy=0.01 * options.discrepancy)))
+    return posteriors
+
+
+def _pair(option: str, text: str, needed: str) -> tuple[float, float]:
+    """Return two ascending numbers of at least 0, separated by a colon."""
+    numbers: Sequence[float]
+    try:
+        numbers = [float(part) for part in text.split(":")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 2 or not 0.0 <= numbers[0] < numbers[1]:
+        raise ConfigurationError(f"{option} {text}: must be {needed}")
+    return numbers[0], numbers[1]
+
+
+main = command(parser, _job)

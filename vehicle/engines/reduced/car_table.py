@@ -1,0 +1,150 @@
+"""Tables of the cars in a vector for the time stepping: their poles, damper laws and weights of outputs.
+
+The law of a damper, v + g (friction + curve) = a, is piecewise linear with nodes (x, F). Its inverse has the nodes
+(x + g F, F), so the force is a sum over the segments of their rises times shares between 0 and 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.reduced.pole_model import Outputs
+from vehicle.engines.reduced.step_factors import ITERATIONS, CarFactors
+from vehicle.engines.reduced.table_layout import DOUBLE, TILE, TableRows, aligned_table
+from vehicle.model.laws.curve import BEYOND
+from vehicle.model.laws.damper import RECORD, damper_curve, pack
+from vehicle.model.parameters.force_elements import Damper
+
+Vector = npt.NDArray[np.float64]
+Table = npt.NDArray[Any]
+
+
+@lru_cache(maxsize=64)
+def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
+    """Return the data of a damper.
+
+    Args:
+        damper: laws of the damper.
+
+    Returns:
+        Its record, the velocity of full friction [m/s], and the nodes of its law without D v and F(0): x, half of the
+        curve, friction over its limit; (nodes, 3).
+    """
+    curve, record = damper_curve(damper), pack(damper)
+    full = 0.5 * np.pi / damper.smoothing
+    base_slope, end_segments = curve.least_slope, ((-BEYOND, curve.slopes[0]), (BEYOND, curve.slopes[-1]))
+    # The curve of a controlled damper changes in each step.
+    ends = [end for end, slope in end_segments if slope > base_slope or damper.controlled]
+    nodes = np.unique(np.concatenate([curve.knots, ends, [-full, full]]))
+    excess_force = curve.force(nodes) - curve.force(0.0) - base_slope * nodes
+    return record, full, np.column_stack([nodes, 0.5 * excess_force, np.clip(nodes / full, -1.0, 1.0)])
+
+
+class CarTable:
+    """Table of a group: cars in single precision, whose idle columns repeat the last car, or one in double precision.
+
+    Args:
+        cars: factors of the cars.
+        dampers: damper laws of each car.
+        start: (z, z') of the driven plates at the first instant; (2, m).
+        element: number type.
+        sensors: sensors of each car, see `vehicle.engines.reduced.feedback.sensor_outputs`.
+
+    Attributes:
+        plates: number m of driven plates.
+        states: number of terms of an output in a column: states of a sample, and plate displacements.
+        inputs, sums: numbers of inputs of a step, and of damper velocities and sensors.
+        initial: states of the first sample; (..., columns).
+        rows: first rows of the sections.
+        table: the table, which the time stepping changes; (rows, columns).
+        laws: records of the dampers if a friction limit depends on the velocity, (d, columns) or, in double precision,
+            (d, 1); otherwise empty.
+    """
+
+    def __init__(
+        self,
+        cars: Sequence[CarFactors],
+        dampers: Sequence[Sequence[Damper]],
+        start: Vector,
+        element: np.dtype[Any],
+        sensors: Sequence[Outputs],
+    ) -> None:
+        self.element, lanes = element, aligned_table(1, element).shape[1]
+        split = lanes if element == DOUBLE else 1
+        # Car of each column, and its part of the poles.
+        self.lanes = [(min(lane, len(cars) - 1) if split == 1 else 0, slice(lane % split, None, split))
+                      for lane in range(lanes)]  # fmt: skip
+        self.cars = cars
+        d, m = len(dampers[0]), start.shape[1]
+        pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
+        self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m)
+        count = len(sensors[0].poles)
+        self.inputs, self.sums = cars[0].step.shape[1] - 1, d + count
+        damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
+        node_count = max(len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car)
+        sizes = {"pair": pairs * 2 * (1 + self.inputs + self.sums), "real": reals * (1 + self.inputs + self.sums)}
+        sizes |= {"slip": d * m, "gain": d * d, "ramp": d * d, "law": 3 * d * node_count, "inputs": self.inputs}
+        sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
+        sizes |= {"sensors": count, "past": count, "direct": count * 2 * (d + m)}
+        sizes |= {"work": d * (4 + 4 * node_count) + 2 * self.sums + TILE}
+        section_ends = np.cumsum([0, *sizes.values()]).tolist()
+        first_rows = dict(zip(sizes, section_ends, strict=False))
+        self.table, self.initial = (aligned_table(rows, element) for rows in (section_ends[-1], self.states - m))
+        self.initial[-m:] = start[1][:, None]
+        record = np.zeros((d, lanes), dtype=RECORD)
+        rows_of_cars = [car.rows(car_sensors.poles) for car, car_sensors in zip(cars, sensors, strict=True)]
+        for lane, (car, part) in enumerate(self.lanes):
+            record[:, lane] = [array for array, _, _ in damper_data[car]]
+            # Repeating the last node gives segments of zero length.
+            law = [nodes[np.minimum(np.arange(node_count), len(nodes) - 1)] for _, _, nodes in damper_data[car]]
+            pair_rows, real_rows = (rows[part] for rows in rows_of_cars[car])
+            slip, gain, ramp = cars[car].gains
+            values = {"pair": pair_rows, "real": real_rows, "gain": gain, "ramp": ramp, "law": np.array(law)}
+            # Sums over the poles are added over the parts of a car, with the contribution of the plates once.
+            values["slip"] = slip if part.start == 0 else 0.0 * slip
+            values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
+            car_sensors, columns = sensors[car], cars[car].columns
+            values["direct"] = cars[car].weights_of(car_sensors)[:, cars[car].states :]
+            values["sensors"] = car_sensors.height[:, columns] @ start[0] + car_sensors.velocity[:, columns] @ start[1]
+            values["full"] = np.array([full for _, full, _ in damper_data[car]])
+            for name, array in values.items():
+                self.table[first_rows[name] :, lane][: array.size] = array.ravel()
+            pair_start, real_start = (states[part] for states in cars[car].start(*start))
+            self.initial[: 2 * len(pair_start), lane] = np.ascontiguousarray(pair_start).view(np.float64)
+            self.initial[2 * pairs :, lane][: len(real_start)] = real_start
+        for name in ("stuck", "stick"):
+            self.table[first_rows[name] :][:d] = 1.0
+        del first_rows["pair"]
+        iterations = cars[0].iterations if element == DOUBLE else ITERATIONS[0]
+        self.rows = TableRows(pairs=pairs, reals=reals, iterations=iterations, pieces=node_count - 1, **first_rows)
+        varying = any(damper.friction_law != "coulomb" for data_of_car in dampers for damper in data_of_car)
+        self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
+
+    def tiles(self, weights: Sequence[Vector]) -> Table:
+        """Arrange the weights of outputs in tiles of TILE outputs.
+
+        Args:
+            weights: weights of each car, see `CarFactors.weights`.
+
+        Returns:
+            Table (..., columns) whose rows are (tiles, states and plate displacements, TILE).
+        """
+        tile_count, poles = -(-len(weights[0]) // TILE), self.states - 2 * (len(self.cars[0].slip) + self.plates)
+        table = aligned_table(tile_count * self.states * TILE, self.element)
+        view = table.reshape(tile_count, self.states, TILE, table.shape[1])
+        for lane, (car, part) in enumerate(self.lanes):
+            # Weights stay zero for poles that only other cars have.
+            padded, p, states = np.zeros((tile_count * TILE, self.states)), self.cars[car].pairs, self.cars[car].states
+            rows, count = padded[: len(weights[car])], len(weights[car])
+            pairs = weights[car][:, : 2 * p].reshape(count, p, 2)[:, part].reshape(count, 2 * len(range(p)[part]))
+            reals = weights[car][:, 2 * p : states][:, part]
+            rows[:, : pairs.shape[1]], rows[:, 2 * self.pairs :][:, : reals.shape[1]] = pairs, reals
+            if part.start == 0:
+                rows[:, poles:] = weights[car][:, states:]
+            view[..., lane] = padded.reshape(tile_count, TILE, self.states).transpose(0, 2, 1)
+        return table

@@ -1,0 +1,123 @@
+"""Inputs of a step that depend on the motion at its beginning: loads of rolling tyres on slopes, controlled dampers.
+
+A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling_tyres`). The poles
+contain the effect of the static load F_0, as a force b z' of the velocity of the plate. The current load adds
+
+    b (max(0, F_z) / F_0 - 1) z',
+
+a product of two motions, as a force that is constant over a step: F_z is extrapolated to the middle of the step from
+the beginnings of this step and of the last one, z' is the mean over the step. Both are of second order.
+
+The poles contain the softest setting of a controlled damper. The excess e = c - cmin acts on the mean velocity of a
+step, f = -e (v + v+)/2: second order, and dissipative at any step. This is the damper curve F_c = e v.
+
+Tyre loads and the velocities that controlled dampers measure are sums over the poles, like damper velocities. A control
+law has branches and a memory: it runs for one car, in double precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.compiler import jitable
+from vehicle.engines.reduced.pole_model import Outputs, PoleModel
+from vehicle.engines.reduced.validity import tyre_outputs
+from vehicle.model.laws.control_laws import PRESENT, RING, act, in_steps, pack
+from vehicle.model.parameters.force_elements import Damper
+
+Vector = npt.NDArray[np.float64]
+
+
+class Feedback(NamedTuple):
+    """Rolling tyres on slopes and controlled dampers of a car, which act by its sensors.
+
+    Attributes:
+        tyres: number of driven plates whose tyre loads act on the slope.
+        plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
+        dampers: indices of the k controlled dampers.
+        laws: their records of `vehicle.model.laws.control_laws`; (k,).
+        memory: states of their laws, with delayed settings; (k, ...).
+        step: index of the next step; (1,).
+    """
+
+    tyres: int
+    plate_inputs: int
+    dampers: npt.NDArray[np.int64]
+    laws: npt.NDArray[Any]
+    memory: Vector
+    step: npt.NDArray[np.int64]
+
+
+def sensor_outputs(
+    model: PoleModel, dampers: Sequence[Damper], columns: Sequence[int], tyre_load: Mapping[str, float] | None
+) -> Outputs:
+    """Return the sensors of a car as outputs.
+
+    Args:
+        model: pole model of the car.
+        dampers: laws of all dampers.
+        columns: indices of the driven plates.
+        tyre_load: static tyre loads [N] by wheel; None if no current loads act on the slopes.
+
+    Returns:
+        F_z/F_0 - 1 of the driven tyres, then velocities of wheel and body at each controlled damper [m/s].
+    """
+    inputs = model.matrices.system.inputs
+    rates = np.zeros((0, len(model.poles)), dtype=np.complex128)
+    if any(damper.controlled for damper in dampers):
+        rates = model.matrices.sensors @ (model.modal * model.poles)
+    no_plates = np.zeros((len(rates), len(inputs)))
+    velocities = Outputs(poles=rates, height=no_plates, velocity=no_plates)
+    if tyre_load is None:
+        return velocities
+    tyres, loads = list(columns), tyre_outputs(model)
+    static = np.array([tyre_load[inputs[tyre]] for tyre in tyres])[:, None]
+    return (
+        Outputs(
+            poles=loads.poles[tyres] / static,
+            height=loads.height[tyres] / static,
+            velocity=loads.velocity[tyres] / static,
+        )
+        + velocities
+    )
+
+
+def feedback_at_rest(dampers: Sequence[Damper], tyres: int, plate_inputs: int, timestep: float) -> Feedback:
+    """Return the feedback of a car at rest.
+
+    Args:
+        dampers: laws of all dampers.
+        tyres, plate_inputs: see `Feedback`.
+        timestep: time step [s].
+    """
+    controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
+    laws = in_steps(np.reshape([pack(damper.controlled) for damper in dampers if damper.controlled], (-1, 8)), timestep)
+    memory = np.zeros((len(controlled), RING + 1 + int(np.max(laws["lag"], initial=0.0))))
+    memory[:] = laws["softest"][:, None]
+    return Feedback(
+        tyres=tyres,
+        plate_inputs=plate_inputs,
+        dampers=np.array(controlled, dtype=np.int64),
+        laws=laws,
+        memory=memory,
+        step=np.zeros(1, dtype=np.int64),
+    )
+
+
+@jitable
+def excess_coefficient(feedback: Feedback, k: int, wheel: float, body: float) -> float:
+    """Return the mean coefficient of a controlled damper in the next step, less the softest one [N s/m].
+
+    Args:
+        feedback: changed in place.
+        k: number of the controlled damper.
+        wheel, body: measured velocities [m/s].
+    """
+    law, memory = feedback.laws[k], feedback.memory[k]
+    act(law, feedback.step[0], body, wheel, memory)
+    excess: float = memory[PRESENT] - law["softest"]
+    return excess

@@ -1,0 +1,256 @@
+"""Run of a group block by block: up to eight cars in single precision, or one in double precision."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.load_rows import LoadRows
+from vehicle.engines.reduced.car_table import CarTable, damper_nodes
+from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_outputs
+from vehicle.engines.reduced.load_outputs import load_outputs
+from vehicle.engines.reduced.plate_samples import plate_samples
+from vehicle.engines.reduced.pole_model import Outputs, PoleModel
+from vehicle.engines.reduced.step_factors import CarFactors
+from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, SINGLE, TILE, OutputTiles, aligned_table
+from vehicle.engines.reduced.validity import (
+    Validity,
+    check_stride,
+    exceeded_segments,
+    rotating_bodies,
+    segment_outputs,
+    tyre_outputs,
+)
+from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
+from vehicle.engines.simulation.recording import Statistics
+from vehicle.model.parameters.force_elements import Damper
+from vehicle.signals.excitation.signal import Signal
+
+Vector = npt.NDArray[np.float64]
+
+BLOCK = 64 * INNER_BLOCK
+"""Samples in a block of plate displacements."""
+
+
+def time_steps(signal: Signal, record_rate: float, longest: float) -> tuple[int, int]:
+    """Return the number of samples of a run and of steps between two samples.
+
+    Args:
+        signal: displacement of the plates.
+        record_rate: rate of the samples [Hz].
+        longest: maximum time step [s].
+    """
+    interval = 1.0 / record_rate
+    return int(np.floor(signal.duration / interval + 1e-6)) + 1, int(np.ceil(interval / longest - 1e-9))
+
+
+class GroupRun:
+    """Run of a group: cars with equal channels on one signal, or one car in double precision.
+
+    Args:
+        models, factors, dampers, tyre_load: pole models, factors, damper laws and static tyre loads [N] of the cars.
+        signal: displacement of the plates.
+        interval: time between two samples [s].
+        every: steps between two samples.
+        element: number type, see `vehicle.engines.reduced.table_layout`.
+        present_load: slope forces of rolling tyres by their current load, see `car_factors`.
+        loads: load channels of the car in double precision.
+    """
+
+    def __init__(
+        self,
+        models: Sequence[PoleModel],
+        factors: Sequence[CarFactors],
+        dampers: Sequence[Sequence[Damper]],
+        tyre_load: Sequence[Mapping[str, float]],
+        signal: Signal,
+        interval: float,
+        every: int,
+        element: np.dtype[Any],
+        present_load: bool = False,
+        loads: LoadRows | None = None,
+    ) -> None:
+        self.models, self.factors, self.dampers, self.tyre_load = models, factors, dampers, tyre_load
+        self.interval, self.every, self.timestep, self.loads = interval, every, interval / every, loads
+        self.driven, self.element = signal.wheels, element
+        steps = int(np.floor(signal.duration / interval + 1e-6)) * every
+        self.plates = plate_samples(signal, self.timestep, steps, AHEAD * every)
+        start = self.plates[:1].reshape(-1, 2).T
+        columns = factors[0].columns
+        sensors = [
+            sensor_outputs(model, laws, columns, static if present_load else None)
+            for model, laws, static in zip(models, dampers, tyre_load, strict=True)
+        ]
+        tyres = len(columns) if present_load else 0
+        self.feedback = feedback_at_rest(dampers[0], tyres, factors[0].plate_inputs, self.timestep)
+        self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors)
+
+    def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
+        """Simulate the cars and fill their rows of the table.
+
+        Args:
+            table: time histories; (channels, all cars, samples).
+            rows_of_cars: rows of the cars of this group.
+            channels: names of the channels; `friction_<index>` is the mean nonlinear force of a damper.
+
+        Returns:
+            Validity of the motion of each car.
+        """
+        matrices = self.models[0].matrices
+        system, segments, bodies = matrices.system, matrices.segments, rotating_bodies(matrices)
+        count, load_names = len(self.dampers[0]), () if self.loads is None else self.loads.names
+        # Rows of a sample: positions, levels (tyre loads, segments; load channels), then of the dampers: velocities,
+        # forces, friction, coefficients.
+        position_names = [name for name in channels if name in system.outputs]
+        tyre_wheels = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
+        levels = TILE * -(-len(position_names) // TILE)
+        watched = TILE * -(-(len(tyre_wheels) + len(segments)) // TILE)
+        speeds = levels + watched + TILE * -(-len(load_names) // TILE)
+        rows = {name: row for row, name in enumerate(position_names)}
+        rows |= {name: levels + row for row, name in enumerate(tyre_wheels)}
+        rows |= {name: levels + watched + row for row, name in enumerate(load_names)}
+        for index, wheel in enumerate(system.inputs[:count]):
+            names = f"damper_{wheel}_velocity", f"damper_{wheel}_force", f"friction_{index}"
+            rows |= {name: speeds + part * count + index for part, name in enumerate(names)}
+        for k, index in enumerate(self.feedback.dampers.tolist()):
+            rows[f"damper_{system.inputs[index]}_coefficient"] = speeds + 3 * count + k
+        static_values = np.zeros((len(channels), self.cars.table.shape[1]))
+        for row, name in enumerate(channels):
+            if name in tyre_wheels:
+                static_values[row, : len(self.models)] = [load[tyre_wheels[name]] for load in self.tyre_load]
+            elif self.loads is not None and name in load_names:
+                static_values[row] = self.loads.static[load_names.index(name)]
+            elif speeds + count <= rows.get(name, 0) < speeds + 2 * count:
+                static_values[row, : len(self.models)] = [
+                    damper_nodes(laws[rows[name] - speeds - count])[0]["rest_force"] for laws in self.dampers
+                ]
+            elif name not in rows:
+                table[row, rows_of_cars] = self._plate(name, table.shape[2])
+        modal_weights = [car.weights(model.modal) for car, model in zip(self.factors, self.models, strict=True)]
+        positions, rotations = (
+            [rows_of(model.matrices) @ shape for model, shape in zip(self.models, modal_weights, strict=True)]
+            for rows_of in (partial(_position_rows, names=position_names), partial(_rotation_rows, bodies=bodies))
+        )
+        linear = [self._levels(model, watched) for model in self.models]
+        reading = OutputTiles(
+            positions=self.cars.tiles(positions),
+            levels=self.cars.tiles(
+                [car.weights_of(outputs) for car, outputs in zip(self.factors, linear, strict=True)]
+            ),
+            rotations=self.cars.tiles(rotations),
+            loads=len(tyre_wheels),
+            watched=watched,
+            every=check_stride(self.interval),
+            always=bool(segments) or any(name in tyre_wheels or name in load_names for name in channels),
+            wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
+            offset=static_values,
+            weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(self.element),
+        )
+        width = speeds + 3 * count + len(self.feedback.dampers)
+        y = aligned_table((PAST + INNER_BLOCK) * width, self.element)
+        first_sample = y[(PAST - 1) * width :][:width]
+        for lane, (car, _) in enumerate(self.cars.lanes):
+            # First sample: a car at rest over plates with any displacement.
+            outputs, columns = linear[car], self.factors[car].columns
+            initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ self.start.ravel()
+            first_sample[levels:, lane][: len(initial)] = initial
+        first_sample[speeds + 3 * count :] = 0.5 * self.feedback.laws["softest"][:, None]
+        peaks = aligned_table(len(bodies) + 2 * watched, self.element)
+        self._step_blocks(reading, y, peaks, table, rows_of_cars)
+        return [
+            self._validity(peaks[:, lane].astype(float), model, bodies, static)
+            for lane, (model, static) in enumerate(zip(self.models, self.tyre_load, strict=True))
+        ]
+
+    def _levels(self, model: PoleModel, watched: int) -> Outputs:
+        """Return the levels of a car as outputs: tyre loads and segments, filled up to `watched` rows, then loads."""
+        outputs = tyre_outputs(model) + segment_outputs(model)
+        idle = ((0, watched - len(outputs.poles)), (0, 0))
+        outputs = Outputs(
+            poles=np.pad(outputs.poles, idle),
+            height=np.pad(outputs.height, idle),
+            velocity=np.pad(outputs.velocity, idle),
+        )
+        return outputs if self.loads is None else outputs + load_outputs(model, self.loads)
+
+    def _plate(self, channel: str, samples: int) -> Vector | float:
+        """Return the displacement of a plate at the samples [m]."""
+        for column, wheel in enumerate(self.driven):
+            if channel == f"plate_{wheel}_displacement":
+                return self.plates[: samples * self.every : self.every][:, 2 * column]
+        return 0.0
+
+    def _step_blocks(
+        self, reading: OutputTiles, y: Vector, peaks: Vector, table: Vector, rows_of_cars: Sequence[int]
+    ) -> None:
+        """Advance the cars block by block; see `time_stepping.step_cars` for the arguments."""
+        from vehicle.engines.reduced.time_stepping import compiled_stepping
+
+        stepping, cars, every = compiled_stepping(), self.cars, self.every
+        m, x = cars.plates, aligned_table((INNER_BLOCK + 1) * cars.states, self.element)
+        kept = INNER_BLOCK + 1 if self.element == SINGLE and self.models[0].slope.shape[1] else 0
+        changes = aligned_table(kept * (2 * cars.rows.pairs + cars.rows.reals), self.element)
+        x[: len(cars.initial)] = cars.initial
+        lengths = tuple((0.0,) * count for count in (cars.inputs, cars.sums, len(self.dampers[0])))
+        constant, indices = (cars.table, cars.rows, cars.laws, self.feedback), np.array(rows_of_cars, dtype=np.int64)
+        sample, end = 1, table.shape[2] + AHEAD
+        while sample < end:
+            size, first = min(BLOCK, end - sample), (sample - 1) * every
+            plates = self.plates[first : first + size * every + 1]
+            rates = np.zeros((len(plates), 3 * m), dtype=self.element)
+            rates[:, :m], rates[:, 2 * m :] = plates[:, 1::2], plates[:, 0::2]
+            rates[:-1, m : 2 * m] = np.diff(plates[:, 0::2], axis=0) / self.timestep
+            displacements = plates[::every, 0::2]
+            plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(self.element)
+            stepping(*constant, rates, plate_z, every, reading, x, changes, y, peaks, table, sample, indices, *lengths)
+            sample += size
+
+    @staticmethod
+    def _validity(
+        car_peaks: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]
+    ) -> Validity:
+        """Return the validity of the motion of a car from its peaks; see `step_cars` for their order."""
+        rotations, low, high = car_peaks[: len(bodies)], car_peaks[len(bodies) :: 2], car_peaks[len(bodies) + 1 :: 2]
+        wheels, segments = model.matrices.system.inputs, model.matrices.segments
+        segment_rows = slice(len(wheels), len(wheels) + len(segments))
+        return Validity(
+            angles=dict(zip(bodies, np.sqrt(rotations).tolist(), strict=True)),
+            loads={wheel: tyre_load[wheel] + load for wheel, load in zip(wheels, low.tolist(), strict=False)},
+            one_sided=model.matrices.one_sided,
+            exceeded=exceeded_segments(segments, low[segment_rows], high[segment_rows]),
+        )
+
+    def statistics(self, validity: Validity, samples: int, wall_time: float) -> Statistics:
+        """Return the statistics of the run of a car.
+
+        Args:
+            validity: extremes of its motion.
+            samples: number of samples.
+            wall_time: computing time [s].
+        """
+        return Statistics(
+            engine="reduced",
+            callback="native",
+            timestep=self.timestep,
+            steps=(samples - 1) * self.every,
+            wall_time=wall_time,
+            warnings=validity.warnings(),
+            within_validity=validity.within_limits,
+            energies=None,
+        )
+
+
+def _position_rows(matrices: CarMatrices, names: Sequence[str]) -> Vector:
+    """Return the rows of acceleration channels over the coordinates; see `recorded_acceleration`."""
+    size = matrices.system.size
+    return np.array([matrices.system.outputs[name][:size] for name in names]).reshape(-1, size)
+
+
+def _rotation_rows(matrices: CarMatrices, bodies: Sequence[str]) -> Vector:
+    """Return the rows of the rotations of bodies about three axes over the coordinates."""
+    return np.concatenate([matrices.body_rows[body][3:] for body in bodies])

@@ -1,0 +1,241 @@
+"""Time step of the cars in a vector: their poles, then their damper forces.
+
+A pole is integrated as the difference y from its static value on the plates, xi = y - (b_z/s) z:
+
+    y' = s y + (b_c + b_z/s) z' + e f.
+
+The differences stay small even on hilly roads. A step adds (E - 1) y and its inputs to y. The accelerations of rolling
+cars in single precision take these changes: round-off of y, amplified by a second difference, would be most of the
+lateral acceleration above 100 Hz. z' is a quadratic over a step, given
+by its ends and its mean. A damper force has the mean f_n over step n. If the damper is stuck in this step and the last,
+the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. In sliding it is constant, except for the
+damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
+are solved by Gauss-Seidel iterations over the dampers, each by its inverse law (`vehicle.engines.reduced.car_table`).
+
+This module imports numba at the top, so only runs that compile import it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from vehicle.compiler import OPTIONS, numba_module
+from vehicle.engines.reduced.feedback import Feedback, excess_coefficient
+from vehicle.engines.reduced.simd_vector import (
+    add_scaled,
+    broadcast,
+    filled,
+    less,
+    load,
+    load_tuple,
+    maximum,
+    minimum,
+    of_cars,
+    store,
+    weighted_sum,
+)
+from vehicle.engines.reduced.table_layout import TableRows
+from vehicle.model.laws.damper import friction_limit
+
+numba = numba_module()
+
+# Sums in the order of the source: the values of a car must not depend on the number of poles of other cars.
+EXACT = OPTIONS | {"fastmath": {"contract"}}
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """Compile a function that is inlined in its callers, without reference counting."""
+    return numba.njit(no_cpython_wrapper=True, forceinline=True, _nrt=False, **EXACT)(function)
+
+
+def compiled_once(function: Callable[..., Any]) -> Any:
+    """Compile a function separately, without inlining: it is called once for many samples."""
+    return numba.njit(no_cpython_wrapper=True, _nrt=False, **EXACT)(function)
+
+
+@inlined
+def solve_dampers(t: Any, r: TableRows, dampers: Any) -> None:
+    """Solve for damper velocities and forces of a step; the work space begins with the velocities without forces."""
+    count = len(dampers)
+    step, old = r.work + count, r.inputs
+    nodes = r.pieces + 1
+    width = 3 * nodes
+    kept = step + count  # forces of the last step
+    work = kept + count  # nodes of each inverse law: velocity without forces, 1/length, force, rise of force
+    zeros, ones = filled(t, 0.0), filled(t, 1.0)
+    for i in range(count):
+        force = load(t, old + i)
+        store(t, kept + i, force)
+        stick = load(t, r.stick + i)
+        diagonal = load(t, r.gain + i * count + i) + stick * load(t, r.ramp + i * count + i)
+        store(t, step + i, diagonal)
+        arriving = load(t, r.work + i) - diagonal * load(t, r.hold + i)
+        limit = load(t, r.limit + i)
+        at, law = work + 4 * nodes * i, r.law + width * i
+        for j in range(nodes):
+            node_force = load(t, law + 3 * j + 1) + load(t, law + 3 * j + 2) * limit
+            store(t, at + 4 * j, load(t, law + 3 * j) + diagonal * node_force)
+            store(t, at + 4 * j + 2, node_force)
+        for j in range(r.pieces):
+            store(t, at + 4 * j + 1, ones / (load(t, at + 4 * j + 4) - load(t, at + 4 * j)))
+            store(t, at + 4 * j + 3, load(t, at + 4 * j + 6) - load(t, at + 4 * j + 2))
+        for j in range(count):
+            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + i * count + j) * load(t, old + j)
+        store(t, r.work + i, arriving)
+    for iteration in range(r.iterations):
+        for i in range(count):
+            arriving = load(t, r.work + i)
+            for j in range(count):
+                if j != i:
+                    row = i * count + j
+                    other = load(t, r.gain + row) + load(t, r.stick + j) * load(t, r.ramp + row)
+                    arriving = arriving + other * load(t, old + j)
+            at, law = work + 4 * nodes * i, r.law + width * i
+            force, hold = load(t, at + 2), load(t, law + 1)
+            for j in range(r.pieces):
+                share = (arriving - load(t, at + 4 * j)) * load(t, at + 4 * j + 1)
+                share = minimum(maximum(share, zeros), ones)
+                force = force + load(t, at + 4 * j + 3) * share
+                hold = hold + (load(t, law + 3 * j + 4) - load(t, law + 3 * j + 1)) * share
+            store(t, r.velocity + i, arriving - load(t, step + i) * force)
+            store(t, old + i, zeros - force - load(t, r.hold + i))
+            if iteration == r.iterations - 1:
+                store(t, step + i, hold)
+    for i in range(count):
+        stick = load(t, r.stick + i)
+        store(t, old + count + i, stick * (load(t, old + i) - load(t, kept + i)))
+        store(t, r.hold + i, load(t, step + i))
+        speed = load(t, r.velocity + i)
+        stuck = less(maximum(speed, zeros - speed), load(t, r.full + i))
+        store(t, r.stick + i, stuck * load(t, r.stuck + i))
+        store(t, r.stuck + i, stuck)
+
+
+@inlined
+def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, step: int, dampers: Any) -> None:
+    """Set the inputs of the next step, its friction limits and the coefficients of controlled dampers.
+
+    Args:
+        t, r, feedback, rates, laws, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
+        step: index of the step.
+    """
+    count, plates = len(dampers), rates.shape[1] // 3
+    row = r.inputs + 2 * count
+    for k in range(2 * plates):
+        store(t, row + k, broadcast(rates[step, k]))
+    row += 2 * plates
+    for i in range(feedback.tyres):
+        load_now = load(t, r.sensors + i)
+        middle = load_now + filled(t, 0.5) * (load_now - load(t, r.past + i))
+        store(t, r.past + i, load_now)
+        store(t, row + i, maximum(middle, filled(t, -1.0)) * broadcast(rates[step, plates + i]))
+    for i in range(feedback.plate_inputs):
+        store(t, row + feedback.tyres + i, broadcast(rates[step, 2 * plates + i]))
+    for k in range(feedback.dampers.shape[0]):
+        i, nodes, sensor = feedback.dampers[k], r.pieces + 1, r.sensors + feedback.tyres + 2 * k
+        half = filled(t, 0.5 * excess_coefficient(feedback, k, t[sensor, 0], t[sensor + 1, 0]))
+        store(t, r.hold + i, half * load(t, r.velocity + i))
+        for j in range(3 * i * nodes, 3 * (i + 1) * nodes, 3):
+            store(t, r.law + j + 1, half * load(t, r.law + j))
+    for i in range(count):
+        # Extrapolate the velocity to the middle of the step from both ends of the last step.
+        now = load(t, r.velocity + i)
+        if laws.shape[0] > 0:
+            store(t, r.limit + i, now + filled(t, 0.5) * (now - load(t, r.earlier + i)))
+            for lane in range(laws.shape[1]):
+                t[r.limit + i, lane] = friction_limit(laws[i, lane], t[r.limit + i, lane])
+            if laws.shape[1] == 1:
+                store(t, r.limit + i, broadcast(t[r.limit + i, 0]))
+        store(t, r.earlier + i, now)
+
+
+@inlined
+def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors: int) -> None:
+    """Add the direct terms of forces and plates at the end of a step to the sums of the sensors.
+
+    Args:
+        t, r, rates: see `vehicle.engines.reduced.time_stepping.step_cars`.
+        end: row of the end of the step in `rates`.
+        count, sensors: numbers of dampers and of sensors.
+    """
+    plates = rates.shape[1] // 3
+    row = r.direct
+    for i in range(sensors):
+        value = load(t, r.sensors + i)
+        for k in range(2 * count):
+            value = value + load(t, row + k) * load(t, r.inputs + k)
+        for k in range(plates):
+            value = value + load(t, row + 2 * count + k) * broadcast(rates[end, k])
+            value = value + load(t, row + 2 * count + plates + k) * broadcast(rates[end, 2 * plates + k])
+        store(t, r.sensors + i, value)
+        row += 2 * (count + plates)
+
+
+@inlined
+def advance(
+    t: Any,
+    r: TableRows,
+    x: Any,
+    changes: Any,
+    before: int,
+    at: int,
+    last: int,
+    now: int,
+    rates: Any,
+    laws: Any,
+    feedback: Feedback,
+    step: int,
+    inputs: Any,
+    sums: Any,
+    dampers: Any,
+) -> None:
+    """Advance the poles and damper forces of the cars by a step.
+
+    Args:
+        t, r, rates, laws, feedback, inputs, sums, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
+        x, changes: states of samples, and changes of the poles since the sample before; changed in place.
+        before, at: first rows of the poles in `x` at the beginning and at the end of the step.
+        last, now: first rows of the changes up to the beginning and up to the end of the step.
+        step: index of the step.
+    """
+    count, plates = len(dampers), rates.shape[1] // 3
+    size, width, kept = len(inputs), len(sums), changes.shape[0] > 0
+    pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
+    set_inputs(t, r, feedback, rates, laws, step, dampers)
+    for i in range(width):
+        arriving = filled(t, 0.0)
+        if i < count:
+            for k in range(plates):
+                arriving = arriving + load(t, r.slip + i * plates + k) * broadcast(rates[step + 1, k])
+        store(t, r.work + i, arriving)
+        store(t, r.work + width + i, filled(t, 0.0))
+    u = load_tuple(t, r.inputs, inputs)
+    w, imaginary_sums = load_tuple(t, r.work, sums), load_tuple(t, r.work + width, sums)
+    for p in range(r.pairs):
+        row = p * pair_rows
+        a, b, decay, rotation = load(x, before + 2 * p), load(x, before + 2 * p + 1), load(t, row), load(t, row + 1)
+        real_change = weighted_sum(t, row + 2, u, decay * a - rotation * b)
+        imaginary_change = weighted_sum(t, row + 2 + size, u, decay * b + rotation * a)
+        real, imaginary = a + real_change, b + imaginary_change
+        store(x, at + 2 * p, real)
+        store(x, at + 2 * p + 1, imaginary)
+        if kept:
+            store(changes, now + 2 * p, load(changes, last + 2 * p) + real_change)
+            store(changes, now + 2 * p + 1, load(changes, last + 2 * p + 1) + imaginary_change)
+        w = add_scaled(t, row + 2 + 2 * size, real, w)
+        imaginary_sums = add_scaled(t, row + 2 + 2 * size + width, imaginary, imaginary_sums)
+    for q in range(r.reals):
+        row, pole_row = r.real + q * real_rows, 2 * r.pairs + q
+        a = load(x, before + pole_row)
+        real_change = weighted_sum(t, row + 1, u, load(t, row) * a)
+        real = a + real_change
+        store(x, at + pole_row, real)
+        if kept:
+            store(changes, now + pole_row, load(changes, last + pole_row) + real_change)
+        w = add_scaled(t, row + 1 + size, real, w)
+    for i in range(width):
+        store(t, r.work + i if i < count else r.sensors + i - count, of_cars(w[i] + imaginary_sums[i]))
+    solve_dampers(t, r, dampers)
+    read_sensors(t, r, rates, step + 1, count, width - count)
+    feedback.step[0] += 1

@@ -1,0 +1,54 @@
+"""Statements on what the data of a fit leave open: held parameters, bounds, correlated pairs, large standard errors."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from vehicle.studies.tuning.fit_result import TuningResult
+
+CORRELATED = 0.9
+"""Minimum correlation of a pair that is named: at 0.9 the standard error of each value is 1 / sqrt(1 - 0.9^2) = 2.3
+times the standard error for a fixed second value."""
+
+UNSURE = 0.1
+"""Minimum relative standard error of a value that is named [-]: the tolerance of a damper or a bushing in series
+production, so that the fit would not distinguish it from another specimen."""
+
+
+def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
+    """Return a message for each undetermined parameter or pair; empty if the data determine all parameters.
+
+    For values a and b with relative standard errors s_a, s_b and correlation rho, the relative standard error of a / b
+    (rho > 0) or a b (rho < 0) is sqrt(s_a^2 + s_b^2 - 2 |rho| s_a s_b).
+
+    Args:
+        result: result of a fit.
+    """
+    sentences = [held.message() for held in result.unidentified]
+    for path in result.at_bound:
+        entry = next(parameter for parameter in result.parameters if parameter.path == path)
+        side = "lower" if result.values[path] < np.sqrt(entry.low * entry.high) else "upper"
+        sentences.append(
+            f"{path}: ended at its {side} bound {result.values[path]:.6g}, so without a standard error: widen the "
+            "bound, or the model cannot follow the data"
+        )
+    relative = {path: result.standard_errors[path] / abs(result.values[path]) for path in result.free}
+    for (i, first), (j, second) in combinations(enumerate(result.free), 2):
+        rho = float(result.correlation[i, j])
+        if abs(rho) < CORRELATED:
+            continue
+        a, b = relative[first], relative[second]
+        both = np.sqrt(max(a**2 + b**2 - 2.0 * abs(rho) * a * b, 0.0))
+        word = "ratio" if rho > 0.0 else "product"
+        sentences.append(
+            f"{first} and {second}: correlation {rho:+.2f}; the data determine their {word} to {100 * both:.2g} %, but "
+            f"the values alone to {100 * a:.2g} and {100 * b:.2g} % only"
+        )
+    sentences += [
+        f"{path}: standard error {100 * error:.2g} % of the value, above {100 * UNSURE:g} %"
+        for path, error in relative.items()
+        if error > UNSURE
+    ]
+    return tuple(sentences)

@@ -1,0 +1,343 @@
+"""Posterior distribution of parameters given measured FRFs: emulator, sampling, evidence.
+
+ln p(y | u) = -1/2 sum_k [(y_k - e_k(u))^2 / s_k^2 + ln(2 pi s_k^2)],   s_k^2 = noise_k^2 + left_out_k^2 + discrepancy^2
+
+y_k are the means of ln|H| in bands, e_k(u) the emulator, left_out_k its leave-one-out error, and u the parameters,
+logarithmic between their bounds, -1 to 1, with a uniform prior. The discrepancy is the standard deviation of ln|H| by
+which the model differs from the real car in each band; without it the intervals are too narrow.
+
+Sources: Kennedy and O'Hagan, Bayesian calibration of computer models, J. Royal Statistical Society B 63 (2001), 425-464
+(discrepancy); Foreman-Mackey et al., emcee: the MCMC hammer, PASP 125 (2013), 306-312 (sampler).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
+from vehicle.model.parameters.paths import overrides_of
+from vehicle.model.parameters.ranges import Range, checked_ranges
+from vehicle.runs.car import Car
+from vehicle.studies.tuning.convergence import effective_samples, r_hat
+from vehicle.studies.tuning.emulator import Emulator, fitted_emulator
+from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.response_cells import ResponseCells, evaluated_cars, response_cells, signals_of
+from vehicle.threads import one_blas_thread
+
+Vector = npt.NDArray[np.float64]
+
+CARS = 256
+"""Default number of cars of the emulator: a cubic of six parameters has 84 terms."""
+
+DISCREPANCY = 0.1
+"""Default standard deviation of ln|H| between model and car [-]: 10 %."""
+
+WALKERS = 40
+"""Number of walkers of the ensemble; more than twice any usual number of parameters."""
+
+SEARCH = 600
+"""Steps of differential evolution from which the independent proposals of the sampler are fitted."""
+
+BLOCK, MOST_BLOCKS = 500, 40
+"""Steps between two checks of the convergence, and maximum number of blocks. With independent proposals a
+posterior near a Gaussian of six parameters needs 500 steps, 1 s; ensemble moves alone needed more than a minute."""
+
+FREEDOM = 5.0
+"""Degrees of freedom of the proposals."""
+
+CONVERGED = 1.01
+"""Maximum R-hat, the limit of Vehtari et al. (2021)."""
+
+DRAWS = 20_000
+"""Draws of the importance sampling of the evidence, and of the prior for the first positions."""
+
+EVIDENCE_BOUND = 10.0
+"""Minimum ratio of the evidences of two laws for a decision: "strong" in Kass and Raftery, JASA 90 (1995), 773-795,
+begins at 10 to 20."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class EmulatedCar:
+    """Polynomials of the measured quantities and of the comfort over the parameters.
+
+    Attributes:
+        parameters: fitted parameters with bounds.
+        cells: data.
+        emulator: means of ln|H|, a column for each cell.
+        comfort: logarithm of the comfort value on each signal [ln m/s2]; None without a signal.
+        signals: names of the signals.
+        cars: number of cars.
+    """
+
+    parameters: tuple[Range, ...]
+    cells: ResponseCells
+    emulator: Emulator
+    comfort: Emulator | None
+    signals: tuple[str, ...]
+    cars: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Posterior:
+    """Samples of the parameters given the data.
+
+    Attributes:
+        car: the emulator.
+        chains: samples of u, (walkers, n, parameters).
+        r_hat, effective: rank-normalised split R-hat and bulk effective sample size of each parameter.
+        log_evidence: ln of the evidence p(y), and its standard error.
+        discrepancy: standard deviation of the discrepancy [-].
+        misfit: root of the mean square of (y - e) / s at the sample with the highest likelihood [-].
+    """
+
+    car: EmulatedCar
+    chains: Vector
+    r_hat: tuple[float, ...]
+    effective: tuple[float, ...]
+    log_evidence: tuple[float, float]
+    discrepancy: float
+    misfit: float
+
+    def values(self) -> Vector:
+        """Return the samples in the units of the parameters, (samples, parameters)."""
+        return values_at(self.car.parameters, self.chains.reshape(-1, self.chains.shape[2]))
+
+    def interval(self, probability: float = 0.9) -> Vector:
+        """Return lower end, median and upper end of the central intervals, (3, parameters)."""
+        tail = 50.0 * (1.0 - probability)
+        return np.asarray(np.percentile(self.values(), [tail, 50.0, 100.0 - tail], axis=0))
+
+    def comfort(self, probability: float = 0.9, seed: int = 1) -> Vector:
+        """Return lower end, median and upper end of the comfort on each signal [m/s2], (3, signals)."""
+        if self.car.comfort is None:
+            return np.zeros((3, 0))
+        predictions = self.car.comfort(self.chains.reshape(-1, self.chains.shape[2]))
+        errors = np.random.default_rng(seed).standard_normal(predictions.shape) * self.car.comfort.left_out
+        tail = 50.0 * (1.0 - probability)
+        return np.asarray(np.exp(np.percentile(predictions + errors, [tail, 50.0, 100.0 - tail], axis=0)))
+
+
+def require_posterior(targets: Sequence[FrfTarget]) -> None:
+    """Check before a fit that its FRFs have a known noise and that emcee is installed.
+
+    Raises:
+        DataError: no FRFs, or FRFs without a known noise.
+        MissingPartError: emcee is not installed.
+    """
+    response_cells(targets)
+    _emcee()
+
+
+def values_at(parameters: Sequence[Range], points: Vector) -> Vector:
+    """Return values at points u in [-1, 1]: ln(value) = (ln(low high) + u ln(high / low)) / 2.
+
+    Args:
+        parameters: parameters with bounds above 0.
+        points: (points, parameters).
+    """
+    low, high = (np.log([getattr(parameter, end) for parameter in parameters]) for end in ("low", "high"))
+    return np.asarray(np.exp(0.5 * (low + high + points * (high - low))))
+
+
+@one_blas_thread()
+def emulated_car(
+    car: Car,
+    parameters: Sequence[Range],
+    targets: Sequence[FrfTarget],
+    *,
+    cars: int = CARS,
+    seed: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> EmulatedCar:
+    """Fit an emulator to cars at Sobol points between the bounds.
+
+    Args:
+        car: the car.
+        parameters: parameters with bounds.
+        targets: measured FRFs.
+        cars: number of cars.
+        seed: seed of the points.
+        progress: called with the finished fraction.
+
+    Raises:
+        ConfigurationError: too few cars, or bounds that are not above 0.
+        DataError: no FRFs, or FRFs without a known noise.
+    """
+    checked = checked_ranges(parameters)
+    cells = response_cells(targets)
+    points = 2.0 * scipy.stats.qmc.Sobol(len(checked), seed=seed).random(cars) - 1.0
+    paths = [parameter.path for parameter in checked]
+    done = progress or (lambda fraction: None)
+    built = []
+    for index, row in enumerate(values_at(checked, points)):
+        built.append(car.varied(overrides_of(car.vehicle, dict(zip(paths, row, strict=True)))))
+        _ = built[-1].poles
+        done(0.6 * (index + 1) / cars)
+    means, comfort = evaluated_cars(built, cells, lambda fraction: done(0.6 + 0.4 * fraction))
+    return EmulatedCar(
+        parameters=checked,
+        cells=cells,
+        emulator=fitted_emulator(points, means),
+        comfort=fitted_emulator(points, np.log(comfort)) if comfort.size else None,
+        signals=tuple(signal.source for signal in signals_of(cells)),
+        cars=cars,
+    )
+
+
+@one_blas_thread()
+def posterior_of(
+    car: EmulatedCar, *, discrepancy: float = DISCREPANCY, data: Vector | None = None, seed: int = 1
+) -> Posterior:
+    """Sample the posterior distribution until R-hat of all parameters is below `CONVERGED`.
+
+    Args:
+        car: the emulator.
+        discrepancy: standard deviation of ln|H| between model and car in each band [-].
+        data: other data than those of the cells, (cells,).
+        seed: seed of the sampler.
+
+    Raises:
+        ConfigurationError: a negative discrepancy.
+        MissingPartError: emcee is not installed.
+        SimulationError: R-hat stays above the limit.
+    """
+    if not 0.0 <= discrepancy < 1.0:
+        raise ConfigurationError(f"discrepancy {discrepancy:g}: must be from 0 to below 1, as 0.1 for 10 %")
+    emcee = _emcee()
+    data = car.cells.data if data is None else data
+    variance = car.cells.noise**2 + car.emulator.left_out**2 + discrepancy**2
+    constant = -0.5 * float(np.sum(np.log(2.0 * np.pi * variance)))
+    size = len(car.parameters)
+
+    def log_likelihood(points: Vector) -> Vector:
+        inside = np.all(np.abs(points) <= 1.0, axis=1)
+        misfit = np.sum((data - car.emulator(np.clip(points, -1.0, 1.0))) ** 2 / variance, axis=1)
+        return np.where(inside, constant - 0.5 * misfit, -np.inf)
+
+    random = np.random.default_rng(seed)
+    prior = random.uniform(-1.0, 1.0, (DRAWS, size))
+    first = log_likelihood(prior)
+    weights = np.exp(0.25 * (first - first.max())) + 1e-12  # wider than the posterior
+    chosen = random.choice(DRAWS, WALKERS, replace=False, p=weights / weights.sum())
+    search = emcee.EnsembleSampler(
+        WALKERS, size, log_likelihood, moves=[(emcee.moves.DEMove(), 0.9), (emcee.moves.StretchMove(), 0.1)],
+        vectorize=True,
+    )  # fmt: skip
+    search.random_state = np.random.RandomState(seed).get_state()
+    state = search.run_mcmc(prior[chosen], SEARCH)
+    near = search.get_chain(discard=SEARCH // 2, flat=True)
+    proposal = _Proposal(near.mean(axis=0), np.atleast_2d(np.cov(near.T)))
+    moves = [(emcee.moves.MHMove(proposal), 0.7), (emcee.moves.DEMove(), 0.3)]
+    sampler = emcee.EnsembleSampler(WALKERS, size, log_likelihood, moves=moves, vectorize=True)
+    sampler.random_state = search.random_state
+    for _ in range(MOST_BLOCKS):
+        state = sampler.run_mcmc(state, BLOCK)
+        kept = np.swapaxes(sampler.get_chain(discard=sampler.iteration // 4), 0, 1)
+        factors = tuple(r_hat(kept[:, :, index]) for index in range(size))
+        if max(factors) < CONVERGED:
+            break
+    else:
+        worst = int(np.argmax(factors))
+        raise SimulationError(
+            f"posterior of {car.parameters[worst].path}: R-hat {factors[worst]:.3f} after {BLOCK * MOST_BLOCKS} steps, "
+            f"must be below {CONVERGED:g}; narrow the bounds or leave out parameters that the data do not determine"
+        )
+    samples = kept.reshape(-1, size)
+    best = float(np.max(log_likelihood(samples[:: max(samples.shape[0] // DRAWS, 1)])))
+    return Posterior(
+        car=car,
+        chains=kept,
+        r_hat=factors,
+        effective=tuple(effective_samples(kept[:, :, index]) for index in range(size)),
+        log_evidence=_log_evidence(log_likelihood, samples, random),
+        discrepancy=discrepancy,
+        misfit=float(np.sqrt(2.0 * (constant - best) / data.size)),
+    )
+
+
+class _Proposal:
+    """t distribution with 5 degrees of freedom and 1.5 times a covariance: wider tails than a Gaussian posterior.
+
+    Args:
+        mean: centre, (p,).
+        covariance: covariance of the samples, (p, p).
+    """
+
+    def __init__(self, mean: Vector, covariance: Vector) -> None:
+        self.mean, size = mean, mean.size
+        self.factor = np.linalg.cholesky(1.5 * covariance + 1e-12 * np.eye(size))
+        gamma = scipy.special.gammaln
+        self.constant = float(
+            gamma(0.5 * (FREEDOM + size)) - gamma(0.5 * FREEDOM) - 0.5 * size * np.log(FREEDOM * np.pi)
+        ) - float(np.sum(np.log(np.diag(self.factor))))
+
+    def log_density(self, points: Vector) -> Vector:
+        """Return ln of the density at points, (points, p)."""
+        scaled = scipy.linalg.solve_triangular(self.factor, (points - self.mean).T, lower=True)
+        square = np.sum(scaled**2, axis=0)
+        return np.asarray(self.constant - 0.5 * (FREEDOM + self.mean.size) * np.log1p(square / FREEDOM))
+
+    def draw(self, count: int, random: Any) -> Vector:
+        """Return draws of a random generator of NumPy, (count, p)."""
+        normal = random.normal(size=(count, self.mean.size)) @ self.factor.T
+        return np.asarray(self.mean + normal / np.sqrt(random.chisquare(FREEDOM, size=(count, 1)) / FREEDOM))
+
+    def __call__(self, points: Vector, random: Any) -> tuple[Vector, Vector]:
+        """Return independent new points and ln q(old) - ln q(new), as `emcee.moves.MHMove` needs."""
+        new = self.draw(points.shape[0], random)
+        return new, self.log_density(points) - self.log_density(new)
+
+
+def _log_evidence(
+    log_likelihood: Callable[[Vector], Vector], samples: Vector, random: np.random.Generator
+) -> tuple[float, float]:
+    """Return ln of the mean likelihood over the prior by importance sampling, and its standard error.
+
+    Proposal: 0.9 of a t distribution (5 degrees of freedom) with mean and 1.5 times the covariance of the samples, 0.1
+    of the prior.
+    """
+    size = samples.shape[1]
+    proposal = _Proposal(samples.mean(axis=0), np.atleast_2d(np.cov(samples.T)))
+    prior = 2.0**-size
+    from_prior = random.uniform(size=DRAWS) < 0.1
+    draws = proposal.draw(DRAWS, random)
+    draws[from_prior] = random.uniform(-1.0, 1.0, (int(from_prior.sum()), size))
+    inside = np.all(np.abs(draws) <= 1.0, axis=1)
+    density = 0.9 * np.exp(proposal.log_density(draws)) + 0.1 * prior * inside
+    logarithm = np.where(inside, log_likelihood(draws) + np.log(prior) - np.log(density), -np.inf)
+    top = float(np.max(logarithm))
+    ratio = np.exp(logarithm - top)
+    mean = float(np.mean(ratio))
+    return top + float(np.log(mean)), float(np.std(ratio) / mean / np.sqrt(DRAWS))
+
+
+def verdict(first: tuple[str, Posterior], second: tuple[str, Posterior]) -> str:
+    """Return the ratio of the evidences of two laws in words, "undecided" below `EVIDENCE_BOUND`.
+
+    Args:
+        first, second: name of a law and its posterior, given the same data.
+    """
+    difference = first[1].log_evidence[0] - second[1].log_evidence[0]
+    better, other = (first[0], second[0]) if difference > 0.0 else (second[0], first[0])
+    ratio = float(np.exp(min(abs(difference), 600.0)))
+    statement = f"{better} {ratio:.3g} times as probable as {other}"
+    if ratio < EVIDENCE_BOUND:
+        return f"undecided between {first[0]} and {second[0]}: {statement}, needed {EVIDENCE_BOUND:g} times"
+    return statement
+
+
+def _emcee() -> Any:
+    try:
+        return import_module("emcee")
+    except ImportError:
+        raise MissingPartError(
+            "the posterior needs emcee, which is not installed; install it with: pip install "
+            "'vehicle-on-shaker[posterior]'"
+        ) from None

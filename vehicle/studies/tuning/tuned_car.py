@@ -1,0 +1,212 @@
+"""Fit of a car to measurements with its last steps in MuJoCo, and the agreement with the data before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.model.parameters.paths import overrides_of, unit_of
+from vehicle.model.parameters.ranges import Range
+from vehicle.runs.car import Car, Run
+from vehicle.signals.analysis.frf_agreement import log_ratio
+from vehicle.studies.tuning.car_fit import tune_car
+from vehicle.studies.tuning.fit_result import TuningResult
+from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.full_steps import FullSteps, full_steps
+from vehicle.studies.tuning.limits_of_data import what_data_leave_open
+from vehicle.studies.tuning.measured_targets import MeasuredTarget
+from vehicle.threads import one_blas_thread
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Agreement:
+    """Error of the model against one channel of a measurement, before and after the fit.
+
+    Attributes:
+        measurement: name of the measurement.
+        channel: channel.
+        measure: quantity: "magnitude", "phase" or "history".
+        unit: dB, deg, or % of the RMS of the measured history.
+        before, after: RMS of the error over the fitted frequencies or times.
+    """
+
+    measurement: str
+    channel: str
+    measure: str
+    unit: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TunedCar:
+    """Car fitted to measurements.
+
+    Attributes:
+        start: the car before the fit.
+        result: the fit: values, standard errors, correlation, residual statistics.
+        measurements: the measurements.
+        engine: engine of the last steps; "reduced" if there were none.
+        final: the last steps with the complete model; None without them.
+    """
+
+    start: Car
+    result: TuningResult
+    measurements: tuple[MeasuredTarget, ...]
+    engine: str
+    final: FullSteps | None
+
+    @cached_property
+    def fitted(self) -> Car:
+        """Car with the fitted values."""
+        return self.start.varied(overrides_of(self.start.vehicle, self.result.values))
+
+    @property
+    def settings(self) -> str:
+        """Options that set the fitted values in every command."""
+        return " ".join(f"--set {path}={value:.8g}" for path, value in self.result.values.items())
+
+    @cached_property
+    def agreement(self) -> tuple[Agreement, ...]:
+        """Errors of all channels with the models of the fit: matrices of the stuck car, or the reduced engine."""
+        rows: list[Agreement] = []
+        for measurement in self.measurements:
+            target = measurement.target
+            if isinstance(target, FrfTarget):
+                errors = [_response_errors(target, car) for car in (self.start, self.fitted)]
+                measures: tuple[tuple[str, str], ...] = (("magnitude", "dB"), ("phase", "deg"))
+                channels: Sequence[str] = target.data.channels
+            else:
+                errors = [
+                    100.0 * np.sqrt(np.mean(target.residuals(car) ** 2, axis=1))[:, None]
+                    for car in (self.start, self.fitted)
+                ]
+                measures, channels = (("history", "% of RMS"),), tuple(target.record.channels)
+            for row, channel in enumerate(channels):
+                for column, (measure, unit) in enumerate(measures):
+                    before, after = (float(table[row, column]) for table in errors)
+                    rows.append(
+                        Agreement(
+                            measurement=target.name,
+                            channel=channel,
+                            measure=measure,
+                            unit=unit,
+                            before=before,
+                            after=after,
+                        )
+                    )
+        return tuple(rows)
+
+    def summary(self) -> dict[str, Any]:
+        """Return values, standard errors and all statistics as plain data."""
+        result, vehicle = self.result, self.start.vehicle
+        return {
+            "car": vehicle.name,
+            "measurements": [{"name": each.target.name, "notices": list(each.notices)} for each in self.measurements],
+            "parameters": [
+                {
+                    "path": parameter.path,
+                    "unit": unit_of(vehicle, parameter.path),
+                    "value": result.values[parameter.path],
+                    "standard_error": _finite(result.standard_errors[parameter.path]),
+                    "start": parameter.start,
+                    "low": parameter.low,
+                    "high": parameter.high,
+                }
+                for parameter in result.parameters
+            ],
+            "set": self.settings,
+            "left_open": list(what_data_leave_open(result)),
+            "free": list(result.free),
+            "correlation": result.correlation.tolist(),
+            "converged": result.converged,
+            "message": result.message,
+            "cars_computed": result.evaluations,
+            "weighted_residual": {"before": result.before, "after": result.after},
+            "agreement": [
+                {
+                    "measurement": row.measurement,
+                    "channel": row.channel,
+                    "measure": row.measure,
+                    "unit": row.unit,
+                    "before": row.before,
+                    "after": row.after,
+                }
+                for row in self.agreement
+            ],
+            "engine": self.engine,
+            "moved_by_engine": None if self.final is None else dict(self.final.moved),
+        }
+
+
+@one_blas_thread()
+def tuned_car(
+    car: Car,
+    parameters: Sequence[Range],
+    measurements: Sequence[MeasuredTarget],
+    *,
+    engine: str = "mujoco",
+    progress: Callable[[int, float], None] | None = None,
+    simulated: Callable[[int], None] | None = None,
+) -> TunedCar:
+    """Fit parameters of a car with the fast models, then finish the fit with an engine.
+
+    Args:
+        car: the car at the start.
+        parameters: parameters with bounds and start values.
+        measurements: results of `measured_responses` and `measured_histories`.
+        engine: engine of the last steps, see `full_steps`; "reduced" ends after the fit with the fast models.
+        progress: see `tune_car`.
+        simulated: called with the number of runs of the last steps.
+
+    Raises:
+        ConfigurationError, DataError, SimulationError: see `tune_car`.
+    """
+    result = tune_car(car, parameters, measurements, progress=progress)
+    final = None
+    if engine != "reduced" and any(each.signal is not None for each in measurements):
+        count = 0
+
+        def models(values: Mapping[str, float]) -> list[Car | Run]:
+            nonlocal count
+            varied = car.varied(overrides_of(car.vehicle, values))
+            listed: list[Car | Run] = []
+            for each in measurements:
+                if each.signal is None:
+                    listed.append(varied)
+                    continue
+                listed.append(varied.run(each.signal, engine=engine, channels=each.target.recorded))
+                count += 1
+                if simulated is not None:
+                    simulated(count)
+            return listed
+
+        final = full_steps(result, [each.target for each in measurements], models)
+        result = final.result
+    return TunedCar(
+        start=car.varied(overrides_of(car.vehicle, {entry.path: entry.start for entry in result.parameters})),
+        result=result,
+        measurements=tuple(measurements),
+        engine=engine if final is not None else "reduced",
+        final=final,
+    )
+
+
+def _response_errors(target: FrfTarget, car: Car) -> Vector:
+    """Return the RMS over frequency of the magnitude [dB] and of the phase [deg], (channels, 2)."""
+    logarithm = np.where(
+        np.isfinite(target.deviation), log_ratio(target.data.response, target.model_response(car)), np.nan
+    )
+    size, angle = (np.sqrt(np.nanmean(part**2, axis=1)) for part in (logarithm.real, logarithm.imag))
+    return np.stack([20.0 / np.log(10.0) * size, np.degrees(angle)], axis=1)
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None

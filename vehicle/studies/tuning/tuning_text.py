@@ -1,0 +1,82 @@
+"""Text of a fit for the console: values first, then what the data leave open, then the agreement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from vehicle.model.parameters.paths import unit_of
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.studies.tuning.fit_result import TuningResult
+from vehicle.studies.tuning.full_steps import SMALL
+from vehicle.studies.tuning.limits_of_data import what_data_leave_open
+from vehicle.studies.tuning.tuned_car import Agreement, TunedCar
+
+
+def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
+    """Return a line for each parameter: value, standard error, unit, start value and bounds.
+
+    Args:
+        result: result of a fit.
+        vehicle: vehicle, for the units.
+    """
+    width = max((len(parameter.path) for parameter in result.parameters), default=0)
+    lines = []
+    for parameter in result.parameters:
+        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
+        spread = f"+- {error:.2g}" if math.isfinite(error) else "without a standard error"
+        share = f" ({100 * error / value:.2g} %)" if math.isfinite(error) else ""
+        lines.append(
+            f"{parameter.path:<{width}}  {value:.6g} {spread} {unit_of(vehicle, parameter.path)}{share}, start "
+            f"{parameter.start:.6g}, bounds {parameter.low:g} to {parameter.high:g}"
+        )
+    return lines
+
+
+def tuning_text(tuned: TunedCar) -> str:
+    """Return the result of a fit: values, options, what the data leave open, errors before and after, final check.
+
+    Args:
+        tuned: fitted car.
+    """
+    result = tuned.result
+    lines = [*value_lines(result, tuned.start.vehicle), tuned.settings]
+    left_open = what_data_leave_open(result)
+    lines += [f"not determined: {text}" for text in left_open] or [
+        "the data determine every parameter: no pair with a correlation of 0.9, no standard error above 10 %"
+    ]
+    lines += agreement_lines(tuned.agreement)
+    return "\n".join([*lines, *fit_sentences(tuned)])
+
+
+def agreement_lines(agreement: Sequence[Agreement]) -> list[str]:
+    """Return the table of the errors against the measurements before and after the fit."""
+    lines = [f"{'error against the measurement':<48} {'before':>9} {'after':>9}"]
+    lines += [
+        f"{f'{row.measurement}, {row.channel}, {row.measure} [{row.unit}]':<48} {row.before:>9.3g} {row.after:>9.3g}"
+        for row in agreement
+    ]
+    return lines
+
+
+def fit_sentences(tuned: TunedCar) -> list[str]:
+    """Return sentences on the end of the fit and on its last steps with the complete model."""
+    result, final = tuned.result, tuned.final
+    sentences = [
+        f"{result.evaluations} cars computed with matrices and the reduced engine; weighted residuals "
+        f"{result.before:.3g} before, {result.after:.3g} after"
+    ]
+    if not result.converged:
+        sentences.append(f"not converged: {result.message}; narrow the bounds, or start nearer with --set PATH=VALUE")
+    if final is None:
+        if any(each.signal is not None for each in tuned.measurements):
+            sentences.append("not checked with MuJoCo: --engine mujoco makes the last steps with the complete model")
+    else:
+        moved = max(final.moved.items(), key=lambda item: abs(item[1]), default=("", 0.0))
+        state = "settled" if final.settled else "not settled"
+        sentences.append(
+            f"last steps with {tuned.engine}: {len(final.largest_steps)}, {state} (last step "
+            f"{final.largest_steps[-1]:.2g} standard errors, limit {SMALL:g})"
+            + (f"; {moved[0]} moved most, by {moved[1]:+.2g} standard errors" if moved[0] else "")
+        )
+    return sentences
