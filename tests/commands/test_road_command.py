@@ -46,7 +46,7 @@ def test_a_measured_profile_is_met_at_the_speed(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [
-        (["--speed", "80"], 2, "either --class or --profile"),
+        (["--speed", "80"], 2, "one of --class, --profile and --obstacle"),
         (["--class", "A"], 2, "a road needs --speed KM/H"),
         (["--class", "K", "--speed", "80"], 2, "road class 'K': must be one of A, B"),
         (["--class", "A", "--speed", "0"], 2, "--speed 0 km/h: must be above 0"),

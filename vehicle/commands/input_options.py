@@ -41,9 +41,11 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
     parser.add_argument(
         "--road",
         action=action,
-        metavar="C|FILE",
+        metavar="C|FILE|OBSTACLE",
         help="instead of --input, a road under all wheels: a class of ISO 8608, A to H, or a measured profile "
-        "(columns distance, left, right [m]; OpenCRG .crg; ERD), or heights over time (--speed channel:NAME)"
+        "(columns distance, left, right [m]; OpenCRG .crg; ERD), or heights over time (--speed channel:NAME), or an "
+        "obstacle on a level road, NAME[:SIZES in mm][:left|right][@METRES]: cleat:20x50, half_round:50, speed_bump, "
+        "ramp, pothole, cobbles"
         f"{again}",
     )
     parser.former(
@@ -142,6 +144,12 @@ def road_options(
         metavar="M",
         help="length of the contact patch that averages the road [m], 0 for none; 0.1 by default",
     )
+    group.add_argument(
+        "--contact",
+        choices=("patch", "cams"),
+        help="patch: the road is averaged over the contact patch; cams: two elliptical cams envelop the road; patch by "
+        "default, cams on an obstacle",
+    )
     return group
 
 
@@ -177,7 +185,7 @@ def speeds_of(options: argparse.Namespace) -> list[float | str]:
     return speed if isinstance(speed, list) else [] if speed is None else [speed]
 
 
-ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch")
+ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch", "contact")
 """Names of the options of `road_options`."""
 
 

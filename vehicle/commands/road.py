@@ -20,13 +20,19 @@ if TYPE_CHECKING:
 
 def parser() -> Parser:
     """Return the parser of the options."""
-    parser = command_parser("road", "Plate signals of a car on a road: class and speed, or a measured profile.")
+    parser = command_parser("road", "Plate signals of a car on a road: a class, a measured profile or an obstacle.")
     vehicle_options(parser)
     parser.add_argument("--class", dest="road_class", metavar="C", help="class of ISO 8608, A to H")
     parser.add_argument(
         "--profile", type=Path, metavar="FILE.csv", help="or a measured road: distance, left, right [m]"
     )
-    road_options(parser, lambda _: True, lambda options: options.profile is None)
+    parser.add_argument(
+        "--obstacle",
+        metavar="NAME[:SIZES][:left|right][@METRES]",
+        help="or an obstacle on a level road, sizes in mm: cleat:20x50, half_round:50, speed_bump, ramp, pothole, "
+        "cobbles",
+    )
+    road_options(parser, lambda _: True, lambda options: options.road_class is not None)
     output_options(parser, Path("road.csv"), metavar="FILE.csv")
     message_options(parser, quiet=True)
     return parser
@@ -35,15 +41,18 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.runs.output.folder import write_whole
+    from vehicle.signals.excitation.obstacle import Obstacle
     from vehicle.signals.excitation.signal_file import write_signal
 
-    if (options.road_class is None) == (options.profile is None):
-        raise ConfigurationError("road: needed is either --class or --profile, one of them")
+    roads = [road for road in (options.road_class, options.profile, options.obstacle) if road is not None]
+    if len(roads) != 1:
+        raise ConfigurationError("road: needed is one of --class, --profile and --obstacle")
     inputs = tuple(file for file in (options.profile, options.vehicle) if file is not None)
     path = output_file_of(options, options.output, ending=".csv", protect=inputs)
     vehicle = load_vehicle(options.vehicle, options.overrides)
-    road = options.road_class.upper() if options.profile is None else options.profile
-    signal = road_drive(road, options, vehicle).signal()
+    if options.obstacle is not None:
+        Obstacle.parse(options.obstacle)
+    signal = road_drive(roads[0] if options.road_class is None else roads[0].upper(), options, vehicle).signal()
     write_whole(path, lambda file: write_signal(file, signal, [signal.source, f"wheels of {vehicle.name}"]))
     if not options.quiet:
         sizes = ", ".join(f"{wheel} {1e3 * float(z.std()):.3g}" for wheel, z in signal.displacement.items())
@@ -51,13 +60,20 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def class_or_profile(text: str) -> str | Path:
-    """Return the class of ISO 8608, or the file of a profile, of the value of --road.
+    """Return the class of ISO 8608, the text of an obstacle, or the file of a profile, of the value of --road.
 
     Raises:
-        ConfigurationError: the value is neither.
+        ConfigurationError: the value has another form.
     """
+    from vehicle.signals.excitation.obstacle import SHAPES, is_obstacle
+
     if len(text) > 1 and not Path(text).is_file():
-        raise ConfigurationError(f"--road {text}: no class of ISO 8608 (A to H), and no file of a measured profile")
+        if is_obstacle(text):
+            return text
+        raise ConfigurationError(
+            f"--road {text}: no class of ISO 8608 (A to H), no file of a measured profile, and no obstacle "
+            f"({', '.join(SHAPES)})"
+        )
     return text.upper() if len(text) == 1 else Path(text)
 
 

@@ -48,7 +48,7 @@ def summary_text(summary: RunSummary, output: Path) -> str:
         strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
         text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
         lines.append(f"resonances  {channel}: {text + ' Hz' if text else 'none found'}")
-    lines += _comfort(summary)
+    lines += _comfort(summary) + _obstacle(summary)
     lines += [
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
         f"solver      {summary['solver']['engine']}, step {1e3 * summary['solver']['timestep_s']:g} ms, "
@@ -76,6 +76,28 @@ def _comfort(summary: RunSummary) -> list[str]:
         lines.append(
             f"            seat {_weighted(points, 'seat'):.4f} m/s2 weighted RMS (ISO 2631-1; x, y by Wd, z by Wk); "
             f"SEAT value {ratio['rms']:.3f} (z, {ratio['weighting']}; of doses {ratio['vdv']:.3f})"
+        )
+    return lines
+
+
+def _obstacle(summary: RunSummary) -> list[str]:
+    """Return the lines of a run over an obstacle."""
+    values = summary.get("obstacle")
+    if values is None:
+        return []
+    lines = [f"obstacle    {values['obstacle']}, reached at {values['from_s']:.2f} s, left at {values['to_s']:.2f} s"]
+    for point, size in values["peak_to_peak"].items():
+        dose, settled = values["vdv"][point], values["settling_s"][point]
+        peaks = ", ".join(f"{axis} {size[axis]:.2f}" for axis in "xyz")
+        lines.append(
+            f"            {point.replace('_', ' ')} peak to peak {peaks} m/s2; "
+            f"VDV {', '.join(f'{a} {dose[a]:.3f}' for a in 'xyz')}, sum {dose['overall']:.3f} m/s^1.75; z "
+            + ("does not settle" if settled is None else f"settles in {settled:.2f} s")
+        )
+    knuckle = values["knuckle_peak"]
+    if knuckle:
+        lines.append(
+            "            knuckle peak, z " + _each(knuckle, lambda w, side: f"{knuckle[w]:.1f} m/s2 ({side})", " and ")
         )
     return lines
 

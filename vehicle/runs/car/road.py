@@ -1,4 +1,4 @@
-"""A road as the input of a run: a class of ISO 8608 or a measured profile, and the speed of the car."""
+"""A road as the input of a run: a class of ISO 8608, a measured profile or an obstacle, and the speed of the car."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ class Road:
     """Road for the wheels of any car, as `Road("C", speed=80)`.
 
     Attributes:
-        road: class of ISO 8608, "A" to "H"; or the file of a measured profile (columns distance, left, right [m];
-            OpenCRG; ERD), or of heights over time.
+        road: class of ISO 8608, "A" to "H"; an obstacle on a level road, as "cleat:20x50" (`Obstacle`); or the file
+            of a measured profile (columns distance, left, right [m]; OpenCRG; ERD), or of heights over time.
         speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
         duration: length [s]; by default 60 s on a class, the whole profile otherwise.
         rate: samples per second [Hz]; 1000 by default.
         seed: seed of a road of a class; 1 by default.
         coherence: of the two tracks of a class: 1 equal, 0 unrelated; isotropic plane by default.
         patch: length of the contact patch that averages the road [m]; 0.1 by default.
+        contact: "patch" or "cams", two elliptical cams in place of the average; cams by default on an obstacle only.
         tyre: "rolling" or "standing"; rolling by default, except for a car that is on blocks too.
         choice: channels of heights over time, their units and excerpt.
     """
@@ -45,6 +46,7 @@ class Road:
     seed: int | None = None
     coherence: float | None = None
     patch: float | None = None
+    contact: str | None = None
     tyre: str | None = None
     choice: Choice = field(default_factory=Choice, hash=False)
 
@@ -75,8 +77,9 @@ class Road:
             speed=self.speed,
             wheels=_wheel_positions(vehicle),
             track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
+            radius=sum(wheel.center[2] - wheel.patch[2] for wheel in wheels) / len(wheels),
             driving=driving,
-            **self._given("duration", "rate", "seed", "coherence", "patch"),
+            **self._given("duration", "rate", "seed", "coherence", "patch", "contact"),
         )
 
     def _recorded(self, road: str | Path, vehicle: Vehicle, driving: float | None) -> RecordedDrive:
@@ -85,7 +88,7 @@ class Road:
             raise ConfigurationError(
                 f"--speed {self.speed}: belongs to a recorded road, --road FILE; {road} is a class"
             )
-        for name in self._given("seed", "coherence", "patch"):
+        for name in self._given("seed", "coherence", "patch", "contact"):
             raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is used unchanged")
         return RecordedDrive(
             road=road,

@@ -38,7 +38,8 @@ def seat_values(run: Run) -> SeatSummary | None:
 def comfort_notices(run: Run) -> list[str]:
     """Return a sentence for each axis of the seat rail with a nonstationary level, and one for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
-    if not _recorded(run, RAIL):
+    # An obstacle is a single event.
+    if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):
         return bare
     drifting = [
         f"comfort of the seat rail, {axis}: the two halves of the record differ by {100 * abs(part.drift):.0f} %, "

@@ -91,7 +91,8 @@ def _input_words(run: FinishedRun) -> str:
     if road.get("class"):
         return f"a road of class {road['class']} at {road['speed_kmh']:g} km/h"
     if road.get("speed_kmh"):
-        return f"{road.get('profile') or Path(excitation['file']).name} at {road['speed_kmh']:g} km/h"
+        named = road.get("obstacle") or road.get("profile") or Path(excitation["file"]).name
+        return f"{named} at {road['speed_kmh']:g} km/h"
     return f"{Path(excitation['file']).name} (RMS {1e3 * excitation['rms_m']:.3g} mm)"
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -26,6 +26,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import REFERENCE
 from vehicle.signals.excitation.band import positive, samples_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
+from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
+from vehicle.signals.records.channel import uniform_axis
 
 COPIES = 8
 """Number of arrays of the length of the record in memory, without the signals: lines, transform, its plan."""
@@ -83,6 +85,7 @@ class IsoRoad:
         highest: maximum wavenumber [cycles/m].
         coherence: g of the tracks [-]; None for an isotropic surface, 1 for equal and 0 for independent tracks.
         patch: length a of the contact patch [m], over which the tyre averages the road: factor sinc(n a).
+        envelope: cams of the tyre, in place of the average over the contact patch.
 
     Raises:
         ConfigurationError: a value out of range.
@@ -95,6 +98,7 @@ class IsoRoad:
     highest: float = HIGHEST
     coherence: float | None = None
     patch: float = 0.0
+    envelope: TyreEnvelope | None = None
 
     def __post_init__(self) -> None:
         positive("level of the road", self.level, "m3")
@@ -119,7 +123,7 @@ class IsoRoad:
         related = "isotropic plane" if self.coherence is None else f"coherence {self.coherence:g}"
         return (
             f"road of ISO 8608, G(0.1 cycles/m) = {self.level:g} m3, {self.lowest:g} to {self.highest:g} cycles/m, "
-            f"tracks {self.track:g} m apart ({related}), contact patch {self.patch:g} m, seed {self.seed}"
+            f"tracks {self.track:g} m apart ({related}), {contact_words(self.patch, self.envelope)}, seed {self.seed}"
         )
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
@@ -138,6 +142,13 @@ class IsoRoad:
         Raises:
             ConfigurationError: the band contains no line of the length.
         """
+        if self.envelope is not None:
+            parts = int(np.ceil(step / SAMPLES))
+            fine, margin = step / parts, int(np.ceil(self.envelope.reach * parts / step)) + 1
+            z = replace(self, envelope=None, patch=0.0).height(start, fine, steps * parts, side, highest)
+            x = uniform_axis(z.size + 2 * margin, fine, -margin * fine)
+            positions = uniform_axis(steps, step, 0.0)
+            return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), positions)[0]
         length = steps * step
         lines = np.arange(max(1, int(np.ceil(self.lowest * length))), int(min(self.highest, highest) * length) + 1)
         if lines.size == 0:
@@ -161,6 +172,11 @@ class IsoRoad:
             * (0.5 * steps)
         )
         return np.fft.irfft(spectrum, steps)
+
+
+def contact_words(patch: float, envelope: TyreEnvelope | None) -> str:
+    """Return the contact of the tyre in words: the contact patch that averages the road [m], or the cams."""
+    return f"contact patch {patch:g} m" if envelope is None else envelope.words
 
 
 def drive(

@@ -3,12 +3,13 @@
 Points at nearly equal distances are samples of a road, interpolated by a cubic spline. It retains 98.5 % of the
 amplitude of a wave of four points, straight lines 81 %. Points at other distances are corners, for example of a cleat:
 the road is straight between them, as a spline would overshoot by many times the heights. A contact patch of length a
-averages either interpolation exactly, with its integral Z: (Z(x + a/2) - Z(x - a/2)) / a.
+averages either interpolation exactly, with its integral Z: (Z(x + a/2) - Z(x - a/2)) / a. The cams of a tyre roll over
+the corners, or over the points of the spline every 5 mm.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,8 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError, VehicleError
-from vehicle.signals.excitation.iso_road import Side
+from vehicle.signals.excitation.iso_road import Side, contact_words
+from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
 from vehicle.signals.records.channel import uniform_axis
 from vehicle.signals.records.crg_format import read_surface, road_words
 from vehicle.signals.records.formats import recognised_format
@@ -45,6 +47,8 @@ class MeasuredRoad:
         source: name of the file.
         notices: messages on unusual content that was accepted.
         patch: length of the contact patch [m], over which a tyre averages the road; 0 for a point.
+        envelope: cams of the tyre, in place of the average over the contact patch.
+        corners: True for a road that is straight between its points, whatever their distances.
     """
 
     distance: NDArray[np.float64]
@@ -53,6 +57,8 @@ class MeasuredRoad:
     source: str
     notices: tuple[str, ...] = ()
     patch: float = 0.0
+    envelope: TyreEnvelope | None = None
+    corners: bool = False
 
     @property
     def length(self) -> float:
@@ -67,16 +73,18 @@ class MeasuredRoad:
     @property
     def words(self) -> str:
         """Description of the road, for messages and headers."""
+        if self.corners:
+            return f"{self.source}, {contact_words(self.patch, self.envelope)}"
         step = self.length / (self.distance.size - 1)
         points = f"a point every {step:.3g} m" if self.sampled else f"straight between {self.distance.size} points"
-        sampling = f"{self.length:.4g} m, {points}, contact patch {self.patch:g} m"
+        sampling = f"{self.length:.4g} m, {points}, {contact_words(self.patch, self.envelope)}"
         return f"measured road {self.source}, {sampling}"
 
     @property
     def sampled(self) -> bool:
         """True if the points are samples of the road, False if they are corners."""
         steps = np.diff(self.distance)
-        return bool(np.max(steps) <= SAMPLED * np.min(steps))
+        return not self.corners and bool(np.max(steps) <= SAMPLED * np.min(steps))
 
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
         """Return the heights of a track at equally spaced positions; see `height_at` and `IsoRoad.height`.
@@ -87,9 +95,9 @@ class MeasuredRoad:
         return self.height_at(uniform_axis(steps, step, start), side)
 
     def height_at(self, positions: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
-        """Return heights above the first point [m], (m,), averaged over the contact patch; 0 before the road.
+        """Return heights above the first point [m], (m,), as the tyre takes them; 0 before the road.
 
-        For the average, the road is level beyond its last point.
+        For contact patch and cams, the road is level beyond its last point.
 
         Args:
             positions: distances from the beginning of the road [m], (m,).
@@ -108,6 +116,12 @@ class MeasuredRoad:
         spline = scipy.interpolate.make_interp_spline(
             self.distance - self.distance[0], track_heights - track_heights[0], k=degree
         )
+        if self.envelope is not None:
+            x, z = self.distance - self.distance[0], track_heights - track_heights[0]
+            if self.sampled:
+                x = np.linspace(0.0, self.length, int(np.ceil(self.length / SAMPLES)) + 1)
+                z = spline(x)
+            return self.envelope.height_and_slope(x, z, positions)[0]
         if self.patch > 0.0:
             integral, ends = spline.antiderivative(), positions + 0.5 * self.patch * np.array([[-1.0], [1.0]])
             areas = integral(np.clip(ends, 0.0, self.length))
@@ -116,7 +130,7 @@ class MeasuredRoad:
         return np.where(positions < 0.0, 0.0, spline(np.clip(positions, 0.0, self.length)))
 
 
-def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
+def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelope | None = None) -> MeasuredRoad:
     """Read a measured road profile.
 
     Args:
@@ -125,6 +139,7 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
             OpenCRG surface, whose reference line is under the middle of the car.
         track: distance of the tracks of the car [m], for a surface.
         patch: length of the contact patch [m] over which the profile is averaged.
+        envelope: cams of the tyre, in place of the average.
 
     Raises:
         ConfigurationError: the file does not exist.
@@ -132,7 +147,7 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
     """
     recognised = recognised_format(path)
     if recognised.name == "crg":
-        return _surface_road(path, track, patch)
+        return replace(_surface_road(path, track, patch), envelope=envelope)
     source = ""
     notices: tuple[str, ...] = ()
     try:
@@ -158,6 +173,7 @@ def read_road(path: Path, track: float, patch: float = 0.0) -> MeasuredRoad:
         source=path.name,
         notices=notices,
         patch=patch,
+        envelope=envelope,
     )
 
 
@@ -193,7 +209,14 @@ def _surface_road(path: Path, track: float, patch: float) -> MeasuredRoad:
                 f"points, first at u = {surface.u[missing[0]]:g} m; the road has v from {surface.v[0]:g} to "
                 f"{surface.v[-1]:g} m; repair the surface, or cut it off there"
             )
-    return MeasuredRoad(distance=surface.u, **tracks, source=path.name, notices=(road_words(surface),), patch=patch)
+    return MeasuredRoad(
+        distance=surface.u,
+        right=tracks["right"],
+        left=tracks["left"],
+        source=path.name,
+        notices=(road_words(surface),),
+        patch=patch,
+    )
 
 
 def _columns(header: Header) -> dict[str, tuple[int, float]]:

@@ -1,4 +1,4 @@
-"""Input of a car that drives over a road at constant speed: ISO 8608 class or measured profile."""
+"""Input of a car that drives over a road at constant speed: ISO 8608 class, measured profile or obstacle."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
+from vehicle.signals.excitation.obstacle import Obstacle, is_obstacle
 from vehicle.signals.excitation.plausibility import acceleration_events
 from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.tyre_envelope import CAMS, TyreEnvelope
 
 FASTEST = 400.0
 """Maximum speed [km/h]."""
@@ -27,6 +29,19 @@ SKIP_S = 2.0
 """Minimum default of --skip on a road [s]: the rise from rest and 1 s, in which a motion of 1 Hz with a damping ratio
 of 0.2 decays to 28 %, its power to 8 %."""
 
+CONTACTS = ("patch", "cams")
+"""Names of the contacts of a tyre: average over the contact patch, two elliptical cams."""
+
+RADIUS = 0.30
+"""Default radius of a tyre [m], to which its cams are proportional."""
+
+IN_NAMES = str.maketrans({":": "_", "@": "_at_"})
+"""Replacements in the text of an obstacle for names of files."""
+
+BEFORE_S, AFTER_S = 0.5, 3.0
+"""Default times [s] between the start of the evaluation and the obstacle, and between the last wheel leaving the
+obstacle and the end. In 3 s a motion of 1 Hz with a damping ratio of 0.2 decays to 2 %."""
+
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
 
@@ -36,16 +51,19 @@ class RoadDrive:
     """Drive at constant speed; each wheel reaches the road d / V after the foremost wheel, in its track.
 
     Attributes:
-        road: class of ISO 8608, such as "C", or the file of a measured profile.
+        road: class of ISO 8608, as "C"; the file of a measured profile; or an obstacle, as "cleat:20x50".
         speed: speed V [km/h].
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
-        duration: length [s]; None for 60 s of a class or a whole profile.
+        duration: length [s]; by default 60 s of a class, a whole profile, or an obstacle and 3 s after it.
         rate: sampling rate [Hz].
         seed: seed of a class.
         coherence: coherence of the tracks of a class; None for an isotropic surface.
         tagged: the name contains the seed, for several seeds of one road.
         patch: length of the contact patch [m] over which a tyre averages the road; 0 for a point.
+        contact: "patch" for the average over the contact patch, "cams" for two elliptical cams (`TyreEnvelope`); None
+            for cams on an obstacle and the average on other roads.
+        radius: radius of the tyres [m], for the cams.
         driving: speed of rolling tyres [m/s], 0 for tyres that do not roll; None for the parameter of the car.
 
     Raises:
@@ -63,6 +81,8 @@ class RoadDrive:
     patch: float = CONTACT_PATCH
     tagged: bool = False
     driving: float | None = None
+    contact: str | None = None
+    radius: float = RADIUS
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
@@ -72,19 +92,50 @@ class RoadDrive:
                 raise ConfigurationError(
                     "--coherence: valid for a road class only, not for a measured profile; omit it"
                 )
-            if not 0.0 <= self.patch < 1.0:
-                raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
+        elif is_obstacle(self.road):
+            if self.coherence is not None:
+                raise ConfigurationError("--coherence: valid for a road class only, not for an obstacle; omit it")
+            Obstacle.parse(self.road)
         elif self.road not in CLASSES:
             raise ConfigurationError(
-                f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, or the file of a "
-                "measured profile"
+                f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of a "
+                "measured profile, or an obstacle, as cleat:20x50"
             )
+        if not 0.0 <= self.patch < 1.0:
+            raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
+        if self.contact is not None and self.contact not in CONTACTS:
+            raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(CONTACTS)}")
+        _ = self.envelope
+
+    @property
+    def obstacle(self) -> Obstacle | None:
+        """Return the obstacle on the road, if there is one."""
+        if not isinstance(self.road, str) or not is_obstacle(self.road):
+            return None
+        obstacle = Obstacle.parse(self.road)
+        # To the millimetre, for messages.
+        usual = round((self.skip + BEFORE_S) * self.speed / 3.6, 3)
+        return replace(obstacle, place=usual if obstacle.place is None else obstacle.place)
+
+    @property
+    def envelope(self) -> TyreEnvelope | None:
+        """Cams of the tyres, if they are chosen."""
+        on_obstacle = isinstance(self.road, str) and is_obstacle(self.road)
+        if (self.contact or ("cams" if on_obstacle else "patch")) == "patch":
+            return None
+        if not 0.0 < self.patch < 1.0:
+            raise ConfigurationError(
+                f"contact patch {self.patch!r} m; allowed with cams, whose distance is proportional to it: above 0 to "
+                "1 m; for contact at a point set --contact patch --patch 0"
+            )
+        return TyreEnvelope.of(CAMS, radius=self.radius, patch=self.patch)
 
     @property
     def name(self) -> str:
         """Name of the results: "road_C_80", with several seeds "road_C_80_seed_2"."""
         tag = f"_seed_{self.seed}" if self.tagged else ""
-        return f"road_{self.road.stem if isinstance(self.road, Path) else self.road}_{self.speed:g}{tag}"
+        road = self.road.stem if isinstance(self.road, Path) else self.road
+        return f"road_{road.translate(IN_NAMES)}_{self.speed:g}{tag}"
 
     @property
     def skip(self) -> float:
@@ -106,8 +157,12 @@ class RoadDrive:
         speed, duration = self.speed / 3.6, self.duration
         road: IsoRoad | MeasuredRoad
         if isinstance(self.road, Path):
-            road = read_road(self.road, self.track, self.patch)
+            road = read_road(self.road, self.track, self.patch, self.envelope)
             duration = math.floor(road.length / speed * self.rate) / self.rate if duration is None else duration
+        elif (obstacle := self.obstacle) is not None:
+            if duration is None:
+                duration = math.ceil(10.0 * (self._times(obstacle)[1] + AFTER_S)) / 10.0
+            road = obstacle.road(length=duration * speed + 1.0, patch=self.patch, envelope=self.envelope)
         else:
             road = IsoRoad(
                 level=CLASSES[self.road],
@@ -115,18 +170,26 @@ class RoadDrive:
                 track=self.track,
                 coherence=self.coherence,
                 patch=self.patch,
+                envelope=self.envelope,
             )
         wheels = {name: (behind, side) for name, behind, side in self.wheels}
         duration = USUAL_DURATION if duration is None else duration
         signal = drive(road, speed=speed, wheels=wheels, duration=duration, rate=self.rate)
-        if isinstance(road, IsoRoad):
+        if isinstance(road, IsoRoad) or self.obstacle is not None:
             return signal
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
+
+    def _times(self, obstacle: Obstacle) -> tuple[float, float]:
+        """Return when the foremost wheels reach an obstacle and when the last wheels leave it [s]."""
+        last = obstacle.begin + obstacle.length + max(behind for _, behind, _ in self.wheels)
+        return obstacle.begin * 3.6 / self.speed, last * 3.6 / self.speed
 
     def identity(self) -> dict[str, object]:
         """Return all data that determine the signal: parameters, and the digest of a measured profile."""
         identity = asdict(self) | {"road": str(self.road)}
-        del identity["tagged"]
+        del identity["tagged"], identity["contact"], identity["radius"]
+        if self.envelope is not None:
+            identity["envelope"] = asdict(self.envelope)
         if isinstance(self.road, Path):
             identity["road"] = hashlib.sha256(self.road.read_bytes()).hexdigest()
         return identity
@@ -137,14 +200,16 @@ class RoadDrive:
         Args:
             signal: signal of the drive.
         """
-        measured = isinstance(self.road, Path)
+        measured, obstacle = isinstance(self.road, Path), self.obstacle
         return {
-            "class": None if measured else self.road,
+            "class": None if measured or obstacle is not None else self.road,
             "profile": str(self.road) if measured else None,
             "speed_kmh": self.speed,
-            "seed": None if measured else self.seed,
+            "seed": None if measured or obstacle is not None else self.seed,
             "coherence": self.coherence,
             "contact_patch_m": self.patch,
+            **({} if self.envelope is None else {"tyre_contact": self.envelope.words}),
+            **({} if obstacle is None else {"obstacle": obstacle.words, "obstacle_s": list(self._times(obstacle))}),
             "behind_m": {name: behind for name, behind, _ in self.wheels},
             "words": signal.source,
         }

@@ -80,6 +80,18 @@ class SeatSummary(TypedDict):
     weighting: str
 
 
+class ObstacleSummary(TypedDict):
+    """Values of a run over an obstacle: times [s], peak-to-peak and peak accelerations [m/s2], doses [m/s^1.75]."""
+
+    obstacle: str
+    from_s: float
+    to_s: float
+    peak_to_peak: dict[str, dict[str, float]]
+    vdv: dict[str, dict[str, float]]
+    settling_s: dict[str, float | None]
+    knuckle_peak: ByWheel
+
+
 class StaticSummary(TypedDict):
     """Static loads [N], and the largest displacement that remains after the trim [m]."""
 
@@ -147,6 +159,7 @@ class RunSummary(TypedDict):
     peaks: Peaks
     comfort: dict[str, ComfortSummary]
     seat_value: NotRequired[SeatSummary | None]
+    obstacle: NotRequired[ObstacleSummary | None]
     static: StaticSummary
     solver: SolverSummary
     frf: FrfSummary | None
