@@ -100,7 +100,7 @@ def test_on_a_smooth_class_the_tyre_is_a_linear_filter(level, name) -> None:
     """Both cams move with the road: cos(pi n s) of its height, sin(pi n s)/(pi n s) of its slope."""
     step, points = 0.005, 40_000
     road = IsoRoad(level=level, seed=3, track=1.5).height(0.0, step, points, "right", 1e3)
-    x, inner = step * np.arange(points), slice(200, -200)
+    x, inner = step * np.arange(points, dtype=np.float64), slice(200, -200)
     wavenumber = np.fft.rfftfreq(points, step)
     spectrum = np.fft.rfft(road)
     filtered = np.fft.irfft(spectrum * np.cos(np.pi * wavenumber * S), points)[inner]
@@ -118,8 +118,8 @@ def test_samples_at_5_mm_are_enough_for_class_c() -> None:
     road, points = IsoRoad(level=256e-6, seed=1, track=1.5), 8000
     coarse, fine = (road.height(0.0, 0.005 / k, k * points, "right", 1e3) for k in (1, 8))
     at = np.linspace(1.0, 39.0, 4000)
-    found = TYRE.height_and_slope(0.005 * np.arange(points), coarse, at)[0]
-    wanted = TYRE.height_and_slope(0.005 / 8 * np.arange(8 * points), fine, at)[0]
+    found = TYRE.height_and_slope(0.005 * np.arange(points, dtype=np.float64), coarse, at)[0]
+    wanted = TYRE.height_and_slope(0.005 / 8 * np.arange(8 * points, dtype=np.float64), fine, at)[0]
     validated(
         "Roads and excitation", "RMS error of the effective height by samples at 5 mm, class C",
         float(np.sqrt(np.mean((found - wanted) ** 2))), 0.0, abs=2e-6, unit="m",
@@ -131,7 +131,11 @@ def test_the_published_tyres_differ_little() -> None:
     road, points = IsoRoad(level=256e-6, seed=1, track=1.5), 8000
     z, at = road.height(0.0, 0.005, points, "right", 1e3), np.linspace(1.0, 39.0, 4000)
     levels = [
-        np.std(TyreEnvelope.of(cams, radius=0.3075, patch=0.1).height_and_slope(0.005 * np.arange(points), z, at)[0])
+        np.std(
+            TyreEnvelope.of(cams, radius=0.3075, patch=0.1).height_and_slope(
+                0.005 * np.arange(points, dtype=np.float64), z, at
+            )[0]
+        )
         for cams in CAM_SETS.values()
     ]
     assert max(levels) / min(levels) - 1.0 < 5e-4
