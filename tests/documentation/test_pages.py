@@ -75,7 +75,7 @@ def test_python_examples_compute_what_the_page_says(site):
     assert names["drive"].error < 0.5 and "best comfort" in repr(names["found"])
     rms = names["run"].comfort().weighted
     assert names["seat"].overall == pytest.approx(rms.overall, rel=1e-9)
-    assert names["seat"].weighted_rms.z == pytest.approx(rms["z"], rel=1e-9)
+    assert names["seat"].weighted_rms["z"] == pytest.approx(rms.z, rel=1e-9)
     for name in ("runs/high/summary.json", "runs/compared/compare.json", "report.html", "runs/drive/drive.csv"):
         assert (execution.folder / name).is_file()
 

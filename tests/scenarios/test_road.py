@@ -46,12 +46,13 @@ def test_a_short_study(car, tmp_path):
 
 
 def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
-    """u = a U(F / a): the reduced engine is linear except for the dampers, solved iteratively to 1e-9 N."""
+    """u = a U(F / a): the reduced engine is linear except for the dampers, and the product of load and slope of rolling
+    tyres, which changes these ratios by 3e-5."""
     runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)
     pairs = [Ride(car="rigid", road=road, speed=80.0, friction=force) for road, force in (("A", 30.0), ("C", 120.0))]
     for name in ("rail", "seat_weighted", "load_front"):
         single, other = (ratio(runs, ride, name)[0] for ride in pairs)
-        assert single == pytest.approx(other, rel=1e-5) and abs(single - 1.0) > 0.002
+        assert single == pytest.approx(other, rel=1e-4) and abs(single - 1.0) > 0.002
     (claim,) = scaling_claim(runs, "rigid", ("A", "C"), 80.0, (0.0, 30.0, 120.0))
     assert claim.within
 

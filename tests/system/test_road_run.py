@@ -133,7 +133,10 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
         (["--road"], "--road: names no road; give a class of ISO 8608, A to H, or FILE.csv; levels beyond"),
         (["--road", "C"], "a road needs --speed KM/H"),
         (["--road", "Z", "--speed", "80"], "road class 'Z': must be one of A, B"),
-        (["--road", "none.csv", "--speed", "80"], "--road none.csv: no class of ISO 8608 (A to H), and no file"),
+        (
+            ["--road", "none.csv", "--speed", "80"],
+            "--road none.csv: no class of ISO 8608 (A to H), no file of a measured profile, and no obstacle",
+        ),
         (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C and --input: set only one of them"),
         (
             ["--road", "C", "--speed", "80", "--wheel", "front_left"],
@@ -162,7 +165,8 @@ def test_the_rear_plates_follow_by_the_wheelbase_over_the_speed(shaker, tmp_path
     with np.load(folder / "time.npz") as arrays:
         plates = {wheel: arrays[f"plate_{wheel}_displacement"] for wheel in ("fr", "fl", "rr", "rl")}
     for front, rear in (("fr", "rr"), ("fl", "rl")):
-        assert np.std(plates[front]) > 1e-3 and np.ptp(plates[rear][:100]) == 0.0
+        # Before, at rest but for the rounding of the spline.
+        assert np.std(plates[front]) > 1e-3 and np.ptp(plates[rear][:100]) < 1e-20
         # An input is a spline through the samples at the steps of the engine: rounding alone.
         np.testing.assert_allclose(plates[rear][100:], plates[front][:-100], rtol=0.0, atol=1e-12)
     assert np.std(plates["fr"] - plates["fl"]) > 1e-3

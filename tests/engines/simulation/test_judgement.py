@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from vehicle.engines.simulation.judgement import judge_energy
@@ -34,17 +35,21 @@ def test_limits_of_the_residual():
     assert "summed from samples at 50 Hz" in coarse
 
 
-def test_item_52_a_friction_line_too_steep_to_integrate(car, high_piece):
+def test_item_52_a_friction_line_too_steep_for_the_vehicle_file(car, high_piece):
     with pytest.raises(ConfigurationError, match=r"^front\.damper\.smoothing: found 10000"):
         load_vehicle(None, ["damper.smoothing=1e10"])
-    # Past the range, as a library would come: the balance tells.
+    # Past the range, as a library would come: the step solves for sticking and slipping, so the run approaches that of
+    # set-valued friction. The line of 1e5 s/m creeps below 16 um/s, 0.2 % of the RMS velocity of the damper.
+    within = simulate(car.model, high_piece)
     for wheel in ("fr", "fl"):
         parameters = car.model.spec.actuator(f"damper_{wheel}").biasprm
         kept, parameters[1] = parameters[1], 1e10
         assert kept == 1e5
     try:
-        with pytest.raises(SimulationError, match=r"^energy residual \S+: of \S+ J dissipated"):
-            simulate(car.model, high_piece)
+        beyond = simulate(car.model, high_piece)
     finally:
         for wheel in ("fr", "fl"):
             car.model.spec.actuator(f"damper_{wheel}").biasprm[1] = 1e5
+    assert beyond.statistics.energies is not None and beyond.statistics.energies.residual < 1e-3
+    for channel in ("seat_rail_acc_z", "damper_fr_velocity", "damper_fr_force"):
+        assert 0.0 < np.std(beyond[channel] - within[channel]) < 5e-3 * np.std(within[channel])

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from scenarios.tuning.__main__ import main as tuning
 from vehicle.commands.compare import main as compare
 from vehicle.commands.compare import measured_beside
 from vehicle.commands.input_options import drives_on_road, record_choice
 from vehicle.commands.shaker import main as shaker
 from vehicle.commands.shaker import parser as shaker_options
+from vehicle.commands.tune import main as tune
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.runs.car import Car
@@ -220,21 +220,15 @@ def test_a_unit_is_of_the_input_or_of_what_was_measured(tmp_path):
 
 def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
     """Within three standard errors, and to a percent."""
-    fits = [
-        word
-        for path, bounds in ((MOUNT, "4e5:9e5:6.5e5"), (ENGINE, "3e5:8e5:5.5e5"))
-        for word in ("--fit", f"{path}={bounds}")
-    ]
-    arguments = ["--frf", str(measured), "--level", "low", *MAP, *fits, "--spacing", "1", "--quick"]
+    arguments = ["focus", "--frf", str(measured), "--stuck", *MAP, "--spacing", "1", "--engine", "reduced", "--quiet"]
     arguments += ["--set", "shaker_wheel='fr'"]  # the wheel of the measurement
-    assert tuning([*arguments, "--output", str(tmp_path / "fit")]) == 0
-    content = json.loads((tmp_path / "fit" / "results.json").read_text())
-    for path, value in HIDDEN.items():
-        error = content["all"]["standard_errors"][path]
-        assert abs(content["all"]["values"][path] - value) < 3.0 * error < 0.03 * value
-    text = (tmp_path / "fit" / "results.md").read_text()
-    assert "published" not in text and "| name | found | within | why |" in text
-    assert set(content["rows"][0]) == {"name", "found", "within", "why"}
+    arguments += ["--set", f"{MOUNT}=6.5e5", "--set", f"{ENGINE}=5.5e5"]
+    arguments += ["--parameters", f"{MOUNT}=4e5:9e5", f"{ENGINE}=3e5:8e5"]
+    assert tune([*arguments, "--output", str(tmp_path / "fit")]) == 0
+    fitted = json.loads((tmp_path / "fit" / "tune.json").read_text())["parameters"]
+    assert [parameter["path"].removeprefix("front.") for parameter in fitted] == list(HIDDEN)
+    for parameter, value in zip(fitted, HIDDEN.values(), strict=True):
+        assert abs(parameter["value"] - value) < 3.0 * parameter["standard_error"] < 0.03 * value
 
 
 @pytest.mark.parametrize(

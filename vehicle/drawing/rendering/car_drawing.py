@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Vector = npt.NDArray[np.float64]
 
-SHADES = {"body": "#c4c4c4", "mass": "#b9a27a", "link": "#3a3a3a", "spring": "#8a8a8a", "wheel": "#5a6b7a"}
+SHADES = {"body": "#c4c4c4", "mass": "#a5a5a5", "link": "#3a3a3a", "spring": "#8a8a8a", "wheel": "#5a6b7a"}
 """Colour of the lines of each group; plates are not drawn, but the ground."""
 
 CONSTRUCTION, STEERING, CENTRE = COLOURS[0], COLOURS[1], COLOURS[2]
