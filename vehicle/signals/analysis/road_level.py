@@ -52,7 +52,7 @@ class RoadLevel:
 def road_level(time_step: float, height: ArrayLike, speed: float, *, window_s: float = 8.0) -> RoadLevel:
     """Return the level of a road from its height under a wheel at constant speed.
 
-    The fit has the slope -2 in logarithmic scales and passes through the mean logarithm of n^2 G(n) over the one-third
+    The fit has the slope -2 in logarithmic scales and passes through the mean logarithm of n^2 G(n) over the third
     octaves inside `FITTED`, each with its mean density, so that every octave has the same weight.
 
     Args:
