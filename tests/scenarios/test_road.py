@@ -47,7 +47,7 @@ def test_a_short_study(car, tmp_path):
 
 def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
     """u = a U(F / a): the reduced engine is linear except for the dampers, and the product of load and slope of rolling
-    tyres, which changes these ratios by 3e-5."""
+    tyres, which changes these ratios by 3e-5 to 6e-5; with the static load they agree within 1e-6."""
     runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)
     pairs = [Ride(car="rigid", road=road, speed=80.0, friction=force) for road, force in (("A", 30.0), ("C", 120.0))]
     for name in ("rail", "seat_weighted", "load_front"):

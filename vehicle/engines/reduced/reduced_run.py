@@ -20,7 +20,8 @@ from vehicle.signals.excitation.signal import Signal, uniform_time
 
 LONGEST_STEP = 2e-4
 """Maximum time step [s]. Linear parts are exact at any step, and a stuck damper has third order, so the step only
-limits the accuracy of the instants of sticking and slipping."""
+limits the accuracy of the instants of sticking and slipping. Against 1/64 ms the worst channel of the shipped cars on
+both shipped levels has an RMS error of 0.07 to 0.24 %, and the median channel of at most 0.02 %."""
 
 
 def simulate_reduced(
