@@ -99,17 +99,18 @@ def test_frequencies_that_are_not_even_come_back(tmp_path, form):
 
 
 def test_a_run_is_written_in_all_formats(tmp_path, capsys):
+    pytest.importorskip("asammdf")
     source = tmp_path / "short.csv"
     time = np.arange(4000) / 500.0
     z = 1e-3 * np.sin(2.0 * np.pi * (2.0 * time + time**2)) * np.minimum(1.0, time)
     rows = "\n".join(f"{t:.3f},{value:.9e}" for t, value in zip(time, z, strict=True))
     source.write_text(f"time [s],displacement [m]\n{rows}\n")
     output = tmp_path / "run"
-    formats = [word for form in ("csv", "mat", "uff", "rpc") for word in ("--format", form)]
+    formats = [word for form in ("csv", "mat", "uff", "rpc", "mf4") for word in ("--format", form)]
     arguments = ["--input", str(source), "--engine", "reduced", "--output", str(output), "--quiet", *formats]
     assert shaker(arguments) == 0, capsys.readouterr().err
     held, response = read_columns(output / "time.npz"), read_frf(output / "frf.csv")
-    for form, digits in (("csv", 1e-8), ("mat", 1e-15), ("uff", 1e-15), ("rpc", 1e-7)):
+    for form, digits in (("csv", 1e-8), ("mat", 1e-15), ("uff", 1e-15), ("rpc", 1e-7), ("mf4", 1e-15)):
         found = {one.name: one for one in read_record(output / f"time.{form}").channels}
         for name, values in held.channels.items():
             np.testing.assert_allclose(found[name].si_values, values, rtol=digits, atol=1e-12, err_msg=name)

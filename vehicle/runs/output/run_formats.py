@@ -108,7 +108,7 @@ def writer(
     histories = time_channels(run)
     title = f"{run.car.vehicle.name}; {frame}"
     write = BY_NAME[form].function("writer", "write")
-    if form == "rpc":
+    if form in ("rpc", "mf4"):
         return lambda path: write(path, histories, title)
     everything = histories + response_channels(responses, channels)
     if form == "uff":

@@ -53,7 +53,7 @@ FORMATS = (
     Format(name="npz", recognise=signatures.is_npz, reader="array_format", table="npz_format"),
     Format(name="xlsx", recognise=signatures.is_xlsx, reader="sheet_format"),
     Format(name="tdms", recognise=signatures.is_tdms, reader="tdms_format"),
-    Format(name="mdf", recognise=signatures.is_mdf, reader="mdf_format", databases=True),
+    Format(name="mf4", recognise=signatures.is_mdf, reader="mdf_format", writer="mdf_format", databases=True),
     Format(name="h5", recognise=signatures.is_hdf5, reader="hdf_format", writer="hdf_format"),
     Format(name="rpc", recognise=signatures.is_rpc, reader="rpc_format", writer="rpc_format"),
     Format(name="parquet", recognise=signatures.is_parquet, reader="parquet_format"),

@@ -1,4 +1,4 @@
-"""Read MDF files of data loggers, versions 3 and 4, and decode their raw CAN frames with DBC databases."""
+"""Read MDF files of data loggers, versions 3 and 4, decode their raw CAN frames with DBC databases, and write MDF 4."""
 
 from __future__ import annotations
 
@@ -90,6 +90,40 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         start=start,
         notices=(*notices, *((f"{skipped} channels without numbers are ignored",) if skipped else ())),
     )
+
+
+def write(path: Path, channels: Sequence[Channel], description: str) -> None:
+    """Write time histories as MDF 4.10, one channel group for each time axis; values are stored as float64.
+
+    Args:
+        path: file to write, with the extension .mf4.
+        channels: time histories.
+        description: comment in the header of the file.
+
+    Raises:
+        MissingPartError: asammdf is not installed.
+        DataError: a channel without times.
+    """
+    asammdf = extra("asammdf", "mdf", "an MDF file")
+    groups: dict[int, tuple[Any, list[Any]]] = {}
+    for channel in channels:
+        if channel.axis is None or channel.kind != "time":
+            raise DataError(f"{path}: {channel.name} is not a time history; MDF has no other functions; leave it out")
+        _, signals = groups.setdefault(id(channel.axis), (channel.axis, []))
+        signals.append(
+            asammdf.Signal(
+                samples=np.asarray(channel.values, dtype=np.float64),
+                timestamps=channel.axis,
+                name=channel.name,
+                unit=channel.unit,
+                comment=" ".join(filter(None, (channel.place, channel.direction))),
+            )
+        )
+    with quiet(), asammdf.MDF(version="4.10") as file:
+        file.header.comment = description
+        for _, signals in groups.values():
+            file.append(signals, comment=description, common_timebase=True)
+        file.save(path, overwrite=True, compression=2)
 
 
 def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], int]:
