@@ -61,7 +61,7 @@ def parser() -> Parser:
         choices=("rolling", "standing"),
         default="rolling",
         help="rolling: contact patches that roll freely; standing: patches with the horizontal force and "
-        "torque of the car at rest; %(default)s by default",
+        "torque of the car at rest, as on plates; %(default)s by default",
     )
     extra_output_options(parser, "kinematics.csv and kinematics.png")
     parser.former("--replace", "--replace: files are replaced by --force, as in all commands")

@@ -114,6 +114,7 @@ class AxleParts:
         struts: dampers.
         standing: force [N] and torque [N m] of the ground on each wheel in the design position, without the vertical
             load, (wheels, 6).
+        round: ids of the wheels with a round tyre; see `vehicle.engines.simulation.round_tyres`.
     """
 
     wheels: tuple[int, ...]
@@ -124,6 +125,7 @@ class AxleParts:
     joints: tuple[int, ...]
     struts: tuple[Strut, ...]
     standing: Vector
+    round: frozenset[int]
 
 
 def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *, ideal: bool = False) -> AxleParts:
@@ -155,7 +157,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     torques = dict(zip(rotational, preload[preload.size - 3 * len(rotational) :].reshape(-1, 3), strict=True))
     numbers = [model.body(name).id for name in wheels]
     bodies = _connected_bodies(model, numbers, list(ends.values()))
-    standing, ties, springs = np.zeros((len(numbers), 6)), [], []
+    standing, ties, springs, treads = np.zeros((len(numbers), 6)), [], [], set()
     for index, name in enumerate(names):
         law = laws[name]
         if kinds[index] == connect:
@@ -166,6 +168,8 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
             if model.body_mocapid[carrier] >= 0:
                 # A tyre on its plate keeps the horizontal force and the torque of the static trim.
                 standing[numbers.index(moving)] = [*force[:2], 0.0, *torque]
+                if numeric(model, f"round/{name}") is not None:
+                    treads.add(moving)
                 continue
             soft = law.size > 0 and not ideal
             curves = {axis: _curve(model, f"{name}/{letter}") for axis, letter in enumerate(AXES)} if soft else {}
@@ -214,6 +218,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
         ),
         struts=tuple(strut for strut in _struts(model) if int(model.jnt_bodyid[strut.joint]) in bodies),
         standing=standing,
+        round=frozenset(treads),
     )
 
 

@@ -7,7 +7,8 @@ The position q of the parts of the axle satisfies
 with the forces f_e of bushings, springs and the stabilizer at large displacements (r and angle in the axes of the
 carrier, which turn with it), forces F and moments M on the wheels at their contact points, the ideal joints c, and the
 vertical loads N that hold the wheel centres at their heights. The contact point of a freely rolling tyre is the lowest
-point of its wheel, which stays below the wheel centre; that of a standing tyre is fixed to the wheel.
+point of its wheel, which stays below the wheel centre; that of a standing tyre is fixed to the wheel, except for the
+vertical load of a round tyre.
 Newton's method with K = sum of J' K_e J: omitting the geometric stiffness costs iterations, not accuracy. With ideal
 connections all connections are joints, and the solution is the minimum-norm motion that satisfies the constraints,
 independent of forces.
@@ -102,8 +103,8 @@ class AxleStatics:
             preload: static forces of the rows; see `StaticTrim`.
             wheels: wheels of the axle.
             ideal: True to replace every connection by an ideal ball joint.
-            standing: True for contact points fixed to the wheels, with the horizontal force and the torque of the
-                tyres at rest; False for freely rolling contact points.
+            standing: True for tyres as on plates, with the horizontal force and the torque of the tyres at rest; False
+                for freely rolling contact points.
         """
         self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
         self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
@@ -261,7 +262,8 @@ class AxleStatics:
             stiffness[column, column] += rate
         for index, (wheel, load) in enumerate(zip(self.wheels, loads, strict=True)):
             moved, turned = self.jacobian(wheel, self.contact(index))
-            force += moved.T @ load[:3] + turned.T @ load[3:]
+            raised, _ = self.jacobian(wheel, self.vertical_contact(index))
+            force += moved[:2].T @ load[:2] + raised[2] * load[2] + turned.T @ load[3:]
         return force, stiffness
 
     def _constraints(self, travel: Sequence[float]) -> tuple[Vector, Vector, Vector]:
@@ -279,13 +281,18 @@ class AxleStatics:
         for index, (wheel, height) in enumerate(zip(self.wheels, travel, strict=True)):
             center, _ = self.places(index)
             rows.append(self.jacobian(wheel, center)[0][2:])
-            reacting.append(self.jacobian(wheel, self.contact(index))[0][2:])
+            reacting.append(self.jacobian(wheel, self.vertical_contact(index))[0][2:])
             gaps.append(center[2:] - self.at_rest[index][0][2] - height)
         return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
 
     def contact(self, index: int) -> Vector:
-        """Return the point of a wheel at which the ground acts [m], (3,)."""
+        """Return the point of a wheel at which the horizontal force of the ground acts [m], (3,)."""
         return self.places(index)[1] if self.standing else self.lowest_point(index)
+
+    def vertical_contact(self, index: int) -> Vector:
+        """Return the point of a wheel at which the vertical force of the ground acts [m], (3,)."""
+        fixed = self.standing and self.wheels[index] not in self.parts.round
+        return self.places(index)[1] if fixed else self.lowest_point(index)
 
     def lowest_point(self, index: int) -> Vector:
         """Return the lowest point of a wheel [m], (3,): a thin disc with its axis along y in the design position."""

@@ -226,11 +226,27 @@ class Rolling(NamedTuple):
         return rows
 
 
+class RoundTyres(NamedTuple):
+    """Round tyres at rest, k of them.
+
+    Attributes:
+        tyres: indices among the bushings; (k,).
+        hubs: ids of the hubs; (k,).
+        radii: loaded radii [m]; (k,).
+        dofs: rows of tyre and velocity coordinate that moves its hub.
+    """
+
+    tyres: Index
+    hubs: Index
+    radii: Vector
+    dofs: Indices
+
+
 class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling: records of the elements.
+        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling, round: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -246,6 +262,7 @@ class Layout(NamedTuple):
     modes: Modes
     space: ModalSpace
     rolling: Rolling
+    round: RoundTyres
     joints: Indices
     tyres: Index
     reach: Indices

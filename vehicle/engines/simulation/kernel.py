@@ -38,6 +38,7 @@ from vehicle.engines.simulation.modal_rows import modal_rows
 from vehicle.engines.simulation.modal_space import advance_modes, modal_forces
 from vehicle.engines.simulation.rolling_tyres import headings, rolling_forces, rolling_rows
 from vehicle.engines.simulation.rotations import rotations
+from vehicle.engines.simulation.round_tyres import round_rows
 from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.model.laws.curve import curve_force
 from vehicle.model.laws.damper import friction_limit
@@ -302,6 +303,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
         modal_rows(d, efc, e, s)
     oblique_rows(d, efc, e)
     rolling_rows(d, efc, e)
+    round_rows(d, efc, e)
     local_axes(d, efc, e, s)
     headings(time, d, e, s)
     control(time, d, e, s)

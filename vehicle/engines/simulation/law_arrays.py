@@ -114,6 +114,11 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             arms=rolling_numbers[:, 2:].copy(),
             hold=np.array(numbers.get("hold/body", np.zeros(0))),
         ),
+        round=layout.round._replace(
+            radii=np.array(
+                [float(numbers[f"round/{name}"][0]) for name in names.bushings if f"round/{name}" in numbers]
+            ),
+        ),
     )
 
 

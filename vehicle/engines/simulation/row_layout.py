@@ -20,6 +20,7 @@ from vehicle.engines.simulation.element_records import (
     Modes,
     Rolling,
     Rotations,
+    RoundTyres,
     Springs,
     Table,
     Vector,
@@ -121,6 +122,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         ),
         space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
         rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
+        round=_round_tyres(model, [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=_whole(nonzero, 4),
@@ -344,6 +346,22 @@ def _rolling(
         course=_whole(course),
         rest=start,
         hold=np.zeros(0),
+    )
+
+
+def _round_tyres(model: mujoco.MjModel, tyres: Sequence[tuple[int, tuple[int, int]]]) -> RoundTyres:
+    """Return the record of the round tyres at rest, with radii of zero.
+
+    Args:
+        model: compiled car.
+        tyres: index among the bushings and sites of each tyre.
+    """
+    hubs = [int(model.site_bodyid[sites[0]]) for _, sites in tyres]
+    return RoundTyres(
+        tyres=_whole([index for index, _ in tyres]),
+        hubs=_whole(hubs),
+        radii=np.zeros(len(tyres)),
+        dofs=_whole([(n, dof) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 2),
     )
 
 

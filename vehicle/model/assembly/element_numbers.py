@@ -48,6 +48,8 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
     constants = [law.stiffness, law.damping, law.branch_stiffness, branch_damping]
     if connection.rolling is not None and isinstance(connection.law, Tyre):
         numbers[f"rolling/{name}"] = np.array([connection.rolling.speed, connection.law.trail, *connection.rolling.arm])
+    if connection.radius > 0.0:
+        numbers[f"round/{name}"] = np.array([connection.radius])
     numbers[f"law/{name}"] = np.concatenate([*constants, [law.rotational_stiffness, float(law.averaged)]])
     if law.directions is not None:
         numbers[f"directions/{name}"] = law.directions.ravel()

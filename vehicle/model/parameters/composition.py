@@ -132,6 +132,7 @@ class PlacedConnection(_WithLaw):
         path, tables: see the module.
         axes: axes of the law; None: those of the carrier.
         rolling: data of a rolling tyre; None for all other connections.
+        radius: loaded radius R of a round tyre at rest [m]; 0 for all other connections.
         lowest_stiffness: limit of the template along each axis [N/m].
         reason: reason of that limit.
     """
@@ -146,6 +147,7 @@ class PlacedConnection(_WithLaw):
     path: str
     axes: Axes | None = None
     rolling: Rolling | None = None
+    radius: float = 0.0
     tables: tuple[str, ...] = field(default=(), compare=False)
     lowest_stiffness: float = 0.0
     reason: str = ""

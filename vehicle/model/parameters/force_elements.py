@@ -76,6 +76,11 @@ class Tyre(Bushing):
     K and D along x and y and the rotational stiffness describe the tyre at rest and do not act on a rolling tyre.
     """
 
+    round: bool = True
+    """contact of the tyre at rest: true for a round tread, whose vertical force acts below the wheel centre; false
+    for a bushing fixed to the wheel at the patch (Bommer 2006), whose vertical force F takes F R off the pitch
+    stiffness"""
+
     slip_stiffness: float | None = quantity(
         "N", "C_kappa, force over longitudinal slip of the rolling tyre at its static load", default=None, **SLIPPING
     )

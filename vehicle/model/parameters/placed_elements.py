@@ -83,17 +83,20 @@ def _side_order(side: str | None) -> int:
 def _connection(i: Instance, e: topology.Connection, side: str | None) -> PlacedConnection:
     """Return a connection; its law is None for an ideal ball joint."""
     has_law = not e.ideal or i.has("bushings", e.name)
+    law = i.get(_law_kind(i, e), side, "bushings", e.name) if has_law else None
+    rolling = _rolling(i, side) if e.carrier == "plate" else None
     return PlacedConnection(
         name=i.label(e.name, side),
         moving=i.part(e.moving, side),
         carrier=i.part(e.carrier, side),
         at=i.point(e.at, side),
         point=i.point_name(e.at, side),
-        law=i.get(_law_kind(i, e), side, "bushings", e.name) if has_law else None,
+        law=law,
         ground=e.ground or e.carrier == "plate",
         path=f"{i.name}.bushings.{e.name}",
         axes=None if e.axes is None else axes_along(i.point(e.axes[0], side), i.point(e.axes[1], side)),
-        rolling=_rolling(i, side) if e.carrier == "plate" and i.driving.rolling else None,
+        rolling=rolling if i.driving.rolling else None,
+        radius=rolling.arm[2] if rolling and not i.driving.rolling and getattr(law, "round", False) else 0.0,
         tables=i.table_paths(side, "bushings", e.name) if has_law else (),
         lowest_stiffness=e.least,
         reason=e.why,

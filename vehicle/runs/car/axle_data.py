@@ -1,16 +1,8 @@
 """Stiffnesses, masses and geometry of an axle of a car in its design position.
 
-Wheel rate k_w and roll rate come from the static equilibrium of the axle with its bushings (`AxleStatics`): vertical
-load per travel of the wheel centre, body held, contact points that roll freely, both wheels alike and against each
-other. All else follows from them:
-
-    ride rate          1 / k_r = 1 / k_w + 1 / k_t
-    roll stiffness     K = k_opposite t_c t_p / 2 of the suspension, k_t t_p^2 / 2 of the tyres, both in series
-    ride frequency     sqrt(2 k_r / m_s) / 2 pi, with the sprung mass m_s that the axle carries
-
-with the tracks t_c of the wheel centres and t_p of the contact points. The unsprung mass of an axle is the sum of
-m dz / dz_w, the mass that rises with both wheels: an arm counts by the travel of its centre of gravity. Geometry,
-motion ratios and unsprung mass are those of ideal joints.
+Rates, masses, ride frequency and roll stiffness are those of `vehicle.engines.simulation.axle_ride`, for both wheels;
+the roll stiffness of the tyres is K_t t_p^2 / 2, with the track t_p of the patches. Geometry and motion ratios are
+those of ideal joints.
 """
 
 from __future__ import annotations
@@ -20,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle.engines.simulation.axle_curves import design_slopes, geometry_curve, opposite_rates, position_rate
-from vehicle.engines.simulation.axle_statics import AxleStatics
+from vehicle.engines.simulation.axle_curves import geometry_curve, position_rate
+from vehicle.engines.simulation.axle_ride import axle_ride
 from vehicle.engines.simulation.wheel_geometry import WheelGeometry
 from vehicle.errors import SimulationError
 from vehicle.runs.car.axle import axle_statics, direction_to_middle
@@ -76,10 +68,10 @@ class AxleData:
         curved_damper: True if the law of the damper has other slopes too.
         tyre_n_per_m: vertical stiffness of the tyre.
         ride_rate_n_per_m: wheel rate and tyre in series.
-        ride_frequency_hz: see the module.
+        ride_frequency_hz: undamped frequency of the sprung mass on the ride rate.
         roll: roll stiffness.
         geometry: roll centre, swing arms, support angles, steering axis.
-        ideal: True if geometry, ratios and unsprung mass are those of ideal joints; False if ideal joints lock the
+        ideal: True if geometry and ratios are those of ideal joints; False if ideal joints lock the
             axle, so that its bushings yield.
     """
 
@@ -130,10 +122,8 @@ def axle_data(car: Any, name: str) -> AxleData:
     wheels = [wheel for wheel in vehicle.composition.wheels if wheel.axle == name]
     right = wheels[0]
     loads = {wheel.name: float(car.static.tyre_load[wheel.name]) for wheel in wheels}
-    elastic = axle_statics(car, name, ideal=False)
-    rate = float(design_slopes(elastic)["wheel_rate_n_per_m"] or math.nan)
+    ride = axle_ride(car.model, name)
     track = abs(wheels[0].patch[1] - wheels[1].patch[1])
-    tyre = float(car.matrices.tyre_stiffness[vehicle.wheels.index(right.name)])
     towards = direction_to_middle(car, name)
     ideal, moving = True, axle_statics(car, name, ideal=True)
     try:
@@ -142,8 +132,6 @@ def axle_data(car: Any, name: str) -> AxleData:
         ideal, moving = False, axle_statics(car, name, ideal=False)
         geometry = geometry_curve(moving, [0.0], towards=towards)[0]
     motion = position_rate(moving, [0.0, 0.0], opposite=False)
-    unsprung = float(motion.mass_moment)
-    sprung = sum(loads.values()) / vehicle.gravity - unsprung if vehicle.gravity else math.nan
     springs = [
         (spring.pull(0.0)[1], -float(ratio))
         for spring, ratio in zip(moving.parts.springs, motion.springs, strict=True)
@@ -157,7 +145,6 @@ def axle_data(car: Any, name: str) -> AxleData:
     own_damper = next(
         (damper for damper in vehicle.composition.dampers if damper.name.endswith(f"_{right.name}")), None
     )
-    ride = rate * tyre / (rate + tyre)
     return AxleData(
         name=name,
         template=str(vehicle.table[name]["template"]),
@@ -167,9 +154,9 @@ def axle_data(car: Any, name: str) -> AxleData:
         track_m=track,
         radius_m=right.center[2] - right.patch[2],
         load_n=loads,
-        unsprung_kg=unsprung,
-        sprung_kg=sprung,
-        wheel_rate_n_per_m=rate,
+        unsprung_kg=len(wheels) * ride.unsprung_mass,
+        sprung_kg=len(wheels) * ride.sprung_mass,
+        wheel_rate_n_per_m=ride.wheel_rate,
         spring_n_per_m=sum(stiffness for stiffness, _ in springs) if springs else None,
         spring_ratio=springs[0][1] if springs else None,
         spring_at_wheel_n_per_m=sum(stiffness * ratio**2 for stiffness, ratio in springs) if springs else None,
@@ -178,23 +165,10 @@ def axle_data(car: Any, name: str) -> AxleData:
         if own_damper is None
         else float(car.matrices.viscous[vehicle.composition.dampers.index(own_damper)]),
         curved_damper=own_damper is not None and own_damper.law.viscous_law != "linear",
-        tyre_n_per_m=tyre,
-        ride_rate_n_per_m=ride,
-        ride_frequency_hz=math.sqrt(2.0 * ride / sprung) / (2.0 * math.pi) if sprung > 0.0 < ride else None,
-        roll=_roll_stiffness(elastic, tyre, abs(wheels[0].center[1] - wheels[1].center[1]), track),
+        tyre_n_per_m=ride.tyre_stiffness,
+        ride_rate_n_per_m=ride.ride_rate,
+        ride_frequency_hz=None if math.isnan(ride.ride_frequency) else ride.ride_frequency,
+        roll=RollStiffness(springs=ride.roll_springs, bars=ride.roll_bars, tyres=0.5 * ride.tyre_stiffness * track**2),
         geometry=geometry,
         ideal=ideal,
     )
-
-
-def _roll_stiffness(axle: AxleStatics, tyre: float, centre_track: float, track: float) -> RollStiffness:
-    """Return the roll stiffness of an axle.
-
-    Args:
-        axle: axle with its bushings.
-        tyre: vertical stiffness of a tyre [N/m].
-        centre_track: distance of the wheel centres [m].
-        track: distance of the contact points [m].
-    """
-    springs, bars = (0.5 * centre_track * track * rate for rate in opposite_rates(axle))
-    return RollStiffness(springs=springs, bars=bars, tyres=0.5 * tyre * track**2)
