@@ -170,8 +170,6 @@ def test_rates_are_those_of_the_stiffness_matrix(cars, shown, name, axle):
         center, patch = (statics.jacobian(wheel, point) for point in statics.places(index))
         stiffness -= patch[0].T @ np.diag(law.stiffness) @ patch[0]
         stiffness -= law.rotational_stiffness * patch[1].T @ patch[1]
-        # A patch that is fixed to the wheel moves ahead as the wheel winds up; the lowest point does not: - N r.
-        stiffness += data.load_n[data.wheels[index]] * data.radius_m * np.outer(patch[1][1], patch[1][1])
         rows.append((center[0][2], patch[0][2]))
     system_matrix = np.block([[stiffness, joints.T], [joints, np.zeros((len(joints), len(joints)))]])
     rates = []
