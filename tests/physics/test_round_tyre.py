@@ -74,6 +74,8 @@ def test_standing_round_tyres_have_the_wheel_rate_of_rolling_tyres() -> None:
         car = Car.load("sedan", [f"*.bushings.tyre.round={contact}"])
         for standing in (True, False):
             slopes = design_slopes(axle_statics(car, "rear", ideal=False, standing=standing))
-            rates[contact, standing] = slopes["wheel_rate_n_per_m"]
+            rate = slopes["wheel_rate_n_per_m"]
+            assert rate is not None
+            rates[contact, standing] = rate
     assert rates["true", True] == pytest.approx(rates["true", False], rel=5e-3)
     assert rates["false", True] < 0.85 * rates["false", False]
