@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle.compiler import jitable
-from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector
+from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector, copy_row
 from vehicle.engines.simulation.modal_space import modal_acceleration
 
 
@@ -140,13 +140,6 @@ class Loop(NamedTuple):
     plates: Plates
     sources: Sources
     samples: Samples
-
-
-@jitable
-def copy_row(row: Vector, values: Vector) -> None:
-    """Copy values in a loop: an array assignment would double the compile time by its error messages."""
-    for entry in range(values.shape[0]):
-        row[entry] = values[entry]
 
 
 @jitable
