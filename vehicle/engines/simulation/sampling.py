@@ -17,10 +17,12 @@ class Plates(NamedTuple):
     height: Table
     velocity: Table
     acceleration: Table
+    slope: Table
     mocap: Index
     mocap_position: Table
     row_velocity: Table
     row_acceleration: Table
+    row_slope: Vector
 
 
 class Sources(NamedTuple):
@@ -149,6 +151,7 @@ def move_plates(index: int, p: Plates) -> None:
         p.mocap_position[p.mocap[plate], 2] = p.height[index, plate]
         p.row_velocity[plate, 2] = p.velocity[index, plate]
         p.row_acceleration[plate, 2] = p.acceleration[index, plate]
+        p.row_slope[plate] = p.slope[index, plate]
 
 
 @jitable
