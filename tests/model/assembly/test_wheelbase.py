@@ -15,7 +15,7 @@ from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car, Run
-from vehicle.signals.excitation.iso_road import drive
+from vehicle.signals.excitation.iso_road import Contact, drive
 
 SPEED, WHEELBASE = 20.0, 2.6
 EDGE = SPEED / WHEELBASE
@@ -32,6 +32,9 @@ class Hump:
     def height(self, start: float, step: float, steps: int, side: str, highest: float) -> np.ndarray:
         place = start + step * np.arange(steps)
         return np.asarray(1e-3 * np.exp(-(((place - 30.0) / 0.1) ** 2)))
+
+    def contact(self, start: float, step: float, steps: int, side: str, highest: float) -> Contact:
+        return self.height(start, step, steps, side, highest), None
 
 
 def equal_axles(folder: Path) -> Car:
