@@ -58,7 +58,7 @@ def parser() -> Parser:
     output_options(parser, None, default="runs/<input stem>, or runs/road_C_80,")
     vehicle_options(parser)
     engine_option(parser, "mujoco")
-    skip_option(parser, 0.0)
+    skip_option(parser)
     parser.add_argument(
         "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
     )

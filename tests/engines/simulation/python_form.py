@@ -105,6 +105,7 @@ def _evaluate(rows: Rows, compiled: CompiledRows | None) -> Values:
             data.qvel[:] = 0.1 * way
             data.time = visit * rows.weights.timestep
             state.plate_velocity[:, 2] = 0.1 + 0.2 * np.arange(len(state.plate_velocity))
+            state.slope_velocity[:] = 0.3 - 0.1 * np.arange(len(state.slope_velocity))
             state.plate_acceleration[:, 2] = 1.0 - 3.0 * np.arange(len(state.plate_velocity))
             if compiled is None:
                 mujoco.mj_step(model, data)

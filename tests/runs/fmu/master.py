@@ -6,6 +6,7 @@ import shutil
 import tempfile
 import weakref
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -112,9 +113,9 @@ def written(car: Car, folder: Path, **options: Any) -> Fmu:
 
 
 def plates_of(signal: Signal, duration: float, step: float = STEP) -> Vector:
-    """Return (z, z') of the driven plates at all steps up to a time of the signal."""
+    """Return (z, z', slope excess of the next step) of the driven plates at all steps up to a time of the signal."""
     whole = plate_samples(signal, step, round(signal.duration / step), 0)[:]
-    return np.asarray(whole[: round(duration / step) + 1])
+    return np.asarray(whole[: round(duration / step) + 1]).reshape(-1, len(signal.wheels), 3)
 
 
 def drive(
@@ -125,7 +126,7 @@ def drive(
     Args:
         instance: instance that is not initialized.
         signal: whose wheels are driven.
-        plates: (z, z') of each driven plate at the communication points.
+        plates: (z, z', slope excess) of each driven plate at the communication points.
         outputs: names of the outputs.
         every: communication steps from one sample of the outputs to the next.
         length: communication step [s].
@@ -134,12 +135,14 @@ def drive(
         Outputs at the samples; (outputs, samples).
     """
     names = [f"plate_{wheel}_{quantity}" for wheel in signal.wheels for quantity in ("displacement", "velocity")]
+    rolling = [f"plate_{wheel}_slope_excess" for wheel in signal.wheels if signal.slope_velocity]
     instance.begin()
-    instance.set(dict(zip(names, plates[0], strict=True)))
+    instance.set(dict(zip(names, plates[0, :, :2].ravel(), strict=True)))
     instance.end_initialization()
     rows = [instance.get(outputs)]
-    for k, row in enumerate(plates[1:], start=1):
-        instance.set(dict(zip(names, row, strict=True)))
+    for k, (before, plate) in enumerate(pairwise(plates), start=1):
+        instance.set(dict(zip(names, plate[:, :2].ravel(), strict=True)))
+        instance.set(dict(zip(rolling, before[:, 2], strict=False)))
         instance.step(length)
         if k % every == 0:
             rows.append(instance.get(outputs))

@@ -39,7 +39,7 @@ STRIBECK: dict[str, Any] = {
 
 
 def on_road(name: str, level: str, overrides: tuple[str, ...] = ()) -> tuple[Car, Signal]:
-    """Return a car on a road with rolling tyres, and the road under its wheels."""
+    """Return a car on a road or an obstacle with rolling tyres, and the road under its wheels."""
     car = Car.load(name, overrides)
     ride = Road(level, speed=80, duration=SECONDS + 0.1).under(car.vehicle, car.overrides)
     return car.varied(ride.overrides), ride.signal()
@@ -102,7 +102,14 @@ def deviations(fmu: Fmu, car: Car, signal: Signal, channels: tuple[str, ...]) ->
 
 
 @pytest.mark.parametrize(
-    ("case", "fmi"), [("focus low", "2"), ("focus high", "3"), ("focus_road A", "3"), ("sedan C", "2")]
+    ("case", "fmi"),
+    [
+        ("focus low", "2"),
+        ("focus high", "3"),
+        ("focus_road A", "3"),
+        ("sedan C", "2"),
+        ("focus_road cleat:20x50@25", "2"),
+    ],
 )
 def test_the_fmu_gives_the_motion_of_the_engine(case, fmi, tmp_path):
     name, level = case.split()

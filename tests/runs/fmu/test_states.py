@@ -123,7 +123,7 @@ def test_skyhook_outside_equals_the_own_law(tmp_path: Path, high_piece: Signal):
         outside.set({f"damper_{wheel}_control": 0.0})
     names = [f"damper_{wheel}_{end}_velocity" for wheel in ("fr", "fl") for end in ("wheel", "body")]
     rows = [outside.get(outputs)]
-    for k, (z, velocity) in enumerate(plates[1:]):
+    for k, ((z, velocity, _),) in enumerate(plates[1:]):
         if k % 5 == 0:
             fr_wheel, fr_body, fl_wheel, fl_body = outside.get(names)
             outside.set({"damper_fr_coefficient_command": skyhook(fr_body, fr_wheel)})

@@ -1,12 +1,13 @@
 """Inputs of a step that depend on the motion at its beginning: loads of rolling tyres on slopes, controlled dampers.
 
-A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling_tyres`). The poles
-contain the effect of the static load F_0, as a force b z' of the velocity of the plate. The current load adds
+A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle.engines.simulation.rolling_tyres`). The poles
+contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
+load and a slope that is not z'/V add
 
-    b (max(0, F_z) / F_0 - 1) z',
+    b (max(0, F_z) / F_0 - 1) V tan(beta) + b (V tan(beta) - z')
 
-a product of two motions, as a force that is constant over a step: F_z is extrapolated to the middle of the step from
-the beginnings of this step and of the last one, z' is the mean over the step. Both are of second order.
+as a force that is constant over a step: F_z is extrapolated to the middle of the step from the beginnings of this step
+and of the last one, of second order; z' in the first term is the mean over the step.
 
 The poles contain the softest setting of a controlled damper. The excess e = c - cmin acts on the mean velocity of a
 step, f = -e (v + v+)/2: second order, and dissipative at any step. This is the damper curve F_c = e v.

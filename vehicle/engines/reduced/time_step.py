@@ -120,7 +120,7 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         t, r, feedback, rates, laws, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
         step: index of the step.
     """
-    count, plates = len(dampers), rates.shape[1] // 3
+    count, plates = len(dampers), rates.shape[1] // 4
     row = r.inputs + 2 * count
     for k in range(2 * plates):
         store(t, row + k, broadcast(rates[step, k]))
@@ -129,7 +129,9 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         load_now = load(t, r.sensors + i)
         middle = load_now + filled(t, 0.5) * (load_now - load(t, r.past + i))
         store(t, r.past + i, load_now)
-        store(t, row + i, maximum(middle, filled(t, -1.0)) * broadcast(rates[step, plates + i]))
+        excess = broadcast(rates[step, 3 * plates + i])
+        change = maximum(middle, filled(t, -1.0))
+        store(t, row + i, change * (broadcast(rates[step, plates + i]) + excess) + excess)
     for i in range(feedback.plate_inputs):
         store(t, row + feedback.tyres + i, broadcast(rates[step, 2 * plates + i]))
     for k in range(feedback.dampers.shape[0]):
@@ -159,7 +161,7 @@ def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors
         end: row of the end of the step in `rates`.
         count, sensors: numbers of dampers and of sensors.
     """
-    plates = rates.shape[1] // 3
+    plates = rates.shape[1] // 4
     row = r.direct
     for i in range(sensors):
         value = load(t, r.sensors + i)
@@ -199,7 +201,7 @@ def advance(
         last, now: first rows of the changes up to the beginning and up to the end of the step.
         step: index of the step.
     """
-    count, plates = len(dampers), rates.shape[1] // 3
+    count, plates = len(dampers), rates.shape[1] // 4
     size, width, kept = len(inputs), len(sums), changes.shape[0] > 0
     pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
     set_inputs(t, r, feedback, rates, laws, step, dampers)

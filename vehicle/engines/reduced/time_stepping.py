@@ -99,7 +99,8 @@ def step_cars(
         r: sections of the table.
         laws: records of the dampers if a friction limit depends on the velocity, (dampers, cars); otherwise empty.
         feedback: sensors and what acts by them; changed in place.
-        rates: (z' at the beginning, mean z', z at the beginning) of the steps; (steps + 1, 3 plates).
+        rates: (z' at the beginning, mean z', z at the beginning, V tan(beta) - z') of the steps;
+            (steps + 1, 4 plates).
         plate_z: plate displacements at the samples and their differences; (samples, 2 plates).
         every: steps between two samples.
         reading: output tiles.
@@ -115,7 +116,7 @@ def step_cars(
         inputs, sums, dampers: tuples with the lengths of the inputs of a step, of the damper velocities and sensors,
             and of the dampers.
     """
-    count, plates = len(dampers), rates.shape[1] // 3
+    count, plates = len(dampers), rates.shape[1] // 4
     poles = 2 * r.pairs + r.reals
     states = poles + 2 * count + plates
     weights = (states + plates) * TILE

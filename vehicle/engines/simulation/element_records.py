@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.compiler import jitable
+
 Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[np.float64]
 Tables3 = npt.NDArray[np.float64]
@@ -268,3 +270,10 @@ class Layout(NamedTuple):
     reach: Indices
     row_count: int
     velocity_count: int
+
+
+@jitable
+def copy_row(row: Vector, values: Vector) -> None:
+    """Copy values in a loop: an array assignment would double the compile time by its error messages."""
+    for entry in range(values.shape[0]):
+        row[entry] = values[entry]

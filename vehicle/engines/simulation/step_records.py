@@ -64,6 +64,7 @@ class State(NamedTuple):
 
     Attributes:
         plate_velocity, plate_acceleration: motion of the plates, an input; (t, 3).
+        slope_velocity: speed times slope of the road at the tyres [m/s], an input; (t,).
         branch_past: part of the branch forces f2 that is independent of the acceleration of the step; (n, 3).
         branch_force: f2 at the last completed step; (n, 3).
         last_rate: r' at the last completed step; (n, 3). last_time: time of that step [s], -1 at rest; (1,).
@@ -90,6 +91,7 @@ class State(NamedTuple):
 
     plate_velocity: Table
     plate_acceleration: Table
+    slope_velocity: Vector
     branch_past: Table
     branch_force: Table
     last_rate: Table

@@ -59,6 +59,7 @@ class CarNumbers:
         content: content of resources/car.bin.
         token: text that ties model description and resources together.
         step: internal time step [s].
+        rolling: True for rolling tyres.
         plates, dampers: names of the wheels with plates and of the dampers.
         outputs: the outputs.
         parameters: first values of the parameters; (dampers, `PARAMETERS`).
@@ -67,6 +68,7 @@ class CarNumbers:
     content: bytes
     token: str
     step: float
+    rolling: bool
     plates: tuple[str, ...]
     dampers: tuple[str, ...]
     outputs: tuple[Output, ...]
@@ -150,6 +152,7 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
         content=MAGIC + _text(token, TOKEN) + body,
         token=token,
         step=step,
+        rolling=rolling,
         plates=tuple(wheels),
         dampers=tuple(damper.name for damper in composition),
         outputs=tuple(outputs),

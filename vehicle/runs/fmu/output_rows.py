@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.reduced.load_outputs import direct_forces, load_outputs
+from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import (
     LARGEST_ANGLE,
@@ -106,8 +106,11 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
     loads = [name for name in channels if name in vehicle.load_channels]
     if loads:
         rows_of_loads = car.load_rows.only(loads)
-        rows = _linear(
-            model, load_outputs(model, rows_of_loads), rows_of_loads.static, direct_forces(model, rows_of_loads)
+        rows = OutputRows(
+            outputs=load_outputs(model, rows_of_loads),
+            fixed=rows_of_loads.static,
+            force=direct_forces(model, rows_of_loads),
+            slope=_of_plates(model, direct_slopes(model, rows_of_loads)),
         )
         for name, row in zip(rows_of_loads.names, _each(rows), strict=True):
             add(Output(name=name, unit=units[name], meaning="load, see docs/reference.md"), row)
@@ -131,25 +134,29 @@ def _no_outputs(model: PoleModel) -> Outputs:
     return Outputs(poles=np.zeros((1, len(model.poles)), dtype=complex), height=zeros, velocity=zeros)
 
 
-def _linear(model: PoleModel, outputs: Outputs, fixed: Vector | None = None, force: Vector | None = None) -> OutputRows:
-    """Return linear outputs without further direct terms, except for static values and damper forces."""
-    count, wheels, dampers = len(outputs.poles), len(model.matrices.system.inputs), model.force.shape[1]
+def _linear(model: PoleModel, outputs: Outputs, fixed: Vector | None = None) -> OutputRows:
+    """Return linear outputs without further direct terms, except for static values."""
+    count = len(outputs.poles)
     return OutputRows(
         outputs=outputs,
         fixed=np.zeros(count) if fixed is None else fixed,
-        force=np.zeros((count, dampers)) if force is None else force,
-        slope=np.zeros((count, wheels)),
+        force=np.zeros((count, model.force.shape[1])),
+        slope=np.zeros((count, len(model.matrices.system.inputs))),
     )
+
+
+def _of_plates(model: PoleModel, rows: Vector) -> Vector:
+    """Return rows over the plates of rolling tyres; zeros if the tyres stand."""
+    return rows if model.slope.shape[1] else np.zeros((len(rows), len(model.matrices.system.inputs)))
 
 
 def _second_derivative(model: PoleModel, displacements: Outputs) -> OutputRows:
     """Return the second derivatives of displacements Re(rows xi), with xi' = s xi + b_z z + b_c z' + e f."""
     rate = displacements.poles * model.poles
-    wheels = len(model.matrices.system.inputs)
     outputs = Outputs(
         poles=rate * model.poles, height=(rate @ model.height).real, velocity=(rate @ model.velocity).real
     )
-    slope = (rate @ model.slope).real if model.slope.shape[1] else np.zeros((len(rate), wheels))
+    slope = _of_plates(model, (rate @ model.slope).real)
     return OutputRows(outputs=outputs, fixed=np.zeros(len(rate)), force=(rate @ model.force).real, slope=slope)
 
 

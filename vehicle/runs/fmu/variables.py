@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.runs.fmu.car_numbers import COMMANDS, PARAMETERS, CarNumbers
 
-FIRST_PLATE, FIRST_COMMAND, FIRST_PARAMETER, FIRST_OUTPUT = 100, 10000, 20000, 30000
+FIRST_PLATE, FIRST_SLOPE, FIRST_COMMAND, FIRST_PARAMETER, FIRST_OUTPUT = 100, 5000, 10000, 20000, 30000
 """First value references."""
 
 STRIBECK_ONLY = ("static_friction", "stribeck_velocity", "stribeck_exponent")
@@ -42,6 +42,8 @@ _MEANING = {
     "displacement": "displacement of the plate or road at the END of the communication step, upwards",
     "velocity": "velocity of the plate or road at the END of the communication step, upwards; needed: without it the "
     "tyre forces are wrong",
+    "slope_excess": "V tan(beta) - z' of a road whose slope under the tyre is not the derivative of its height (a tyre "
+    "that envelops an obstacle), mean over the communication step; 0 otherwise",
     "force": "force added to that of the damper, constant over the communication step; positive pulls body and wheel "
     "together",
     "coefficient": "damping added to the curve of the damper, constant over the communication step",
@@ -94,6 +96,17 @@ def variables(numbers: CarNumbers, dampers: Sequence[Damper]) -> list[Variable]:
                     meaning=_MEANING[quantity],
                 )
             )
+    for k, wheel in enumerate(numbers.plates if numbers.rolling else ()):
+        entries.append(
+            Variable(
+                name=f"plate_{wheel}_slope_excess",
+                reference=FIRST_SLOPE + k,
+                causality="input",
+                unit="m/s",
+                start=0.0,
+                meaning=_MEANING["slope_excess"],
+            )
+        )
     for i, name in enumerate(numbers.dampers):
         for part, (quantity, unit) in enumerate(COMMANDS.items()):
             entries.append(

@@ -241,9 +241,7 @@ def _changes(first: FinishedRun, run: FinishedRun) -> list[Change]:
 def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
     """Return label to value, unit, and whether a smaller value is better."""
     numbers: dict[str, tuple[float, str, bool]] = {}
-    for point, value in run.summary["comfort"].items():
-        if point == "seat" and run.summary.get("seat_value") is None:
-            continue  # a point of the body, see the notices
+    for point, value in run.comfort.items():
         iso, label = value["iso2631"], point_words(point)
         numbers[f"{label}, weighted"] = iso["vector_sum"]["weighted_rms"], "m/s²", True
         numbers |= {f"{label}, weighted, {axis}": (iso[axis]["weighted_rms"], "m/s²", True) for axis in "xyz"}

@@ -83,8 +83,8 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     """
     summary = run.summary
     figures: dict[tuple[str, str], float | None] = {}
-    for point, value in summary["comfort"].items():
-        label = point.replace("_", " ")
+    for point, value in run.comfort.items():
+        label = point_words(point)
         figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"][
             "weighted_rms"
         ]

@@ -72,7 +72,7 @@ typedef struct {
   const double *fixed;             /* static values; (outputs + watched) */
   const double *rows;              /* states, forces, slopes, z', z; (outputs + watched, ...) */
   const double *by_force;          /* damper forces at the same instant; (outputs + watched, dampers) */
-  const double *by_tyre;           /* slope forces of rolling tyres at the same instant; (outputs + watched, plates) */
+  const double *by_tyre;           /* forces on slopes at the same instant; (outputs + watched, plates) */
   const double *limit;             /* lowest and highest value; (watched, 2) */
   const char *names;               /* of plates, then of dampers; (plates + dampers, NAME) */
   const char *notice;              /* what a value beyond its limits means; (watched, NOTICE) */
@@ -87,6 +87,7 @@ typedef struct {
   double *time, *start_time, *steps; /* begin of the next step [s]; of the run [s]; steps done */
   double *parameter;               /* (dampers, PARAMETERS) */
   double *plate;                   /* inputs: z, z' of each plate */
+  double *slope_excess;            /* inputs: V tan(beta) - z' of the road [m/s]; (tyres) */
   double *command;                 /* inputs: force [N], coefficient [N s/m] of each damper */
   double *before;                  /* z, z' at the end of the last step */
   double *poles;                   /* states without the forces of the last step; (states) */

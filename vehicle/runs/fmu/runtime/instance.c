@@ -2,7 +2,7 @@
  * outside. Messages say what is wrong and how to mend it.
  *
  * Value references, as in variables.py: 0 time; 100 + 2 k and 101 + 2 k displacement and velocity of plate k;
- * 10000 + 2 i and 10001 + 2 i force and coefficient command of damper i; 20000 + PARAMETERS i + k parameters of damper
+ * 5000 + k its slope velocity beyond the velocity, for rolling tyres; 10000 + 2 i and 10001 + 2 i force and coefficient command of damper i; 20000 + PARAMETERS i + k parameters of damper
  * i; 30000 + o outputs. */
 #include <math.h>
 #include <stdarg.h>
@@ -12,7 +12,7 @@
 
 #include "car.h"
 
-enum { FIRST_PLATE = 100, FIRST_COMMAND = 10000, FIRST_PARAMETER = 20000, FIRST_OUTPUT = 30000 };
+enum { FIRST_PLATE = 100, FIRST_SLOPE = 5000, FIRST_COMMAND = 10000, FIRST_PARAMETER = 20000, FIRST_OUTPUT = 30000 };
 enum { MOST_STEPS = 100000, FROZEN_STEPS = 50 };
 
 static const double CHECK_TIME = 0.016;                /* between two checks of watched quantities [s] */
@@ -50,7 +50,7 @@ static size_t place(State *s, double *block) {
   int64_t work = car->inputs + car->sums + car->states + d * (3 + 4 * n->nodes) + 4 * m;
   struct { double **array; int64_t size; } arrays[] = {
     {&s->time, 1}, {&s->start_time, 1}, {&s->steps, 1}, {&s->mode, 1}, {&s->checked, 1},
-    {&s->parameter, d * PARAMETERS}, {&s->plate, 2 * m}, {&s->command, 2 * d}, {&s->before, 2 * m},
+    {&s->parameter, d * PARAMETERS}, {&s->plate, 2 * m}, {&s->slope_excess, n->tyres}, {&s->command, 2 * d}, {&s->before, 2 * m},
     {&s->poles, car->states}, {&s->force, d}, {&s->slope, d}, {&s->end_force, d}, {&s->pushed, d},
     {&s->velocity, d}, {&s->earlier, d}, {&s->hold, d}, {&s->stuck, d}, {&s->stick, d},
     {&s->friction_limit, d}, {&s->coefficient, d}, {&s->half_curve, d * n->nodes},
@@ -83,13 +83,14 @@ void reset_state(State *s) {
 }
 
 /* Kinds of variables; the index within the kind is written to `index`. */
-enum { UNKNOWN, TIME, PLATE, COMMAND, DAMPER_PARAMETER, OUTPUT };
+enum { UNKNOWN, TIME, PLATE, SLOPE, COMMAND, DAMPER_PARAMETER, OUTPUT };
 
 static int kind_of(const Car *car, uint32_t reference, int64_t *index) {
-  static const uint32_t first[] = {FIRST_OUTPUT, FIRST_PARAMETER, FIRST_COMMAND, FIRST_PLATE, 0};
-  static const int kinds[] = {OUTPUT, DAMPER_PARAMETER, COMMAND, PLATE, TIME};
-  int64_t counts[] = {car->n.outputs, car->n.dampers * PARAMETERS, 2 * car->n.dampers, 2 * car->n.plates, 1};
-  for (int k = 0; k < 5; k++) {
+  static const uint32_t first[] = {FIRST_OUTPUT, FIRST_PARAMETER, FIRST_COMMAND, FIRST_SLOPE, FIRST_PLATE, 0};
+  static const int kinds[] = {OUTPUT, DAMPER_PARAMETER, COMMAND, SLOPE, PLATE, TIME};
+  int64_t counts[] = {car->n.outputs, car->n.dampers * PARAMETERS, 2 * car->n.dampers, car->n.tyres,
+                      2 * car->n.plates, 1};
+  for (int k = 0; k < 6; k++) {
     if (reference < first[k]) continue;
     *index = (int64_t)(reference - first[k]);
     return *index < counts[k] ? kinds[k] : UNKNOWN;
@@ -102,6 +103,7 @@ int get_value(const State *s, uint32_t reference, double *value, char *message) 
   switch (kind_of(s->car, reference, &index)) {
     case TIME: *value = s->time[0]; return 1;
     case PLATE: *value = s->plate[index]; return 1;
+    case SLOPE: *value = s->slope_excess[index]; return 1;
     case COMMAND: *value = s->command[index]; return 1;
     case DAMPER_PARAMETER: *value = s->parameter[index]; return 1;
     case OUTPUT: *value = output_value(s, index); return 1;
@@ -143,6 +145,12 @@ int set_value(State *s, uint32_t reference, double value, char *message) {
         return refuse(message, "plate_%s_%s: found %g, must be %g to %g %s", plate_name(car, index / 2), plates[part],
                       value, -HIGHEST[part], HIGHEST[part], plate_units[part]);
       s->plate[index] = value;
+      return 1;
+    case SLOPE:
+      if (!is_within(value, -HIGHEST[1], HIGHEST[1]))
+        return refuse(message, "plate_%s_slope_excess: found %g, must be %g to %g m/s", plate_name(car, index), value,
+                      -HIGHEST[1], HIGHEST[1]);
+      s->slope_excess[index] = value;
       return 1;
     case COMMAND:
       if (!is_within(value, -STRONGEST[part], STRONGEST[part]))

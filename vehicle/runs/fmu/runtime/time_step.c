@@ -100,7 +100,7 @@ static void set_inputs(State *s, const double *end, double *u) {
   for (int64_t k = 0; k < n->tyres; k++) {
     double middle = s->sensor[k] + 0.5 * (s->sensor[k] - s->past[k]);
     s->past[k] = s->sensor[k];
-    rest[k] = larger(middle, -1.0) * mean[k];
+    rest[k] = larger(middle, -1.0) * (mean[k] + s->slope_excess[k]) + s->slope_excess[k];
   }
   for (int64_t k = 0; k < n->heights; k++) rest[n->tyres + k] = s->before[2 * k];
   for (int64_t i = 0; i < d; i++) {
@@ -265,8 +265,10 @@ static double linear_value(const State *s, int64_t output) {
   for (int64_t k = 0; k < m; k++)
     value += direct[2 * d + k] * s->before[2 * k + 1] + direct[2 * d + m + k] * s->before[2 * k];
   for (int64_t i = 0; i < d; i++) value += car->by_force[output * d + i] * (s->end_force[i] - s->pushed[i]);
-  for (int64_t k = 0; k < car->n.tyres; k++)
-    value += car->by_tyre[output * m + k] * larger(s->sensor[k], -1.0) * s->before[2 * k + 1];
+  for (int64_t k = 0; k < car->n.tyres; k++) {
+    double excess = s->slope_excess[k], change = larger(s->sensor[k], -1.0);
+    value += car->by_tyre[output * m + k] * (change * (s->before[2 * k + 1] + excess) + excess);
+  }
   return value + car->fixed[output];
 }
 
