@@ -43,6 +43,11 @@ def direct_forces(model: PoleModel, loads: LoadRows) -> Vector:
     return np.asarray(loads.friction + (loads.acceleration @ (model.modal * model.poles @ model.force)).real)
 
 
+def direct_slopes(model: PoleModel, loads: LoadRows) -> Vector:
+    """Return the rows of loads over the slope velocities e of rolling tyres at the same instant; (loads, w)."""
+    return np.asarray(loads.slope + (loads.acceleration @ (model.modal * model.poles @ model.slope)).real)
+
+
 def slope_loads(
     model: PoleModel,
     loads: LoadRows,
@@ -61,7 +66,7 @@ def slope_loads(
         tyre_forces: vertical tyre forces by wheel [N], (n,) each.
         tyre_load: static tyre loads by wheel [N].
     """
-    rows = loads.slope + (loads.acceleration @ (model.modal * model.poles @ model.slope)).real
+    rows = direct_slopes(model, loads)
     total, inputs = np.zeros((len(rows), len(time))), model.matrices.system.inputs
     for wheel in signal.wheels:
         rate = signal.spline(wheel, float(time[0]), float(time[-1]))(time, 1)
