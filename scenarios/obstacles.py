@@ -180,7 +180,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 
 def dose_claims(values: Mapping[Passage, Values]) -> Sequence[Claim]:
-    """Return the checks: over the speed the dose of a short obstacle has a maximum, and that of a long obstacle rises."""
+    """Return the checks: over speed, the dose of a short obstacle has a maximum and that of a long obstacle rises."""
     rows = []
     for text in dict.fromkeys(passage.obstacle for passage in values):
         row = {passage.speed: each.get("vdv seat_rail", np.nan) for passage, each in values.items()
