@@ -101,7 +101,9 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     columns, rolling = list(range(len(wheels))), car.poles.slope.shape[1] > 0
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)
     sensors = sensor_outputs(model, laws, columns, car.static.tyre_load if rolling else None)
-    feedback = feedback_at_rest(laws, len(wheels) if rolling else 0, factors.plate_inputs, step)
+    feedback = feedback_at_rest(
+        laws, np.zeros(0, dtype=np.int64), len(wheels) if rolling else 0, factors.plate_inputs, step
+    )
     outputs, rows = car_outputs(car, channels)
     watched, limits, notices = watched_outputs(car)
     parameters = np.array([_parameters(law) for law in laws])
