@@ -61,8 +61,8 @@ ROOMS: dict[str, set[str]] = {
     | {"report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
-    "report": {"analysis", "car", "flexbody", "linear", "output", "parameters", "records", "rendering", "simulation"}
-    | {"version"},
+    "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
+    | {"simulation", "version"},
     "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "fmu", "linear"}
     | {"optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
     | {"sweeps", "threads", "tuning", "version"},

@@ -14,9 +14,10 @@ from vehicle.engines.simulation import stepping
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.compiled import CompiledRows
+from vehicle.engines.simulation.element_records import copy_row
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
+from vehicle.engines.simulation.sampling import Loop, keep_sample, move_plates
 from vehicle.signals.excitation.signal import Signal
 
 ROUND_OFF = 1e-12

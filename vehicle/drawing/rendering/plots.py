@@ -201,8 +201,8 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
             lowest, highest = _range([run, *others], list(lines), scale)
             columns = len(lines) if page else LEGEND_COLUMNS
             room = LEGEND_ROOM * (1.6 if page else 1.0) * -(-len(lines) // columns)
-            words = next((unit.replace(word, short) for word, short in SHORT.items() if page and word in unit), unit)
-            whole.set(ylim=(lowest, highest + room * (highest - lowest)), ylabel=words.replace("\n ", "\n"))
+            label = next((unit.replace(word, short) for word, short in SHORT.items() if page and word in unit), unit)
+            whole.set(ylim=(lowest, highest + room * (highest - lowest)), ylabel=label.replace("\n ", "\n"))
             if len(lines) > 1 or "acceleration" in unit:
                 whole.legend(*detail.get_legend_handles_labels(), loc="upper right", ncols=columns)
             whole.axvspan(start, end, color=MAGNIFIED, zorder=0)

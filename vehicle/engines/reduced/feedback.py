@@ -43,6 +43,7 @@ class Feedback(NamedTuple):
         laws: their records of `vehicle.model.laws.control_laws`; (k,).
         memory: states of their laws, with delayed settings; (k, ...).
         step: index of the next step; (1,).
+        owners: index of the damper of each group of Jenkins elements; (g,).
     """
 
     tyres: int
@@ -51,6 +52,7 @@ class Feedback(NamedTuple):
     laws: npt.NDArray[Any]
     memory: Vector
     step: npt.NDArray[np.int64]
+    owners: npt.NDArray[np.int64]
 
 
 def sensor_outputs(
@@ -87,12 +89,14 @@ def sensor_outputs(
     )
 
 
-def feedback_at_rest(dampers: Sequence[Damper], tyres: int, plate_inputs: int, timestep: float) -> Feedback:
+def feedback_at_rest(
+    dampers: Sequence[Damper], owners: npt.NDArray[np.int64], tyres: int, plate_inputs: int, timestep: float
+) -> Feedback:
     """Return the feedback of a car at rest.
 
     Args:
         dampers: laws of all dampers.
-        tyres, plate_inputs: see `Feedback`.
+        owners, tyres, plate_inputs: see `Feedback`.
         timestep: time step [s].
     """
     controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
@@ -106,6 +110,7 @@ def feedback_at_rest(dampers: Sequence[Damper], tyres: int, plate_inputs: int, t
         laws=laws,
         memory=memory,
         step=np.zeros(1, dtype=np.int64),
+        owners=owners,
     )
 
 

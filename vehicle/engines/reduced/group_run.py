@@ -87,7 +87,9 @@ class GroupRun:
             for model, laws, static in zip(models, dampers, tyre_load, strict=True)
         ]
         tyres = len(columns) if present_load else 0
-        self.feedback = feedback_at_rest(dampers[0], tyres, factors[0].plate_inputs, self.timestep)
+        self.feedback = feedback_at_rest(
+            dampers[0], factors[0].sliders.dampers, tyres, factors[0].plate_inputs, self.timestep
+        )
         self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:

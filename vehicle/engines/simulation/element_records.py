@@ -106,6 +106,20 @@ class Dampers(NamedTuple):
     pieces: Table
 
 
+class Presliding(NamedTuple):
+    """Jenkins elements of the dampers with presliding friction, m of them.
+
+    Attributes:
+        rows: friction row of each element; (m,). dampers: index of its damper; (m,).
+        stiffness: k [N/m]; (m,). share: share of the friction limit of the damper [-]; (m,).
+    """
+
+    rows: Index
+    dampers: Index
+    stiffness: Vector
+    share: Vector
+
+
 class Controls(NamedTuple):
     """Controlled dampers, k of the w dampers.
 
@@ -248,7 +262,8 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling, round: records of the elements.
+        bushings, rotations, springs, dampers, presliding, controls, tables, modes, space, rolling, round: records of
+            the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -259,6 +274,7 @@ class Layout(NamedTuple):
     rotations: Rotations
     springs: Springs
     dampers: Dampers
+    presliding: Presliding
     controls: Controls
     tables: Tables
     modes: Modes

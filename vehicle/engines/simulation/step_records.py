@@ -83,6 +83,8 @@ class State(NamedTuple):
         slope: explicit force along x [N] and moment [N m] on the hubs; (w, 4).
         push: generalised force of all explicit forces of a rolling car; (nv,), empty on a shaker.
         contact: elastic force of one-sided elements [N], and r' at the last evaluation [m/s]; (2, k).
+        slider: forces of the Jenkins elements of the dampers at the present and the previous time [N]; (2, m).
+        stroke, limit: displacement [m] and friction limit [N] of the dampers at the present time; (w,).
         coefficient: damping coefficient c of the dampers [N s/m]; (w,).
         sensed: velocities at the sensors in the middle of the last two steps [m/s], latest first; (2 k, 2).
         past: memory of the controlled dampers, see `vehicle.model.laws.control_laws`; (k, ...).
@@ -115,6 +117,9 @@ class State(NamedTuple):
     slope: Table
     push: Vector
     contact: Table
+    slider: Table
+    stroke: Vector
+    limit: Vector
     coefficient: Vector
     sensed: Table
     past: Table

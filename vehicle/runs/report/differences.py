@@ -105,6 +105,21 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     return figures
 
 
+GENERAL = ("parts", "bushings", "points")
+"""Tables whose names say nothing in a sentence."""
+
+
+def parameter_words(path: str) -> str:
+    """Return the path of a parameter in words: "front damper Coulomb friction" for front.damper.coulomb_friction.
+
+    Args:
+        path: path of a parameter in the vehicle file.
+    """
+    names = [point_words(name) for name in path.split(".") if name not in GENERAL]
+    names = [name for name, following in zip(names, [*names[1:], ""], strict=True) if name not in following]
+    return " ".join(names).replace("coulomb", "Coulomb")
+
+
 DIFFERENCES = {"s": "s", "%": "percentage points"}
 """Units compared by a difference instead of a ratio, with the unit of the difference: a time counts from the start of
 the record, and a share may be near zero."""

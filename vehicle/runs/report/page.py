@@ -11,14 +11,15 @@ from importlib import resources
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
-from vehicle.runs.report.answer import answer
+from vehicle.runs.report.answer import EXPLANATION, answer
+from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, escaped, folded, joined, section, tag
 from vehicle.runs.report.measured_section import measured
-from vehicle.runs.report.modes_section import HIGHEST_MODE, STATES, Modes, car_modes_of, moving_modes
+from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, moving_modes
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
@@ -52,7 +53,7 @@ def report_page(
         raise ConfigurationError("report: no run; give at least one folder, as runs/low")
     runs = _told_apart(runs)
     done = progress or (lambda fraction: None)
-    modes = [{state: run.car.modes(state, HIGHEST_MODE) for state in STATES} for run in runs]
+    modes = [modes_of(run) for run in runs]
     done(0.1)
     if len(runs) == 1:
         parts = _of_one(runs[0], modes[0])
@@ -78,10 +79,19 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     return [dataclasses.replace(run, name=name) for run, name in zip(runs, unique, strict=True)]
 
 
+def _explained() -> Markup:
+    """Return the explanation of the statements of the first screen."""
+    return tag("p", EXPLANATION, class_="about")
+
+
 def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
     """Return the sections of the report of a single run."""
+    base = base_run(run)
+    single = joined([answer([run], [modes]), sections.tiles(run)])
+    changed = None if base is None else answer([base, run], [modes_of(base), modes])
     parts = [
-        ("Result", "result", joined([answer([run], [modes]), sections.tiles(run)])),
+        ("Result", "result", joined([single if changed is None else changed, _explained()])),
+        ("This run", "alone", None if changed is None else single),
         ("Film", "film", sections.film(run)),
         ("Findings", "findings", sections.what_was_found(run, modes)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
@@ -102,7 +112,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
 def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None]) -> list[Part]:
     """Return the sections of a comparison; what belongs to a single run is folded under its name."""
     parts = [
-        ("Result", "result", answer(runs, modes)),
+        ("Result", "result", joined([answer(runs, modes), _explained()])),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
         ("Time histories", "time", joined(sections.time_figure(run, runs) for run in runs)),

@@ -30,7 +30,8 @@ from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
 from vehicle.signals.records.channel import uniform_axis
 
 COPIES = 8
-"""Number of arrays of the length of the record in memory, without the signals: lines, transform, its plan."""
+"""Number of arrays of the length of the record in memory, without height, slope and profile of each wheel: lines,
+transform, its plan."""
 
 LOWEST, HIGHEST = 0.011, 10.0
 """Minimum and maximum wavenumber [cycles/m]: lower end of ISO 8608 (waves of 91 m); waves of 0.1 m, a contact patch."""
@@ -55,6 +56,10 @@ class Road(Protocol):
     @property
     def words(self) -> str:
         """Description of the road, for messages and headers."""
+
+    @property
+    def bare(self) -> Road:
+        """The road itself, with contact at a point."""
 
     def contact(self, start: float, step: float, steps: int, side: Side, highest: float) -> Contact:
         """Return the road as a tyre takes it at equally spaced positions; arguments see `IsoRoad.height`."""
@@ -130,6 +135,11 @@ class IsoRoad:
             f"tracks {self.track:g} m apart ({related}), {contact_words(self.patch, self.envelope)}, seed {self.seed}"
         )
 
+    @property
+    def bare(self) -> IsoRoad:
+        """The road itself, with contact at a point."""
+        return replace(self, envelope=None, patch=0.0)
+
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
         """Return the heights of a track at equally spaced positions.
 
@@ -178,7 +188,7 @@ class IsoRoad:
             return self.height(start, step, steps, side, highest), None
         parts = int(np.ceil(step / SAMPLES))
         fine, margin = step / parts, int(np.ceil(self.envelope.reach * parts / step)) + 1
-        z = replace(self, envelope=None, patch=0.0).height(start, fine, steps * parts, side, highest)
+        z = self.bare.height(start, fine, steps * parts, side, highest)
         x = uniform_axis(z.size + 2 * margin, fine, -margin * fine)
         return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), uniform_axis(steps, step, 0.0))
 
@@ -212,7 +222,7 @@ def drive(
     """
     positive("speed", speed, "m/s")
     steps = samples_of(duration, rate)
-    needed, memory = 8.0 * steps * (len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed, memory = 8.0 * steps * (3 * len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > 0.5 * memory:
         raise ConfigurationError(
             f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "
@@ -224,13 +234,14 @@ def drive(
         raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
     # Longer than the record by the delay of the last wheel: no wheel reaches the repetition of the road.
     period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
-    step, displacement, slopes = speed / rate, {}, {}
+    step, displacement, slopes, profile = speed / rate, {}, {}, {}
     for wheel, (distance, side) in wheels.items():
         # 0.8 of the Nyquist frequency, as for every generated signal.
         height, slope = road.contact(-distance, step, period, side, 0.4 / step)
         z, delayed_time = height[: steps + 1], np.arange(steps + 1) / rate - distance / speed
         rise, rise_rate = half_cosine_at(delayed_time, RISE_S), half_cosine_rate_at(delayed_time, RISE_S)
         displacement[wheel] = z * rise + 0.0  # adding 0.0 avoids -0.0 in files
+        profile[wheel] = road.bare.contact(-distance, step, period, side, 0.4 / step)[0][: steps + 1] * rise + 0.0
         if slope is not None:
             slopes[wheel] = speed * slope[: steps + 1] * rise + rise_rate * z + 0.0
     return Signal(
@@ -238,6 +249,7 @@ def drive(
         displacement=displacement,
         source=f"{road.words}; {speed * 3.6:.6g} km/h, {RISE_S:g} s rise from rest",
         slope_velocity=slopes,
+        profile=profile,
     )
 
 

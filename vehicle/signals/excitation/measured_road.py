@@ -86,6 +86,11 @@ class MeasuredRoad:
         steps = np.diff(self.distance)
         return not self.corners and bool(np.max(steps) <= SAMPLED * np.min(steps))
 
+    @property
+    def bare(self) -> MeasuredRoad:
+        """The road itself, with contact at a point."""
+        return replace(self, envelope=None, patch=0.0)
+
     def contact(self, start: float, step: float, steps: int, side: Side, highest: float) -> Contact:
         """Return heights and, with cams, slopes of a track at equally spaced positions; arguments see `IsoRoad.height`.
 

@@ -52,6 +52,8 @@ class Signal:
         highest: maximum usable frequency [Hz] if below 50 Hz; else None.
         slope_velocity: wheel -> speed times effective slope of the road, V tan(beta) [m/s], shape (n,), for all wheels
             or, by default, for none: then rolling tyres take z', the slope of the displacement.
+        profile: wheel -> height of the road itself below the wheel [m], shape (n,), of which the displacement is what
+            the tyre takes; for pictures only, by default for no wheel.
 
     Raises:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
@@ -64,6 +66,7 @@ class Signal:
     sha256: str | None = None
     highest: float | None = None
     slope_velocity: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    profile: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         time = _read_only(self.time)
@@ -72,18 +75,20 @@ class Signal:
         object.__setattr__(self, "displacement", displacement)
         slopes = {wheel: _read_only(values) for wheel, values in self.slope_velocity.items()}
         object.__setattr__(self, "slope_velocity", slopes)
+        profile = {wheel: _read_only(values) for wheel, values in self.profile.items()}
+        object.__setattr__(self, "profile", profile)
         self._check_time()
         if not displacement:
             raise DataError(f"{self.source}: the signal drives no wheel; set a displacement for one of {_wheels()}")
         for wheel in displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
-        if slopes and slopes.keys() != displacement.keys():
-            raise DataError(
-                f"{self.source}: slope velocities of {', '.join(slopes)}; set them for the wheels of the "
-                f"displacements, {', '.join(displacement)}, or for none"
-            )
-        for name, columns in (("displacement", displacement), ("slope velocity", slopes)):
+        for name, columns in (("displacement", displacement), ("slope velocity", slopes), ("profile", profile)):
+            if columns and columns.keys() != displacement.keys():
+                raise DataError(
+                    f"{self.source}: {name} of {', '.join(columns)}; set it for the wheels of the displacements, "
+                    f"{', '.join(displacement)}, or for none"
+                )
             for wheel, values in columns.items():
                 if values.shape != time.shape:
                     raise DataError(

@@ -133,7 +133,10 @@ def read_measured(
     histories = {name: wanted for name, wanted in roles.items() if name not in spectra}
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
-        begins = [file.channels[pick(file, wanted, allowed=_is_data)].axis for wanted in histories.values()]
+        begins = [
+            file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)].axis
+            for name, wanted in histories.items()
+        ]
         start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
         record = _record(file, replace(selection, channels={**times, **histories}), inverted)
         notices += record.notices
