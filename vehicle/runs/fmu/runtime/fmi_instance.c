@@ -118,7 +118,7 @@ int advance_instance(Instance *self, double point, double length) {
   if (!require(self, "do step", STEPPING, STEPPING)) return 0;
   double done = s->steps[0];
   if (!communication_step(s, point, length, message)) {
-    /* A refused step changed nothing; a step after which the motion is not finite did. */
+    /* A refused step does not move the car; a step after which the motion is not finite did. */
     if (s->steps[0] != done) s->mode[0] = FAILED;
     return fail(self, "%s", message);
   }
