@@ -35,7 +35,9 @@ def realtime_factors(car: Car, folder: Path) -> dict[int, float]:
     for outputs in (list(FEW), fmu.names("output")):
         instance = Instance(fmu)
         library, component = instance.slave.dll, ctypes.c_void_p(instance.slave.component)
-        read, written = ((ctypes.c_uint * len(names))(*map(fmu.references.get, names)) for names in (outputs, inputs))
+        read, written = (
+            (ctypes.c_uint * len(names))(*[fmu.references[name] for name in names]) for names in (outputs, inputs)
+        )
         values, results = (ctypes.c_double * len(inputs))(), (ctypes.c_double * len(outputs))()
         counts = ctypes.c_size_t(len(inputs)), ctypes.c_size_t(len(outputs))
         started = time.process_time()

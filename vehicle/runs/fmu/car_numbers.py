@@ -58,7 +58,7 @@ PARAMETERS = {
 }
 """Tunable parameters of a damper, with units, in the order of runtime/car.h."""
 
-CONTROL_NUMBERS = len(SETTING)
+CONTROL_NUMBERS = len(SETTING.names or ())
 """Numbers of a control law."""
 
 COMMANDS = {"force": "N", "coefficient": "N s/m"}
