@@ -139,6 +139,9 @@ CONTROL = {
 MISSING_FRICTION_LAWS: dict[str, dict[str, Any]] = {}
 """Friction laws that the runtime does not have, with the numbers of a damper that has them."""
 
+NUMBERS_OF_FRICTION: dict[str, dict[str, Any]] = {"stribeck": STRIBECK, "presliding": {"presliding_stiffness": 1e6}}
+"""Numbers of each friction law, beside the limit."""
+
 FOCUS_LAWS: dict[str, dict[str, Any]] = {
     "linear": {},
     "degressive": {"viscous_law": "degressive", "degressive_viscous": 3000, "degressive_velocity": 0.1},
@@ -176,7 +179,7 @@ def test_each_friction_law_is_known_or_refused_by_name(law, tmp_path):
         with pytest.raises(ConfigurationError, match=rf"friction_law: an FMU can have .*not '{law}'"):
             written(Car.load("focus", overrides_of(numbers)), tmp_path)
         return
-    checked(overrides_of({"friction_law": law, **(STRIBECK if law == "stribeck" else {})}), tmp_path)
+    checked(overrides_of({"friction_law": law, **NUMBERS_OF_FRICTION.get(law, {})}), tmp_path)
 
 
 @pytest.mark.parametrize("law", damping_laws())

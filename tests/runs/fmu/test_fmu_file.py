@@ -13,6 +13,8 @@ from tools.fmu_runtime import BINARIES, TARGETS, digest
 from vehicle.commands.fmu import main
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
+from vehicle.runs.fmu import car_numbers
+from vehicle.runs.fmu.car_numbers import DAMPER_FIELDS
 from vehicle.runs.fmu.fmu_file import PLATFORMS, write_fmu
 
 LIBRARIES = {
@@ -94,5 +96,13 @@ def test_refusals_in_python(car: Car, tmp_path: Path):
     ):
         with pytest.raises(ConfigurationError, match=message):
             write_fmu(car, tmp_path / "car.fmu", **options)
+    pushed = Car.load("focus", ["front.damper.gas_force=100"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(car_numbers, "DAMPER_FIELDS", [name for name in DAMPER_FIELDS if name != "gas_force"])
+        with pytest.raises(
+            ConfigurationError, match=r"damper_fr.gas_force: found 100.* an FMU does not contain this law"
+        ):
+            write_fmu(pushed, tmp_path / "car.fmu")
+    assert write_fmu(pushed, tmp_path / "car.fmu").path.is_file()
     with pytest.raises(ConfigurationError, match=r"an FMU has the ending \.fmu"):
         write_fmu(car, tmp_path / "car.zip")

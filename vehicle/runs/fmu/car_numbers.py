@@ -6,6 +6,7 @@ poles are filled up with zeros to multiples of LANES.
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import struct
 from collections.abc import Sequence
@@ -16,10 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.reduced.car_table import damper_nodes
-from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_outputs
+from vehicle.engines.reduced.feedback import sensor_outputs
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors, car_factors
 from vehicle.errors import ConfigurationError
+from vehicle.model.laws.control_laws import SETTING, in_steps, pack
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.force_elements import Damper
@@ -31,11 +33,20 @@ if TYPE_CHECKING:
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
-MAGIC, LANES, TOKEN, NAME, NOTICE = b"VEHFMU02", 4, 40, 64, 160
+MAGIC, LANES, TOKEN, NAME, NOTICE = b"VEHFMU03", 4, 40, 64, 160
 """First bytes of the file; multiple of the poles; sizes of texts. As in runtime/car.h."""
 
-FRICTION_CODES = {"coulomb": 0, "stribeck": 1}
+FRICTION_CODES = {"coulomb": 0, "stribeck": 1, "presliding": 2}
 """Friction laws in the C runtime, with their codes there."""
+
+DAMPER_FIELDS = (
+    *("viscous", "viscous_law", "degressive_viscous", "degressive_velocity", "velocity", "force", "gas_force", "stop"),
+    *("control", "friction_law", "coulomb_friction", "smoothing", "slip_velocity"),
+    *("stribeck_friction", "stribeck_velocity", "stribeck_exponent"),
+    *("presliding_stiffness", "presliding_force", "presliding_slope"),
+)
+"""Parameters of a damper that the numbers of the runtime contain, or that describe only its evaluation; values of
+others must be the default."""
 
 PARAMETERS = {
     "coulomb_friction": "N",
@@ -46,6 +57,9 @@ PARAMETERS = {
     "control": "",
 }
 """Tunable parameters of a damper, with units, in the order of runtime/car.h."""
+
+CONTROL_NUMBERS = len(SETTING.names or ())
+"""Numbers of a control law."""
 
 COMMANDS = {"force": "N", "coefficient": "N s/m"}
 """Commands of a damper, with units."""
@@ -92,28 +106,28 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     if not laws:
         raise ConfigurationError(f"{car.vehicle.name}: has no damper; an FMU needs a car with dampers at its wheels")
     for damper in composition:
-        if damper.law.friction_law not in FRICTION_CODES:
-            raise ConfigurationError(
-                f"{damper.name}.friction_law: an FMU can have {', '.join(FRICTION_CODES)}, not "
-                f"{damper.law.friction_law!r}; set one of them"
-            )
+        _require_known(damper.name, damper.law)
     model, wheels = car.poles, car.poles.matrices.system.inputs
     columns, rolling = list(range(len(wheels))), car.poles.slope.shape[1] > 0
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)
     sensors = sensor_outputs(model, laws, columns, car.static.tyre_load if rolling else None)
-    feedback = feedback_at_rest(
-        laws, np.zeros(0, dtype=np.int64), len(wheels) if rolling else 0, factors.plate_inputs, step
-    )
+    controlled = {index: pack(law.controlled) for index, law in enumerate(laws) if law.controlled}
+    controls = in_steps(np.reshape(list(controlled.values()), (-1, CONTROL_NUMBERS)), step)
     outputs, rows = car_outputs(car, channels)
     watched, limits, notices = watched_outputs(car)
-    parameters = np.array([_parameters(law) for law in laws])
+    nodes, parameters = _law_nodes(laws), np.array([_parameters(law) for law in laws])
     arrays = [
         *_pole_arrays(factors, sensors),
-        *factors.gains,
-        _law_nodes(laws),
-        _damper_numbers(laws, feedback.dampers.tolist()),
+        factors.gains[0],
+        factors.levels,
+        *factors.gains[1:],
+        nodes,
+        _damper_numbers(laws, list(controlled)),
         parameters,
-        np.array([list(record) for record in feedback.laws]).reshape(-1, 8),
+        np.array([list(record) for record in controls]).reshape(-1, CONTROL_NUMBERS),
+        factors.sliders.stiffness,
+        factors.sliders.limit,
+        factors.sliders.dampers,
         factors.weights_of(sensors)[:, factors.states :],
         np.hstack([sensors.velocity, factors.weights_of(sensors)[:, -len(wheels) :]]),
         _start(factors),
@@ -128,14 +142,15 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
         *(LANES * -(-count // LANES) for count in (factors.pairs, factors.reals)),
         len(laws),
         len(wheels),
-        feedback.tyres,
+        len(wheels) if rolling else 0,
         factors.plate_inputs,
-        len(feedback.dampers),
-        feedback.memory.shape[1] - 3,
-        arrays[9].shape[1],
+        len(controls),
+        1 + int(np.max(controls["lag"], initial=0.0)),
+        nodes.shape[1],
         factors.iterations,
         len(outputs),
-        int(any(law.friction_law != "coulomb" for law in laws)),
+        int(any(law.friction_law == "stribeck" for law in laws)),
+        *factors.sliders.stiffness.shape,
         len(notices),
     )
     names = [*wheels, *(damper.name for damper in composition)]
@@ -162,6 +177,29 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     )
 
 
+def _require_known(name: str, law: Damper) -> None:
+    """Refuse a damper with a law that the C runtime lacks.
+
+    Args:
+        name: name of the damper.
+        law: its laws.
+
+    Raises:
+        ConfigurationError: the law of friction, or a further parameter that is set, is not in the C runtime.
+    """
+    if law.friction_law not in FRICTION_CODES:
+        raise ConfigurationError(
+            f"{name}.friction_law: an FMU can have {', '.join(FRICTION_CODES)}, not {law.friction_law!r}; set one of "
+            "them"
+        )
+    for entry in dataclasses.fields(law):
+        value = getattr(law, entry.name)
+        if entry.name not in DAMPER_FIELDS and value != entry.default:
+            raise ConfigurationError(
+                f"{name}.{entry.name}: found {value!r}; an FMU does not contain this law of a damper: leave it out"
+            )
+
+
 def _text(text: str, size: int) -> bytes:
     """Return a text in a field of a given size [byte], cut and ended with zeros."""
     return text.encode()[: size - 1].ljust(size, b"\0")
@@ -180,7 +218,8 @@ def _split(rows: Complex, pairs: int) -> Vector:
 
 def _pole_arrays(factors: CarFactors, sensors: Outputs) -> list[Vector]:
     """Return the arrays of pole pairs and of real poles: change, inputs, sums; see `CarFactors.step`."""
-    sums = np.concatenate([factors.slip, sensors.poles])[:, factors.integrated].conj()
+    strokes = factors.strokes.reshape(-1, factors.slip.shape[1])
+    sums = np.concatenate([factors.slip, strokes, sensors.poles])[:, factors.integrated].conj()
     arrays = [_split(array, factors.pairs) for array in (factors.step.T[:1], factors.step.T[1:], sums)]
     end = 2 * (LANES * -(-factors.pairs // LANES))
     return [*(array[:, :end] for array in arrays), *(array[:, end:] for array in arrays)]
@@ -210,8 +249,9 @@ def _law_nodes(laws: Sequence[Damper]) -> Vector:
         for end, at in ((-BEYOND, 0), (BEYOND, len(nodes))):
             if end not in nodes[:, 0]:
                 # The segments must go on outside: a scale of the curve, or a command, acts on them too.
+                friction = float(nodes[0 if end < 0.0 else -1, 2])
                 excess = float(curve.force(end)) - float(curve.force(0.0)) - curve.least_slope * end
-                nodes = np.insert(nodes, min(at, len(nodes)), [end, 0.5 * excess, np.sign(end)], axis=0)
+                nodes = np.insert(nodes, min(at, len(nodes)), [end, 0.5 * excess, friction], axis=0)
         nodes_of_laws.append(nodes[np.argsort(nodes[:, 0])])
     longest = max(len(nodes) for nodes in nodes_of_laws)
     return np.array([nodes[np.minimum(np.arange(longest), len(nodes) - 1)] for nodes in nodes_of_laws])

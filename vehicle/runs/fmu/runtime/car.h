@@ -30,7 +30,7 @@ enum {
 };
 
 /* Friction laws: the codes of FRICTION_CODES in car_numbers.py. */
-enum { COULOMB, STRIBECK, FRICTION_LAWS };
+enum { COULOMB, STRIBECK, PRESLIDING, FRICTION_LAWS };
 
 /* What an output reads besides its row; the index of its damper is in `damper` of the output. */
 enum { OUTPUT_LINEAR, OUTPUT_VELOCITY, OUTPUT_FORCE, OUTPUT_COEFFICIENT, OUTPUT_KINDS };
@@ -47,30 +47,35 @@ typedef struct {
   int64_t iterations;              /* Gauss-Seidel iterations over the dampers */
   int64_t outputs;
   int64_t varying;                 /* 1 if a friction limit depends on the velocity */
+  int64_t groups, elements;        /* groups of Jenkins elements of presliding friction, elements of each */
   int64_t watched;                 /* outputs after the others that must stay within limits */
 } Sizes;
 
 typedef struct {
   Sizes n;
-  int64_t inputs, sensors, sums, states; /* of a step; tyres + 2 controls; dampers + sensors; 2 pairs + reals */
+  int64_t inputs, sensors, sums, states; /* of a step; tyres + 2 controls; solved + sensors; 2 pairs + reals */
+  int64_t solved, direct_terms;    /* dampers + groups; forces, slopes, forces of groups, z', z */
   double step;                     /* h [s] */
   char token[TOKEN];
   const double *pair_change;       /* E - 1, real and imaginary parts; (2, pairs) */
   const double *pair_inputs;       /* (inputs, 2, pairs) */
-  const double *pair_sums;         /* rows of damper velocities and sensors; (sums, 2, pairs) */
+  const double *pair_sums;         /* rows of damper velocities, strokes of groups, sensors; (sums, 2, pairs) */
   const double *real_change, *real_inputs, *real_sums;
-  const double *slip;              /* z' at the end of a step to damper velocities; (dampers, plates) */
-  const double *gain, *ramp;       /* mean forces and slopes to damper velocities; (dampers, dampers) */
+  const double *slip;              /* z' at the end of a step to velocities and strokes; (solved, plates) */
+  const double *level;             /* z at the end of a step to strokes; (groups, plates) */
+  const double *gain, *ramp;       /* mean forces (solved, solved) and slopes (solved, dampers) to these */
   const double *law;               /* x, half of the curve without D v, friction over its limit; (dampers, nodes, 3) */
   const double *damper;            /* (dampers, DAMPER_NUMBERS) */
   const double *parameter;         /* (dampers, PARAMETERS) */
   const double *control;           /* records of controlled dampers; (controls, CONTROL_NUMBERS) */
-  const double *direct;            /* forces, slopes, z', z to sensors; (sensors, 2 (dampers + plates)) */
+  const double *spring, *share;    /* Jenkins elements: stiffness, share of the limit; (groups, elements) */
+  const double *owner;             /* damper of each group; (groups) */
+  const double *direct;            /* to sensors; (sensors, direct_terms) */
   const double *sensor_start;      /* z', z to sensors at rest; (sensors, 2 plates) */
   const double *start;             /* z', z to the states at rest; (2 plates, states) */
   const double *output_kind;       /* kind and damper; (outputs, 2) */
   const double *fixed;             /* static values; (outputs + watched) */
-  const double *rows;              /* states, forces, slopes, z', z; (outputs + watched, ...) */
+  const double *rows;              /* (outputs + watched, states + direct_terms) */
   const double *by_force;          /* damper forces at the same instant; (outputs + watched, dampers) */
   const double *by_tyre;           /* forces on slopes at the same instant; (outputs + watched, plates) */
   const double *limit;             /* lowest and highest value; (watched, 2) */
@@ -93,6 +98,8 @@ typedef struct {
   double *poles;                   /* states without the forces of the last step; (states) */
   double *force, *slope, *end_force; /* mean nonlinear forces of the last step, their slopes; at its end */
   double *pushed;                  /* force commands of the last step */
+  double *group_force;             /* mean forces of the groups in the last step; (groups) */
+  double *place, *element;         /* strokes (groups) and forces of the elements (groups, elements) now */
   double *velocity, *earlier, *hold, *stuck, *stick, *friction_limit;
   double *coefficient;             /* damping beyond the curve of the car in the last step [N s/m] */
   double *half_curve;              /* half of the curve at the nodes; (dampers, nodes) */

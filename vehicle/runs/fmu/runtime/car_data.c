@@ -5,7 +5,7 @@
 
 #include "car.h"
 
-static const char MAGIC[8] = {'V', 'E', 'H', 'F', 'M', 'U', '0', '2'};
+static const char MAGIC[8] = {'V', 'E', 'H', 'F', 'M', 'U', '0', '3'};
 enum { MOST = 100000000 };         /* numbers in a file; a larger count is a damaged file */
 
 #ifdef _WIN32
@@ -43,19 +43,23 @@ static int64_t place(Car *car, const double *first) {
     {&car->real_change, n->reals},
     {&car->real_inputs, car->inputs * n->reals},
     {&car->real_sums, car->sums * n->reals},
-    {&car->slip, d * m},
-    {&car->gain, d * d},
-    {&car->ramp, d * d},
+    {&car->slip, car->solved * m},
+    {&car->level, n->groups * m},
+    {&car->gain, car->solved * car->solved},
+    {&car->ramp, car->solved * d},
     {&car->law, d * n->nodes * 3},
     {&car->damper, d * DAMPER_NUMBERS},
     {&car->parameter, d * PARAMETERS},
     {&car->control, n->controls * CONTROL_NUMBERS},
-    {&car->direct, car->sensors * 2 * (d + m)},
+    {&car->spring, n->groups * n->elements},
+    {&car->share, n->groups * n->elements},
+    {&car->owner, n->groups},
+    {&car->direct, car->sensors * car->direct_terms},
     {&car->sensor_start, car->sensors * 2 * m},
     {&car->start, 2 * m * car->states},
     {&car->output_kind, 2 * n->outputs},
     {&car->fixed, all},
-    {&car->rows, all * (car->states + 2 * (d + m))},
+    {&car->rows, all * (car->states + car->direct_terms)},
     {&car->by_force, all * d},
     {&car->by_tyre, all * m},
     {&car->limit, 2 * n->watched},
@@ -73,6 +77,8 @@ static int is_consistent(const Car *car) {
     if (!(law >= 0.0 && (int)law < FRICTION_LAWS)) return 0;
     if (!(car->damper[i * DAMPER_NUMBERS + DAMPER_CONTROL] < (double)car->n.controls)) return 0;
   }
+  for (int64_t k = 0; k < car->n.groups; k++)
+    if (!(car->owner[k] >= 0.0 && car->owner[k] < (double)car->n.dampers)) return 0;
   for (int64_t o = 0; o < car->n.outputs; o++) {
     double kind = car->output_kind[2 * o], damper = car->output_kind[2 * o + 1];
     if (!(kind >= 0.0 && (int)kind < OUTPUT_KINDS)) return 0;
@@ -92,8 +98,10 @@ Car *read_car(const char *path, char *message) {
   if (valid) {
     const Sizes *n = &car->n;
     car->sensors = n->tyres + 2 * n->controls;
-    car->sums = n->dampers + car->sensors;
-    car->inputs = 2 * n->dampers + 2 * n->plates + n->tyres + n->heights;
+    car->solved = n->dampers + n->groups;
+    car->sums = car->solved + car->sensors;
+    car->direct_terms = 2 * n->dampers + n->groups + 2 * n->plates;
+    car->inputs = car->direct_terms + n->tyres + n->heights;
     car->states = 2 * n->pairs + n->reals;
     int64_t count = place(car, NULL), names = (n->plates + n->dampers) * NAME;
     int64_t texts = names + n->watched * NOTICE;

@@ -93,8 +93,8 @@ EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 }
 
 EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return status(c && end_initialization(c)); }
-EXPORT fmi2Status fmi2Terminate(fmi2Component c) { return status(c && terminate(c)); }
-EXPORT fmi2Status fmi2Reset(fmi2Component c) { return status(c && reset(c)); }
+EXPORT fmi2Status fmi2Terminate(fmi2Component c) { return status(c && terminate_instance(c)); }
+EXPORT fmi2Status fmi2Reset(fmi2Component c) { return status(c && reset_instance(c)); }
 
 EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real values[]) {
   return status(c && get_values(c, r, n, values));
@@ -156,7 +156,7 @@ EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueR
 
 EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real point, fmi2Real length, fmi2Boolean keeps_no_state) {
   (void)keeps_no_state;
-  return status(c && advance(c, point, length));
+  return status(c && advance_instance(c, point, length));
 }
 EXPORT fmi2Status fmi2CancelStep(fmi2Component c) { return missing(c, "fmi2CancelStep"); }
 

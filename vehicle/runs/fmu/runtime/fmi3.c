@@ -69,8 +69,8 @@ EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_to
   return status(c && begin_initialization(c, start));
 }
 EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return status(c && end_initialization(c)); }
-EXPORT fmi3Status fmi3Terminate(fmi3Instance c) { return status(c && terminate(c)); }
-EXPORT fmi3Status fmi3Reset(fmi3Instance c) { return status(c && reset(c)); }
+EXPORT fmi3Status fmi3Terminate(fmi3Instance c) { return status(c && terminate_instance(c)); }
+EXPORT fmi3Status fmi3Reset(fmi3Instance c) { return status(c && reset_instance(c)); }
 
 EXPORT fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 values[],
                                  size_t size) {
@@ -132,7 +132,7 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 point, fmi3Float64 leng
                              fmi3Float64 *reached) {
   (void)keeps_no_state;
   if (!c) return fmi3Error;
-  int accepted = advance(c, point, length);
+  int accepted = advance_instance(c, point, length);
   if (needs_events) *needs_events = false;
   if (terminates) *terminates = false;
   if (early) *early = false;

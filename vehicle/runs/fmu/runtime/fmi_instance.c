@@ -81,13 +81,13 @@ int end_initialization(Instance *self) {
   return 1;
 }
 
-int terminate(Instance *self) {
+int terminate_instance(Instance *self) {
   if (!require(self, "terminate", STEPPING, STEPPING)) return 0;
   self->state.mode[0] = TERMINATED;
   return 1;
 }
 
-int reset(Instance *self) {
+int reset_instance(Instance *self) {
   reset_state(&self->state);
   self->experiment = 0;
   return 1;
@@ -112,13 +112,13 @@ int set_values(Instance *self, const uint32_t *references, size_t count, const d
   return 1;
 }
 
-int advance(Instance *self, double point, double length) {
+int advance_instance(Instance *self, double point, double length) {
   char message[MESSAGE];
   State *s = &self->state;
   if (!require(self, "do step", STEPPING, STEPPING)) return 0;
   double done = s->steps[0];
   if (!communication_step(s, point, length, message)) {
-    /* A refused step changed nothing; a step after which the motion is not finite did. */
+    /* A refused step does not move the car; a step after which the motion is not finite did. */
     if (s->steps[0] != done) s->mode[0] = FAILED;
     return fail(self, "%s", message);
   }

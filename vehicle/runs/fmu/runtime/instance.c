@@ -47,11 +47,12 @@ static size_t place(State *s, double *block) {
   const Car *car = s->car;
   const Sizes *n = &car->n;
   int64_t d = n->dampers, m = n->plates;
-  int64_t work = car->inputs + car->sums + car->states + d * (3 + 4 * n->nodes) + 4 * m;
+  int64_t work = car->inputs + car->sums + car->states + d * (3 + 4 * n->nodes) + n->groups * (2 + 4 * n->elements) + 4 * m;
   struct { double **array; int64_t size; } arrays[] = {
     {&s->time, 1}, {&s->start_time, 1}, {&s->steps, 1}, {&s->mode, 1}, {&s->checked, 1},
     {&s->parameter, d * PARAMETERS}, {&s->plate, 2 * m}, {&s->slope_excess, n->tyres}, {&s->command, 2 * d}, {&s->before, 2 * m},
     {&s->poles, car->states}, {&s->force, d}, {&s->slope, d}, {&s->end_force, d}, {&s->pushed, d},
+    {&s->group_force, n->groups}, {&s->place, n->groups}, {&s->element, n->groups * n->elements},
     {&s->velocity, d}, {&s->earlier, d}, {&s->hold, d}, {&s->stuck, d}, {&s->stick, d},
     {&s->friction_limit, d}, {&s->coefficient, d}, {&s->half_curve, d * n->nodes},
     {&s->sensor, car->sensors}, {&s->past, car->sensors},
@@ -172,8 +173,8 @@ static int has_solution(const State *s, int64_t i, double coefficient) {
   const double *law = car->law + i * car->n.nodes * 3;
   double scale = s->parameter[i * PARAMETERS + PARAMETER_CURVE_SCALE];
   double half = 0.5 * ((scale - 1.0) * car->damper[i * DAMPER_NUMBERS + DAMPER_VISCOUS] + coefficient);
-  double gain = car->gain[i * car->n.dampers + i] + (car->ramp[i * car->n.dampers + i] > 0.0
-                                                        ? car->ramp[i * car->n.dampers + i] : 0.0);
+  double ramp = car->ramp[i * car->n.dampers + i];
+  double gain = car->gain[i * (car->solved + 1)] + (ramp > 0.0 ? ramp : 0.0);
   for (int64_t j = 1; j < car->n.nodes; j++) {
     double length = law[3 * j] - law[3 * (j - 1)];
     if (!(length > 0.0)) continue;
@@ -222,7 +223,7 @@ static int is_finite(const State *s) {
 }
 
 /* Advance by a communication step. The inputs belong to its end; within it the plates follow the cubic through
- * displacement and velocity at both ends. Nothing is changed if it is refused. */
+ * displacement and velocity at both ends. The car does not move if it is refused. */
 int communication_step(State *s, double point, double length, char *message) {
   const Car *car = s->car;
   int64_t m = car->n.plates;

@@ -92,9 +92,10 @@ static void set_inputs(State *s, const double *end, double *u) {
     u[d + i] = s->slope[i];
     s->pushed[i] = s->command[2 * i];
   }
-  double *mean = u + 2 * d + m, *rest = mean + m;
+  double *rate = u + 2 * d + n->groups, *mean = rate + m, *rest = mean + m;
+  for (int64_t k = 0; k < n->groups; k++) u[2 * d + k] = s->group_force[k];
   for (int64_t k = 0; k < m; k++) {
-    u[2 * d + k] = s->before[2 * k + 1];
+    rate[k] = s->before[2 * k + 1];
     mean[k] = (end[2 * k] - s->before[2 * k]) / car->step;
   }
   for (int64_t k = 0; k < n->tyres; k++) {
@@ -121,48 +122,118 @@ static void set_inputs(State *s, const double *end, double *u) {
   }
 }
 
-/* Velocities and forces of the dampers: Gauss-Seidel iterations, each damper by its inverse law. `arriving`: velocities
- * without the forces of this step. */
-static void solve_dampers(State *s, double *arriving, double *work) {
+/* Corners of the equation u + G f(u) = r of a group of Jenkins elements: smallest and largest mean force, then left side
+ * and mean force at each corner, see `prepare_groups` of the reduced engine. */
+static void prepare_group(const State *s, int64_t group, double *at) {
   const Car *car = s->car;
-  int64_t d = car->n.dampers, nodes = car->n.nodes, pieces = nodes - 1;
-  double *kept = work, *diagonal = kept + d, *hold = diagonal + d, *table = hold + d;
-  for (int64_t i = 0; i < d; i++) {
-    double own = car->gain[i * d + i] + s->stick[i] * car->ramp[i * d + i];
-    const double *law = car->law + i * nodes * 3, *half = s->half_curve + i * nodes;
-    double *at = table + 4 * nodes * i;
-    kept[i] = s->force[i];
-    diagonal[i] = own;
-    arriving[i] -= own * s->hold[i];
-    for (int64_t j = 0; j < nodes; j++) {
-      double force = half[j] + law[3 * j + 2] * s->friction_limit[i];
-      at[4 * j] = law[3 * j] + own * force;
-      at[4 * j + 2] = force;
+  int64_t count = car->n.elements, first = count * group, i = car->n.dampers + group;
+  const double *spring = car->spring + first, *share = car->share + first, *element = s->element + first;
+  double limit = s->friction_limit[(int64_t)car->owner[group]], gain = car->gain[i * (car->solved + 1)];
+  at[0] = at[1] = 0.0;
+  for (int64_t k = 0; k < count; k++) {
+    at[0] += 0.5 * (element[k] - limit * share[k]);
+    at[1] += 0.5 * (element[k] + limit * share[k]);
+  }
+  for (int64_t corner = 0; corner < 2 * count; corner++) {
+    int64_t k = corner / 2;
+    double end = corner % 2 ? limit * share[k] : -limit * share[k], force = 0.0;
+    double stroke = spring[k] > 0.0 ? (end - element[k]) / spring[k] : 0.0;
+    for (int64_t j = 0; j < count; j++) {
+      double bound = limit * share[j];
+      force += 0.5 * (element[j] + smaller(larger(element[j] + spring[j] * stroke, -bound), bound));
     }
-    for (int64_t j = 0; j < pieces; j++) {
-      double length = at[4 * j + 4] - at[4 * j];
-      at[4 * j + 1] = length > 0.0 ? 1.0 / length : 0.0;
-      at[4 * j + 3] = at[4 * j + 6] - at[4 * j + 2];
+    at[2 + 2 * corner] = stroke + gain * force;
+    at[3 + 2 * corner] = force;
+  }
+}
+
+/* Mean force of a group from the left side of its equation. */
+static double group_force(const double *at, int64_t corners, double value) {
+  double below = -1e30, above = 1e30, lower = at[0], upper = at[1];
+  for (int64_t k = 0; k < corners; k++) {
+    double left = at[2 + 2 * k], force = at[3 + 2 * k];
+    if (value < left) {
+      above = smaller(above, left);
+      upper = smaller(upper, force);
+    } else {
+      below = larger(below, left);
+      lower = larger(lower, force);
+    }
+  }
+  return lower + (upper - lower) * ((value - below) / (above - below));
+}
+
+/* Advance the Jenkins elements over a step; `moved`: changes of their strokes. */
+static void advance_groups(State *s, const double *moved) {
+  const Car *car = s->car;
+  for (int64_t group = 0; group < car->n.groups; group++) {
+    int64_t damper = (int64_t)car->owner[group];
+    s->place[group] += moved[group];
+    for (int64_t k = car->n.elements * group; k < car->n.elements * (group + 1); k++) {
+      double end = s->friction_limit[damper] * car->share[k];
+      s->element[k] = smaller(larger(s->element[k] + car->spring[k] * moved[group], -end), end);
+      s->end_force[damper] -= s->element[k];
+    }
+  }
+}
+
+/* Velocities of the dampers, and forces of dampers and groups: Gauss-Seidel iterations, each force by its inverse law.
+ * `arriving`: velocities and strokes without the forces of this step. */
+static void solve_forces(State *s, double *arriving, double *work) {
+  const Car *car = s->car;
+  int64_t d = car->n.dampers, g = car->n.groups, all = car->solved, nodes = car->n.nodes, pieces = nodes - 1;
+  int64_t corners = 2 + 4 * car->n.elements;
+  double *kept = work, *diagonal = kept + d, *hold = diagonal + d, *table = hold + d, *group = table + 4 * nodes * d;
+  for (int64_t k = 0; k < g; k++) {
+    prepare_group(s, k, group + corners * k);
+    arriving[d + k] -= s->place[k];
+  }
+  for (int64_t i = 0; i < all; i++) {
+    if (i < d) {
+      double own = car->gain[i * all + i] + s->stick[i] * car->ramp[i * d + i];
+      const double *law = car->law + i * nodes * 3, *half = s->half_curve + i * nodes;
+      double *at = table + 4 * nodes * i;
+      kept[i] = s->force[i];
+      diagonal[i] = own;
+      arriving[i] -= own * s->hold[i];
+      for (int64_t j = 0; j < nodes; j++) {
+        double force = half[j] + law[3 * j + 2] * s->friction_limit[i];
+        at[4 * j] = law[3 * j] + own * force;
+        at[4 * j + 2] = force;
+      }
+      for (int64_t j = 0; j < pieces; j++) {
+        double length = at[4 * j + 4] - at[4 * j];
+        at[4 * j + 1] = length > 0.0 ? 1.0 / length : 0.0;
+        at[4 * j + 3] = at[4 * j + 6] - at[4 * j + 2];
+      }
     }
     for (int64_t j = 0; j < d; j++) {
       arriving[i] -= s->stick[j] * car->ramp[i * d + j] * s->force[j];
-      arriving[i] -= car->gain[i * d + j] * s->pushed[j];
+      arriving[i] -= car->gain[i * all + j] * s->pushed[j];
     }
   }
   for (int64_t iteration = 0; iteration < car->n.iterations; iteration++) {
-    for (int64_t i = 0; i < d; i++) {
-      double velocity = arriving[i];
+    for (int64_t i = 0; i < all; i++) {
+      double value = arriving[i];
       for (int64_t j = 0; j < d; j++)
-        if (j != i) velocity += (car->gain[i * d + j] + s->stick[j] * car->ramp[i * d + j]) * s->force[j];
+        if (j != i) value += (car->gain[i * all + j] + s->stick[j] * car->ramp[i * d + j]) * s->force[j];
+      for (int64_t j = d; j < all; j++)
+        if (j != i) value += car->gain[i * all + j] * s->group_force[j - d];
+      if (i >= d) {
+        double force = group_force(group + corners * (i - d), corners / 2 - 1, value);
+        s->group_force[i - d] = -force;
+        if (iteration == car->n.iterations - 1) arriving[i] = value - car->gain[i * all + i] * force;
+        continue;
+      }
       const double *half = s->half_curve + i * nodes, *at = table + 4 * nodes * i;
       double force = at[2];
       hold[i] = half[0];
       for (int64_t j = 0; j < pieces; j++) {
-        double share = smaller(larger((velocity - at[4 * j]) * at[4 * j + 1], 0.0), 1.0);
+        double share = smaller(larger((value - at[4 * j]) * at[4 * j + 1], 0.0), 1.0);
         force += at[4 * j + 3] * share;
         hold[i] += (half[j + 1] - half[j]) * share;
       }
-      s->velocity[i] = velocity - diagonal[i] * force;
+      s->velocity[i] = value - diagonal[i] * force;
       s->force[i] = -force - s->hold[i];
     }
   }
@@ -176,6 +247,19 @@ static void solve_dampers(State *s, double *arriving, double *work) {
     s->stick[i] = stuck * s->stuck[i];
     s->stuck[i] = stuck;
   }
+  advance_groups(s, arriving + d);
+}
+
+/* Sum of the direct terms of forces and plates at the end of the last step. */
+static double direct_sum(const State *s, const double *row, const double *plates) {
+  const Sizes *n = &s->car->n;
+  const double *group = row + 2 * n->dampers, *rate = group + n->groups, *height = rate + n->plates;
+  double value = 0.0;
+  for (int64_t i = 0; i < n->dampers; i++)
+    value += row[i] * (s->force[i] - s->pushed[i]) + row[n->dampers + i] * s->slope[i];
+  for (int64_t k = 0; k < n->groups; k++) value += group[k] * s->group_force[k];
+  for (int64_t k = 0; k < n->plates; k++) value += rate[k] * plates[2 * k + 1] + height[k] * plates[2 * k];
+  return value;
 }
 
 /* Changes of the states over a step, without the forces in it. */
@@ -208,17 +292,13 @@ void time_step(State *s, const double *end) {
   for (int64_t k = 0; k < car->states; k++) s->poles[k] += change[k];
   for (int64_t i = 0; i < car->sums; i++)
     sums[i] = product(car->pair_sums + 2 * i * p, s->poles, 2 * p) + product(car->real_sums + i * q, s->poles + 2 * p, q);
-  for (int64_t i = 0; i < d; i++)
+  for (int64_t i = 0; i < car->solved; i++)
     for (int64_t k = 0; k < m; k++) sums[i] += car->slip[i * m + k] * end[2 * k + 1];
-  solve_dampers(s, sums, solver);
-  for (int64_t i = 0; i < car->sensors; i++) {
-    const double *row = car->direct + i * 2 * (d + m);
-    double value = sums[d + i];
-    for (int64_t k = 0; k < d; k++)
-      value += row[k] * (s->force[k] - s->pushed[k]) + row[d + k] * s->slope[k];
-    for (int64_t k = 0; k < m; k++) value += row[2 * d + k] * end[2 * k + 1] + row[2 * d + m + k] * end[2 * k];
-    s->sensor[i] = value;
-  }
+  for (int64_t i = 0; i < n->groups; i++)
+    for (int64_t k = 0; k < m; k++) sums[d + i] += car->level[i * m + k] * end[2 * k];
+  solve_forces(s, sums, solver);
+  for (int64_t i = 0; i < car->sensors; i++)
+    s->sensor[i] = sums[car->solved + i] + direct_sum(s, car->direct + i * car->direct_terms, end);
   memcpy(s->before, end, (size_t)(2 * m) * sizeof(double));
   s->steps[0] += 1.0;
 }
@@ -247,7 +327,12 @@ void set_at_rest(State *s) {
     s->force[i] = s->slope[i] = s->end_force[i] = s->pushed[i] = 0.0;
     s->velocity[i] = s->earlier[i] = s->coefficient[i] = 0.0;
     s->friction_limit[i] = s->parameter[i * PARAMETERS + PARAMETER_FRICTION];
-    s->stuck[i] = s->stick[i] = 1.0;
+    s->stuck[i] = s->stick[i] = car->damper[i * DAMPER_NUMBERS + DAMPER_FULL] > 0.0;
+  }
+  for (int64_t i = 0; i < n->groups; i++) {
+    s->group_force[i] = s->place[i] = 0.0;
+    for (int64_t k = 0; k < m; k++) s->place[i] += car->level[i * m + k] * s->before[2 * k];
+    for (int64_t k = 0; k < n->elements; k++) s->element[i * n->elements + k] = 0.0;
   }
   for (int64_t k = 0; k < n->controls; k++)
     for (int64_t j = 0; j < CONTROL_MEMORY + n->ring; j++)
@@ -259,11 +344,8 @@ void set_at_rest(State *s) {
 static double linear_value(const State *s, int64_t output) {
   const Car *car = s->car;
   int64_t d = car->n.dampers, m = car->n.plates, states = car->states;
-  const double *row = car->rows + output * (states + 2 * (d + m)), *direct = row + states;
-  double value = product(row, s->poles, states);
-  for (int64_t i = 0; i < d; i++) value += direct[i] * (s->force[i] - s->pushed[i]) + direct[d + i] * s->slope[i];
-  for (int64_t k = 0; k < m; k++)
-    value += direct[2 * d + k] * s->before[2 * k + 1] + direct[2 * d + m + k] * s->before[2 * k];
+  const double *row = car->rows + output * (states + car->direct_terms);
+  double value = product(row, s->poles, states) + direct_sum(s, row + states, s->before);
   for (int64_t i = 0; i < d; i++) value += car->by_force[output * d + i] * (s->end_force[i] - s->pushed[i]);
   for (int64_t k = 0; k < car->n.tyres; k++) {
     double excess = s->slope_excess[k], change = larger(s->sensor[k], -1.0);
