@@ -3,9 +3,9 @@
 python -m tests.benchmarks.rolling_engines [--roads A,B] [--duration 10] [--speed 80] [--channels 6]
 
 Each line: point-by-point difference over the RMS of MuJoCo, and in brackets how much larger the RMS of the reduced
-engine is. `static` is the reduced engine with static wheel loads on slopes z'/V, `present` with present ones, both against
-MuJoCo at its own step; `fine` at a step of 0.25 ms; `odd` and `even` are the parts of `fine` that change sign with the
-road and that do not: without and with products of two motions.
+engine is. `static` is the reduced engine with static wheel loads on slopes z'/V, `present` with present ones, both
+against MuJoCo at its own step; `fine` at a step of 0.25 ms; `odd` and `even` are the parts of `fine` that change sign
+with the road and that do not: without and with products of two motions.
 """
 
 from __future__ import annotations

@@ -131,8 +131,8 @@ def test_engines_agree_on_a_cleat_but_for_products_of_motions() -> None:
     validated(
         "Reduced engine", "RMS of the rear knuckles along y on a cleat of 20 x 50 mm, part that is odd in the road",
         odd[0][rear], odd[1][rear], rel=5e-3, unit="m/s2", source="second derivation: MuJoCo at 0.25 ms",
-        reason="products of three motions: the links turn by finite angles, while the motion along y is the smallest of "
-        "the car; on 5 x 50 mm these channels agree within 0.1 %",
+        reason="products of three motions: the links turn by finite angles, and the motion along y is the smallest "
+        "of the car; on 5 x 50 mm these channels agree within 0.1 %",
     )  # fmt: skip
 
 
