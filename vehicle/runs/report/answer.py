@@ -14,7 +14,7 @@ from vehicle.names import point_words, side_of
 from vehicle.runs.report.band_causes import main_path, paths, strongest
 from vehicle.runs.report.base_run import OF_THE_RUN
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.differences import changed_parameters, difference, parameter_words
+from vehicle.runs.report.differences import MISSING, changed_parameters, difference, parameter_words
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
@@ -55,7 +55,9 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         return _of_one(runs[0], modes[0])
     first, parts = runs[0], []
     for run, run_modes in zip(runs[1:], modes[1:], strict=True):
-        texts = [text for text in (_effect(first, run), _reason(first, run, modes[0], run_modes)) if text]
+        texts = [_effect(first, run)]
+        if abs(_percent(first, run) or 0.0) >= SMALL:
+            texts.append(_reason(first, run, modes[0], run_modes))
         parts.append(tag("p", " ".join(texts), class_="answer"))
     changes = {f"{run.name} against {first.name}": _changes(first, run) for run in runs[1:]}
     if all(changes.values()):
@@ -132,18 +134,29 @@ def _motion(mode: Mode) -> str:
 
 
 def _effect(first: FinishedRun, run: FinishedRun) -> str:
-    """Return a statement on the change of comfort."""
-    values = [each.summary["comfort"].get("seat_rail") for each in (first, run)]
-    if values[0] is None or values[1] is None:
+    """Return a statement on the change of comfort; empty without a seat rail."""
+    percent = _percent(first, run)
+    if percent is None:
         return ""
-    before, after = (value["iso2631"]["vector_sum"]["weighted_rms"] for value in values if value is not None)
-    percent = 100.0 * (after / before - 1.0) if before else 0.0
+    before, after = (_weighted(each) for each in (first, run))
     if abs(percent) < SMALL:
         effect = f"stays at {number(before)} m/s²"
     else:
         word, rating = ("rises", "worse") if percent > 0.0 else ("falls", "better")
         effect = f"{word} from {number(before)} to {number(after)} m/s² ({difference(before, after)}, {rating})"
     return f"{_what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
+
+
+def _weighted(run: FinishedRun) -> float | None:
+    """Return the weighted acceleration at the seat rail [m/s2]; None if it is not recorded."""
+    value = run.summary["comfort"].get("seat_rail")
+    return None if value is None else value["iso2631"]["vector_sum"]["weighted_rms"]
+
+
+def _percent(first: FinishedRun, run: FinishedRun) -> float | None:
+    """Return the change of the weighted acceleration at the seat rail [%]; None without a value."""
+    before, after = (_weighted(each) for each in (first, run))
+    return None if before is None or after is None or before == 0.0 else 100.0 * (after / before - 1.0)
 
 
 def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
@@ -157,7 +170,8 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
         parts.append(f"{len(changed)} other parameters, among them {parameter_words(changed[0][0])}")
     else:
         parts += [
-            f"{parameter_words(path)} {new} instead of {old} {unit}".rstrip() for path, unit, (old, new) in changed
+            f"{parameter_words(path)} {new}{f' instead of {old}' if old != MISSING else ''} {unit}".rstrip()
+            for path, unit, (old, new) in changed
         ]
     inputs = [_input_words(each) for each in (first, run)]
     if inputs[0] != inputs[1]:
@@ -177,7 +191,8 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     band = main_band(spectra[1], spectra[0])
     if band is None:
         return ""
-    parts = [f"{100.0 * band.share:.0f} % of the change (mean square) {_is_within(band)}"]
+    share = f"{100.0 * band.share:.0f} %" if band.share <= 1.0 else "More than all"
+    parts = [f"{share} of the change (mean square) {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
         parts.append(f"mainly by the mode of {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")

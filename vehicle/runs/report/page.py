@@ -16,6 +16,7 @@ from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
+from vehicle.runs.report.film_section import film
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, escaped, folded, joined, section, tag
 from vehicle.runs.report.measured_section import measured
@@ -92,7 +93,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
     parts = [
         ("Result", "result", joined([single if changed is None else changed, _explained()])),
         ("This run", "alone", None if changed is None else single),
-        ("Film", "film", sections.film(run)),
+        ("Film", "film", film(run)),
         ("Findings", "findings", sections.what_was_found(run, modes)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
         ("The car", "car", car_section(run)),
@@ -124,7 +125,7 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
         # A car is shown once.
         new = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
         of_run = (
-            ("Film", sections.film(run)),
+            ("Film", film(run, 1.0 / len(runs))),
             ("Findings", joined([sections.tiles(run), sections.what_was_found(run, car_modes)])),
             ("Car, signal, engine", sections.what_was_run(run)),
             ("The car", car_section(run) if new and index else None),
