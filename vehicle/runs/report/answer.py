@@ -25,6 +25,8 @@ from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 from vehicle.signals.records.run_summary import slip_shares
 
 Modes = Mapping[str, Sequence[Mode]]
+Changed = tuple[str, str, list[str]]
+"""Path, unit and values of a parameter in which cars differ."""
 
 MOST_CHANGES = 2
 """Maximum number of listed parameters; more are counted."""
@@ -163,7 +165,9 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
     """Return what differs between two runs: car, parameters, input, engine."""
     parts = []
     vehicles = [first.car.vehicle, run.car.vehicle]
-    changed = [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
+    changed = _without_followers(
+        first, run, [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
+    )
     if len(changed) > MOST_CHANGES and vehicles[0].name != vehicles[1].name:
         parts.append(f"car {vehicles[1].name} instead of {vehicles[0].name}")
     elif len(changed) > MOST_CHANGES:
@@ -183,6 +187,17 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
     return f"{run.name} against {first.name} ({text})"
 
 
+def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[Changed]) -> list[Changed]:
+    """Return the changed parameters that the second run sets; all if it sets none, or has another vehicle file.
+
+    Others follow them, as the inertia of the body follows its mass.
+    """
+    origins = [each.summary["vehicle"] for each in (first, run)]
+    paths = [text.partition("=")[0].strip() for text in origins[1]["overrides"] if text not in origins[0]["overrides"]]
+    rows = [row for row in changed if any(row[0] == path or row[0].endswith(f".{path}") for path in paths)]
+    return rows if rows and origins[0]["file"] == origins[1]["file"] else list(changed)
+
+
 def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes) -> str:
     """Return a statement on band, mode, path and dampers of the change; empty without a change."""
     spectra = [weighted_bands(each) for each in (first, run)]
@@ -195,14 +210,14 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     parts = [f"{share} of the change (mean square) {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
-        parts.append(f"mainly by the mode of {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")
+        parts.append(f"mainly by the mode {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")
     if shares := changed_paths(first, run, band, spectra):
         parts.append(f"carried into the body by {main_path(shares)}")
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
-        if abs(after - before) >= SLIP:
+        if abs(after - before) >= SLIP and f"{after:.2g}" != f"{before:.2g}":
             return (
                 f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper slips for {after:.2g} % of the time "
                 f"instead of {before:.2g} %."
@@ -213,16 +228,12 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
 def _moved(mode: Mode, other: Mode | None) -> str:
     """Return a mode in words, with what changed in the mode of the other car: frequency, damping ratio."""
     if other is None or mode_words(other) == mode_words(mode):
-        return mode_words(mode)
-    frequencies, ratios = (
-        " to ".join(dict.fromkeys(texts))
-        for texts in (
-            [f"{each.frequency:.2f}" for each in (mode, other)],
-            [f"{100.0 * each.damping_ratio:.2g}" for each in (mode, other)],
-        )
-    )
-    word = "from " if " to " in frequencies else ""
-    return f"{word}{frequencies} Hz ({_motion(mode)}, damping ratio {ratios} %)"
+        return f"of {mode_words(mode)}"
+    frequencies = [f"{each.frequency:.3g}" for each in (mode, other)]
+    ratios = [f"{100.0 * each.damping_ratio:.2g}" for each in (mode, other)]
+    parts = [f"which moves from {frequencies[0]} to {frequencies[1]} Hz"] if frequencies[0] != frequencies[1] else []
+    parts += [f"whose damping ratio changes from {ratios[0]} to {ratios[1]} %"] if ratios[0] != ratios[1] else []
+    return f"of {_motion(mode)}, {' and '.join(parts)}" if parts else f"of {mode_words(mode)}"
 
 
 def changed_paths(
