@@ -62,6 +62,16 @@ def point_words(point: str) -> str:
     return (f"{corner}_{part}" if part and corner else point).replace("_", " ")
 
 
+def channel_words(channel: str) -> str:
+    """Return the name of a channel in words: "front left knuckle z" for knuckle_fl_acc_z, other channels unchanged.
+
+    Args:
+        channel: name of a channel.
+    """
+    point, _, axis = channel.rpartition("_acc_")
+    return f"{point_words(point)} {axis}" if point else channel
+
+
 def axle_and_side(wheel: str) -> tuple[str, str]:
     """Return axle and side of a wheel in words: "front", "right" for fr; "middle", "left" for middle_l.
 

@@ -90,6 +90,10 @@ def test_the_fitted_file_runs_and_the_report_is_whole(fitted, tmp_path):
     page = (fitted / "report.html").read_text(encoding="utf-8")
     for text in ("focus fitted to bench", "What the data leave open", content["set"], "<svg", "last steps with mujoco"):
         assert text in page
+    answer = page.partition('<p class="answer">')[2].partition("</p>")[0]
+    first, error = content["parameters"][0], max(content["agreement"], key=lambda row: row["before"])
+    assert f"damper viscous of {first['value']:.4g} ± " in answer and "instead of 2250" in answer
+    assert f"from {error['before']:.3g} to {error['after']:.3g} {error['unit']}; the data determine" in answer
     assert {"time_1_bench.png", "correlation.png"} <= {path.name for path in fitted.iterdir()}
 
 

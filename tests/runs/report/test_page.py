@@ -17,11 +17,13 @@ from vehicle.commands.report import main
 from vehicle.commands.shaker import main as shaker
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
+from vehicle.runs.report.answer import answer
 from vehicle.runs.report.band_causes import main_path
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.comfort_class import reactions
 from vehicle.runs.report.differences import changed_parameters, difference, parameter_words, shipped_origin
 from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.modes_section import modes_of
 from vehicle.runs.report.moving_modes import FULL
 
 EMPTY = {"meta", "link", "input", "img", "br"}
@@ -139,17 +141,22 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     assert "P, A. <b>, 20" in text and "vehicle-on-shaker 0." in text
     summaries = [json.loads((folder / "summary.json").read_text()) for folder in (reported.folder, softer)]
     before, after = (each["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] for each in summaries)
-    answer = text.partition('<p class="answer">')[2].partition("<")[0]
+    told = text.partition('<p class="answer">')[2].partition("<")[0]
     word = "rises" if after > before else "falls"
     assert (
-        "front main spring stiffness 12000 instead of " in answer
-        and f"{word} from {before:.3g} to {after:.3g} m/s²" in answer
+        "front main spring stiffness 12000 instead of " in told
+        and f"{word} from {before:.3g} to {after:.3g} m/s²" in told
     )
     assert re.search(
-        r"% of the change \(mean square\) is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", answer
+        r"% of the change \(mean square\) is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", told
     )
-    assert re.search(r"carried into the body by the (front|engine|hydraulic|torque|rear|linear) ?[a-z ]+", answer)
-    assert not re.search(r"_f[lr]\b", answer), "words instead of names of the model"
+    moved = re.search(r"mainly by the mode of ([a-z ,]+), which moves from ([\d.]+) to ([\d.]+) Hz", told)
+    assert moved is not None and moved[2] != moved[3]
+    for folder, frequency in ((reported.folder, moved[2]), (softer, moved[3])):
+        modes = Car.load(folder / "vehicle.toml").modes("sliding")
+        assert [mode for mode in modes if f"{mode.frequency:.3g}" == frequency and moved[1] in mode.description]
+    assert re.search(r"carried into the body by the (front|engine|hydraulic|torque|rear|linear) ?[a-z ]+", told)
+    assert not re.search(r"_f[lr]\b", told), "words instead of names of the model"
 
 
 def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
@@ -162,9 +169,9 @@ def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
         json.loads((folder / "summary.json").read_text())["comfort"]["seat_rail"]["iso2631"]["vector_sum"]
         for folder in (unchanged, reported.folder)
     )
-    answer = unescape(reported.text).partition('<p class="answer">')[2].partition("<")[0]
-    assert answer.startswith("run against the unchanged focus (front damper Coulomb friction 100 instead of 125 N): ")
-    assert f"from {before['weighted_rms']:.3g} to {after['weighted_rms']:.3g} m/s²" in answer
+    told = unescape(reported.text).partition('<p class="answer">')[2].partition("<")[0]
+    assert told.startswith("run against the unchanged focus (front damper Coulomb friction 100 instead of 125 N): ")
+    assert f"from {before['weighted_rms']:.3g} to {after['weighted_rms']:.3g} m/s²" in told
     assert base_run(read_run(unchanged)) is None, "an unchanged car has no other to be compared with"
 
 
@@ -179,6 +186,19 @@ def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
 )
 def test_the_main_path_is_in_the_words_of_the_car(shares, words):
     assert main_path(shares) == words
+
+
+def test_what_follows_a_parameter_is_not_named(reported, tmp_path):
+    """A heavier body has another inertia: its moments follow the mass, which alone is named."""
+    signal = json.loads((reported.folder / "summary.json").read_text())["command"].split(" --input ")[1]
+    heavier = tmp_path / "heavier"
+    words = ["--input", signal.split(" --output")[0].strip("'"), "--output", str(heavier), "--engine", "reduced"]
+    assert shaker([*words, "--quiet", "--set", "body.mass=900"]) == 0
+    run = read_run(heavier)
+    base = base_run(run)
+    assert base is not None
+    assert len(changed_parameters([base.car.vehicle, run.car.vehicle])) > 3
+    assert "(body mass 900 instead of 813 kg)" in answer([base, run], [modes_of(base), modes_of(run)])
 
 
 def test_parameters_are_in_words():

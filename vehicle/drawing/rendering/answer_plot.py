@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, saved_figure
 
 Vector = npt.NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Change:
 
 
 def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str, caption: str) -> None:
-    """Plot the changes of numbers as bars, a panel for each run.
+    """Plot the changes of numbers as bars, a panel for each run, one below the other.
 
     Args:
         path: PNG or SVG file.
@@ -48,8 +48,9 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
         title, caption: above and below the figure.
     """
     highest = max(len(of_run) for of_run in changes.values())
-    with saved_figure(path, (9.5 if len(changes) == 1 else 13.0, 1.3 + 0.27 * highest), title, caption) as figure:
-        axes = figure.subplots(1, len(changes), squeeze=False)[0]
+    height = 0.7 + len(changes) * (0.6 + (0.27 if len(changes) == 1 else 0.22) * highest)
+    with saved_figure(path, (PAGE_WIDTH, height), title, caption) as figure:
+        axes = figure.subplots(len(changes), 1, squeeze=False)[:, 0]
         for axis, (name, of_run) in zip(axes, changes.items(), strict=True):
             percent = np.array([change.percent for change in of_run])
             colours = [NEUTRAL if not change.rated else BETTER if change.percent < 0.0 else WORSE for change in of_run]
@@ -58,7 +59,7 @@ def plot_changes(path: Path, changes: Mapping[str, Sequence[Change]], title: str
             axis.axvline(0.0, color=INK, linewidth=0.8)
             axis.set_yticks(rows, [change.label for change in of_run])
             axis.invert_yaxis()
-            room = 0.22 * max(float(np.max(np.abs(percent), initial=0.0)), FULL_PANEL)
+            room = 0.3 * max(float(np.max(np.abs(percent), initial=0.0)), FULL_PANEL)
             axis.set_xlim(
                 min(float(percent.min()), -0.2 * FULL_PANEL) - room, max(float(percent.max()), 0.2 * FULL_PANEL) + room
             )

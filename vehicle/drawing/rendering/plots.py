@@ -204,7 +204,10 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
             label = next((unit.replace(word, short) for word, short in SHORT.items() if page and word in unit), unit)
             whole.set(ylim=(lowest, highest + room * (highest - lowest)), ylabel=label.replace("\n ", "\n"))
             if len(lines) > 1 or "acceleration" in unit:
-                whole.legend(*detail.get_legend_handles_labels(), loc="upper right", ncols=columns)
+                handles, labels = detail.get_legend_handles_labels()
+                # On a page the label of the axis names the quantity, so that four wheels fit in a row.
+                labels = [text.removeprefix(f"{label.split()[0]} ") for text in labels] if page else labels
+                whole.legend(handles, labels, loc="upper right", ncols=columns, columnspacing=1.0)
             whole.axvspan(start, end, color=MAGNIFIED, zorder=0)
             whole.set_xlim(time[0], time[-1])
             detail.set_xlim(start, end)

@@ -14,7 +14,7 @@ from vehicle.names import point_words, side_of
 from vehicle.runs.report.band_causes import main_path, paths, strongest
 from vehicle.runs.report.base_run import OF_THE_RUN
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.differences import changed_parameters, difference, parameter_words
+from vehicle.runs.report.differences import MISSING, changed_parameters, difference, parameter_words
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
@@ -25,6 +25,8 @@ from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 from vehicle.signals.records.run_summary import slip_shares
 
 Modes = Mapping[str, Sequence[Mode]]
+Changed = tuple[str, str, list[str]]
+"""Path, unit and values of a parameter in which cars differ."""
 
 MOST_CHANGES = 2
 """Maximum number of listed parameters; more are counted."""
@@ -55,7 +57,9 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
         return _of_one(runs[0], modes[0])
     first, parts = runs[0], []
     for run, run_modes in zip(runs[1:], modes[1:], strict=True):
-        texts = [text for text in (_effect(first, run), _reason(first, run, modes[0], run_modes)) if text]
+        texts = [_effect(first, run)]
+        if abs(_percent(first, run) or 0.0) >= SMALL:
+            texts.append(_reason(first, run, modes[0], run_modes))
         parts.append(tag("p", " ".join(texts), class_="answer"))
     changes = {f"{run.name} against {first.name}": _changes(first, run) for run in runs[1:]}
     if all(changes.values()):
@@ -132,12 +136,11 @@ def _motion(mode: Mode) -> str:
 
 
 def _effect(first: FinishedRun, run: FinishedRun) -> str:
-    """Return a statement on the change of comfort."""
-    values = [each.summary["comfort"].get("seat_rail") for each in (first, run)]
-    if values[0] is None or values[1] is None:
+    """Return a statement on the change of comfort; empty without a seat rail."""
+    percent = _percent(first, run)
+    if percent is None:
         return ""
-    before, after = (value["iso2631"]["vector_sum"]["weighted_rms"] for value in values if value is not None)
-    percent = 100.0 * (after / before - 1.0) if before else 0.0
+    before, after = (_weighted(each) for each in (first, run))
     if abs(percent) < SMALL:
         effect = f"stays at {number(before)} m/s²"
     else:
@@ -146,18 +149,33 @@ def _effect(first: FinishedRun, run: FinishedRun) -> str:
     return f"{_what_changed(first, run)}: the weighted acceleration at the seat rail (ISO 2631-1) {effect}."
 
 
+def _weighted(run: FinishedRun) -> float | None:
+    """Return the weighted acceleration at the seat rail [m/s2]; None if it is not recorded."""
+    value = run.summary["comfort"].get("seat_rail")
+    return None if value is None else value["iso2631"]["vector_sum"]["weighted_rms"]
+
+
+def _percent(first: FinishedRun, run: FinishedRun) -> float | None:
+    """Return the change of the weighted acceleration at the seat rail [%]; None without a value."""
+    before, after = (_weighted(each) for each in (first, run))
+    return None if before is None or after is None or before == 0.0 else 100.0 * (after / before - 1.0)
+
+
 def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
     """Return what differs between two runs: car, parameters, input, engine."""
     parts = []
     vehicles = [first.car.vehicle, run.car.vehicle]
-    changed = [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
+    changed = _without_followers(
+        first, run, [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
+    )
     if len(changed) > MOST_CHANGES and vehicles[0].name != vehicles[1].name:
         parts.append(f"car {vehicles[1].name} instead of {vehicles[0].name}")
     elif len(changed) > MOST_CHANGES:
         parts.append(f"{len(changed)} other parameters, among them {parameter_words(changed[0][0])}")
     else:
         parts += [
-            f"{parameter_words(path)} {new} instead of {old} {unit}".rstrip() for path, unit, (old, new) in changed
+            f"{parameter_words(path)} {new}{f' instead of {old}' if old != MISSING else ''} {unit}".rstrip()
+            for path, unit, (old, new) in changed
         ]
     inputs = [_input_words(each) for each in (first, run)]
     if inputs[0] != inputs[1]:
@@ -169,6 +187,17 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
     return f"{run.name} against {first.name} ({text})"
 
 
+def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[Changed]) -> list[Changed]:
+    """Return the changed parameters that the second run sets; all if it sets none, or has another vehicle file.
+
+    Others follow them, as the inertia of the body follows its mass.
+    """
+    origins = [each.summary["vehicle"] for each in (first, run)]
+    paths = [text.partition("=")[0].strip() for text in origins[1]["overrides"] if text not in origins[0]["overrides"]]
+    rows = [row for row in changed if any(row[0] == path or row[0].endswith(f".{path}") for path in paths)]
+    return rows if rows and origins[0]["file"] == origins[1]["file"] else list(changed)
+
+
 def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes) -> str:
     """Return a statement on band, mode, path and dampers of the change; empty without a change."""
     spectra = [weighted_bands(each) for each in (first, run)]
@@ -177,17 +206,18 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     band = main_band(spectra[1], spectra[0])
     if band is None:
         return ""
-    parts = [f"{100.0 * band.share:.0f} % of the change (mean square) {_is_within(band)}"]
+    share = f"{100.0 * band.share:.0f} %" if band.share <= 1.0 else "More than all"
+    parts = [f"{share} of the change (mean square) {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
-        parts.append(f"mainly by the mode of {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")
+        parts.append(f"mainly by the mode {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")
     if shares := changed_paths(first, run, band, spectra):
         parts.append(f"carried into the body by {main_path(shares)}")
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
-        if abs(after - before) >= SLIP:
+        if abs(after - before) >= SLIP and f"{after:.2g}" != f"{before:.2g}":
             return (
                 f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper slips for {after:.2g} % of the time "
                 f"instead of {before:.2g} %."
@@ -198,16 +228,12 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
 def _moved(mode: Mode, other: Mode | None) -> str:
     """Return a mode in words, with what changed in the mode of the other car: frequency, damping ratio."""
     if other is None or mode_words(other) == mode_words(mode):
-        return mode_words(mode)
-    frequencies, ratios = (
-        " to ".join(dict.fromkeys(texts))
-        for texts in (
-            [f"{each.frequency:.2f}" for each in (mode, other)],
-            [f"{100.0 * each.damping_ratio:.2g}" for each in (mode, other)],
-        )
-    )
-    word = "from " if " to " in frequencies else ""
-    return f"{word}{frequencies} Hz ({_motion(mode)}, damping ratio {ratios} %)"
+        return f"of {mode_words(mode)}"
+    frequencies = [f"{each.frequency:.3g}" for each in (mode, other)]
+    ratios = [f"{100.0 * each.damping_ratio:.2g}" for each in (mode, other)]
+    parts = [f"which moves from {frequencies[0]} to {frequencies[1]} Hz"] if frequencies[0] != frequencies[1] else []
+    parts += [f"whose damping ratio changes from {ratios[0]} to {ratios[1]} %"] if ratios[0] != ratios[1] else []
+    return f"of {_motion(mode)}, {' and '.join(parts)}" if parts else f"of {mode_words(mode)}"
 
 
 def changed_paths(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from vehicle.drawing.rendering.car_drawing import plot_car
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.wireframe import car_wireframe
+from vehicle.runs.car import Car
 from vehicle.runs.car.car_text import TextTable, car_tables, parameter_table
-from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, folded, joined, table, tag
 from vehicle.runs.report.svg_figure import drawing
 
@@ -14,10 +14,10 @@ SIZE = (PAGE_WIDTH, 5.4)
 """Width and height of the drawing [inch]."""
 
 
-def car_section(run: FinishedRun) -> Markup:
-    """Return drawing and tables of the car of a run, as of `python -m vehicle show`; all parameters are folded."""
-    data = run.car.show()
-    wire = car_wireframe(run.car.model)
+def car_section(car: Car) -> Markup:
+    """Return drawing and tables of a car, as of `python -m vehicle show`; all parameters are folded."""
+    data = car.show()
+    wire = car_wireframe(car.model)
     whole, axles, modes = car_tables(data)
     parameters = parameter_table(data.parameters, shortened=False)
     return joined(

@@ -13,6 +13,9 @@ from vehicle.names import point_words, side_of
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.signals.records.run_summary import slip_shares
 
+MISSING = "–"
+"""Text of a parameter or value that a car or run does not have."""
+
 LARGEST_SHARE = 0.5
 """Largest share of other or further parameters in a car that was made from a shipped one: above it a car counts
 as a new car. Front ends and bodies are shared by shipped cars, which differ from each other in 0.6 and more."""
@@ -67,7 +70,7 @@ def _unit(vehicle: Vehicle, path: str) -> str:
 
 def _text(value: object) -> str:
     if value is None:
-        return "–"
+        return MISSING
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, list | tuple):

@@ -47,7 +47,7 @@ def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     def slider(label: str, name: str, minimum: float, maximum: float, step: float, value: float) -> Markup:
         limits = f'min="{minimum:g}" max="{maximum:g}" step="{step:g}"'
         control = f'<input type="range" id="mode-{name}" {limits} value="{value:g}">'
-        return joined([tag("label", label, for_=f"mode-{name}", class_="only-screen"), Markup(control)])
+        return joined([tag("label", label, for_=f"mode-{name}"), Markup(control)])
 
     views = [tag("button", word, type="button", data_view=view) for view, word in VIEWS.items()]
     controls = tag(

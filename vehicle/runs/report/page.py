@@ -16,6 +16,7 @@ from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
+from vehicle.runs.report.film_section import film
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, escaped, folded, joined, section, tag
 from vehicle.runs.report.measured_section import measured
@@ -62,11 +63,16 @@ def report_page(
     first, others = runs[0].name, [run.name for run in runs[1:]]
     names = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} against {first}" if others else first
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
-    head = ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
+    head = ", ".join(filter(None, (project, author, program_and_date())))
     data = as_json(car_modes_of(runs, modes))
     page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data)
     done(1.0)
     return page
+
+
+def program_and_date() -> str:
+    """Return the date and the version of the program, for the head of a page."""
+    return f"{date.today().isoformat()}, {package_version()}"
 
 
 def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
@@ -92,10 +98,10 @@ def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
     parts = [
         ("Result", "result", joined([single if changed is None else changed, _explained()])),
         ("This run", "alone", None if changed is None else single),
-        ("Film", "film", sections.film(run)),
+        ("Film", "film", film(run)),
         ("Findings", "findings", sections.what_was_found(run, modes)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
-        ("The car", "car", car_section(run)),
+        ("The car", "car", car_section(run.car)),
         ("Frequency responses", "responses", responses(run, modes) if run.responses else None),
         ("Time histories", "time", sections.time_figure(run)),
         ("Dampers", "dampers", sections.dampers(run)),
@@ -116,7 +122,7 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
         ("Time histories", "time", joined(sections.time_figure(run, runs) for run in runs)),
-        (f"The car of {runs[0].name}", "car", car_section(runs[0])),
+        (f"The car of {runs[0].name}", "car", car_section(runs[0].car)),
         ("Modes", "modes", moving_modes(runs, modes)),
     ]
     details = []
@@ -124,10 +130,10 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
         # A car is shown once.
         new = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
         of_run = (
-            ("Film", sections.film(run)),
+            ("Film", film(run, 1.0 / len(runs))),
             ("Findings", joined([sections.tiles(run), sections.what_was_found(run, car_modes)])),
             ("Car, signal, engine", sections.what_was_run(run)),
-            ("The car", car_section(run) if new and index else None),
+            ("The car", car_section(run.car) if new and index else None),
             ("Frequency responses", responses(run, car_modes) if run.responses else None),
             ("Dampers", sections.dampers(run)),
             ("Comfort", comfort(run)),

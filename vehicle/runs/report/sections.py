@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -154,8 +153,8 @@ def dampers(run: FinishedRun) -> Markup:
                 _when(first[wheel]),
                 f"{100 * saturated[wheel]:.2f} %",
                 _when(ended[wheel]),
-                f"{1e3 * velocity:.3g} mm/s",
-                f"{force:.3g} N",
+                f"{number(1e3 * velocity)} mm/s",
+                f"{number(force)} N",
             )
         )
     note = (
@@ -166,22 +165,6 @@ def dampers(run: FinishedRun) -> Markup:
 
 def _when(value: float | None) -> str:
     return "never" if value is None else f"{value:.3f} s"
-
-
-def film(run: FinishedRun) -> Markup | None:
-    """Return the film of the run; None if there is no readable film."""
-    name = run.summary["files"].get("video")
-    path = (
-        None
-        if name is None
-        else next((candidate for candidate in (run.folder / name, Path(name)) if candidate.is_file()), None)
-    )
-    if path is None:
-        return None
-    source = "data:video/mp4;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-    note = f"{path.name}: the motion is exaggerated by the factor in the picture."
-    video = tag("video", src=source, controls="", preload="metadata", class_="only-screen")
-    return joined([video, tag("p", note)])
 
 
 def tables(run: FinishedRun) -> Markup:

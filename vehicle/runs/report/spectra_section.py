@@ -8,6 +8,7 @@ from functools import partial
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.spectra_plot import plot_spectra
 from vehicle.errors import DataError
+from vehicle.names import CORNERS, wheel_words
 from vehicle.runs.output.spectra_files import picture_columns
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, tag
@@ -64,7 +65,8 @@ def _roads(runs: Mapping[str, RecordSpectra]) -> list[Markup]:
     return [
         tag(
             "p",
-            f"Road of {name} under {wheel}: class {level.letter} of ISO 8608, G(0.1 cycles/m) = "
+            f"Road of {name} under the {wheel_words(wheel, CORNERS.values())}: "
+            f"class {level.letter} of ISO 8608, G(0.1 cycles/m) = "
             f"{number(1e6 * level.reference_density)}·10⁻⁶ m³, fitted from {level.fitted[0]:.3g} to "
             f"{level.fitted[1]:.3g} cycles/m.",
         )

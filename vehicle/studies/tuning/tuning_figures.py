@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, FADED, FRF_TICKS, fading, frf_axes, saved_figure, wrapped_phase
 from vehicle.model.parameters.ranges import Range
-from vehicle.names import channel_units
+from vehicle.names import channel_units, channel_words
 from vehicle.runs.car import Car
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -68,7 +68,7 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
                 fading(magnitude, frequency, np.abs(response[row]), weight, label, **LOOKS[label])
                 phase.plot(frequency, wrapped_phase(response[row].copy()), **LOOKS[label])
             coherence.plot(frequency, data.coherence[row], **LOOKS["measured"])
-            magnitude.set_title(textwrap.fill(channel, 40))
+            magnitude.set_title(textwrap.fill(channel_words(channel), 40))
             magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.5, 1))
         if isinstance(target, LevelTarget):
@@ -108,7 +108,7 @@ def plot_histories(path: Path, target: RecordTarget, start: Car, fitted: Car, so
         for row, (axis, channel) in enumerate(zip(axes, channels, strict=True)):
             for label, values in curves.items():
                 axis.plot(time[inside], values[row][inside], **LOOKS[label], label=label)
-            axis.set_ylabel(f"{channel}\n[{units[channel].replace('2', '²')}]")
+            axis.set_ylabel(f"{channel_words(channel)}\n[{units[channel].replace('2', '²')}]")
             axis.set_xlim(time[inside][0], time[inside][-1])
         axes[0].legend(loc="upper right", ncols=3)
         axes[-1].set_xlabel("time of the signal [s]")

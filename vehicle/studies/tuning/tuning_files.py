@@ -12,7 +12,7 @@ from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_summ
 from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.studies.tuning.tuned_car import TunedCar
 from vehicle.studies.tuning.tuning_figures import plot_corner, plot_correlation, plot_histories, plot_responses
-from vehicle.studies.tuning.tuning_page import POSTERIOR, tuning_page
+from vehicle.studies.tuning.tuning_page import CORRELATION, POSTERIOR, tuning_page
 
 VEHICLE, NUMBERS, REPORT = "vehicle.toml", "tune.json", "report.html"
 """Names of the fitted vehicle file, the numbers and the report."""
@@ -32,7 +32,7 @@ def figures_of(tuned: TunedCar, posteriors: Sequence[NamedPosterior] = ()) -> di
                 plot_histories, target=target, start=tuned.start, fitted=tuned.fitted, source=target.name
             )
     if len(tuned.result.free) > 1:
-        figures["correlation"] = partial(plot_correlation, result=tuned.result)
+        figures[CORRELATION] = partial(plot_correlation, result=tuned.result)
     if posteriors:
         figures[POSTERIOR] = partial(plot_corner, posterior=posteriors[0][1])
     return figures

@@ -7,8 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from vehicle.model.parameters.paths import unit_of
+from vehicle.names import channel_words
+from vehicle.runs.report.car_section import car_section
+from vehicle.runs.report.differences import parameter_words
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
-from vehicle.runs.report.page import document
+from vehicle.runs.report.page import document, program_and_date
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
@@ -18,6 +21,12 @@ from vehicle.studies.tuning.tuning_text import fit_sentences
 
 POSTERIOR = "posterior"
 """Name of the picture of the posterior."""
+
+CORRELATION = "correlation"
+"""Name of the picture of the correlations."""
+
+MOST_NAMED = 3
+"""Maximum number of fitted values in the sentence of the result."""
 
 
 def tuning_page(
@@ -37,14 +46,17 @@ def tuning_page(
     names = ", ".join(each.target.name for each in tuned.measurements)
     vehicle = tuned.start.vehicle
     parts = [
+        ("Result", "result", _result(tuned, figures)),
         ("Fitted values", "values", _values(tuned)),
         ("What the data leave open", "open", _left_open(tuned)),
         *([("Posterior", "posterior", _posterior(tuned, figures, posteriors))] if posteriors else []),
         ("Before and after", "agreement", _agreement(tuned, figures)),
         ("Residuals", "residuals", _residuals(tuned)),
+        ("The fitted car", "car", car_section(tuned.fitted)),
         ("How to repeat the fit", "repeat", joined([tag("pre", command), tag("pre", tuned.settings)])),
     ]
-    return document(f"{vehicle.name} fitted to {names}", (f"tyres {_driving(tuned)}",), parts)
+    subtitles = (f"tyres {_driving(tuned)}", program_and_date())
+    return document(f"{vehicle.name} fitted to {names}", subtitles, parts)
 
 
 def _driving(tuned: TunedCar) -> str:
@@ -54,6 +66,36 @@ def _driving(tuned: TunedCar) -> str:
         road = None if isinstance(each.target, FrfTarget) else each.target.road
         states.append((tuned.start if road is None else road.rolling).vehicle.driving.words)
     return ", ".join(dict.fromkeys(states))
+
+
+def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> Markup:
+    """Return the changes and their effect in two sentences, and the first picture of the curves before and after."""
+    result, vehicle = tuned.result, tuned.start.vehicle
+    changes = []
+    for parameter in result.parameters[:MOST_NAMED]:
+        value, error = result.values[parameter.path], result.standard_errors[parameter.path]
+        unit = unit_of(vehicle, parameter.path)
+        spread = f" ± {number(error, 2)}" if math.isfinite(error) else ""
+        start = number(parameter.start, 4)
+        changes.append(f"{parameter_words(parameter.path)} of {number(value, 4)}{spread} {unit} instead of {start}")
+    if len(result.parameters) > MOST_NAMED:
+        changes.append(f"{len(result.parameters) - MOST_NAMED} more")
+    row = max(tuned.agreement, key=lambda row: row.before)
+    word = "falls" if row.after < row.before else "rises"
+    left_open = what_data_leave_open(result)
+    texts = [
+        f"The measurement asks for {', '.join(changes)}.",
+        f"The largest error against the measurement ({channel_words(row.channel)}, {row.measure}) "
+        f"{word} from {number(row.before)} to {number(row.after)} {row.unit}; the data "
+        + (f"leave open: {left_open[0]}." if left_open else "determine every parameter."),
+    ]
+    shown = [drawing(figures[name], name) for name in _curves(figures)[:1]]
+    return joined([tag("p", " ".join(texts), class_="answer"), *shown])
+
+
+def _curves(figures: Mapping[str, Callable[[Path], None]]) -> list[str]:
+    """Return the names of the figures with curves before and after the fit."""
+    return [name for name in figures if name not in (POSTERIOR, CORRELATION)]
 
 
 def _values(tuned: TunedCar) -> Markup:
@@ -95,11 +137,12 @@ def _left_open(tuned: TunedCar) -> Markup:
 
 def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> Markup:
     rows = [
-        (row.measurement, row.channel, row.measure, row.unit, number(row.before), number(row.after))
+        (row.measurement, channel_words(row.channel), row.measure, row.unit, number(row.before), number(row.after))
         for row in tuned.agreement
     ]
     heads = ("measurement", "channel", "error of", "unit", "before", "after")
-    drawings = [drawing(draw, name) for name, draw in figures.items() if name != POSTERIOR]
+    curves = _curves(figures)
+    drawings = [drawing(draw, name) for name, draw in figures.items() if name not in (POSTERIOR, *curves[:1])]
     return joined([table(heads, rows, text_columns=4), *drawings])
 
 

@@ -1,0 +1,76 @@
+"""Film in a report: as it is if it is small, encoded again if it is large, and left out with a sentence otherwise."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import re
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+
+from vehicle.drawing.rendering.backend import find_ffmpeg
+from vehicle.runs.report.film_section import BUDGET, embedded, film
+from vehicle.runs.report.finished_run import read_run
+
+pytest.importorskip("mediapy", reason="mediapy is missing: pip install 'vehicle-on-shaker[video]'")
+
+
+@pytest.fixture(scope="module")
+def large_film(tmp_path_factory):
+    """A film of two seconds in which a square moves over noise, and noise is hard to compress."""
+    from vehicle.drawing.rendering.film import write_film
+
+    path, generator = tmp_path_factory.mktemp("film") / "run.mp4", np.random.default_rng(1)
+    frames = generator.integers(0, 255, (60, 240, 320, 3)).astype(np.uint8)
+    for number, frame in enumerate(frames):
+        frame[80:160, 4 * number : 4 * number + 80] = 255
+    write_film(path, iter(frames), (240, 320))
+    return path
+
+
+def test_a_small_film_is_embedded_as_it_is(large_film, tmp_path):
+    assert embedded(large_film, large_film.stat().st_size, tmp_path) == large_film.read_bytes()
+
+
+def test_a_large_film_is_encoded_again_with_all_frames_and_the_same_bytes(large_film, tmp_path):
+    budget = 0.7 * large_film.stat().st_size
+    folders = [tmp_path / name for name in ("first", "second")]
+    for folder in folders:
+        folder.mkdir()
+    first, second = (embedded(large_film, budget, folder) for folder in folders)
+    assert first is not None and first == second and len(first) <= budget
+    (tmp_path / "again.mp4").write_bytes(first)
+    command = [
+        find_ffmpeg(),
+        "-loglevel",
+        "error",
+        "-i",
+        str(tmp_path / "again.mp4"),
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "gray",
+        "-",
+    ]
+    raw = subprocess.run(command, capture_output=True, check=True, timeout=60).stdout
+    pictures = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 240, 320)
+    assert len(pictures) == 60
+    assert pictures[30][100:140, 130:190].mean() > 200 > pictures[30][100:140, 10:60].mean(), "the square has moved"
+    assert embedded(large_film, 100.0, folders[0]) is None
+
+
+def test_the_report_has_the_film_a_picture_for_paper_or_a_sentence(reported, large_film):
+    run = read_run(reported.folder)
+    summary: Any = {**run.summary, "files": {**run.summary["files"], "video": str(large_film)}}
+    run = dataclasses.replace(run, summary=summary)
+    section = film(run)
+    assert section is not None
+    content = re.search(r'src="data:video/mp4;base64,([^"]+)"', section)
+    assert content is not None and len(base64.b64decode(content[1])) <= BUDGET
+    assert 'class="only-paper"' in section
+    left_out = film(run, share=1e-5)
+    assert left_out is not None and "is too large for this page" in left_out and "base64" not in left_out
+    assert film(read_run(reported.folder)) is None
