@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -165,7 +166,13 @@ def test_what_is_left_out_is_said(wishbones, struts):
     said = "\n".join(struts.notes)
     for text in ("driveline", "steering", "front: brakes", "Axle: inertia of the drive shafts", "Minimum Length"):
         assert f"{text}" in said and "left out" in said
-    assert "front: a main spring carries" in said and "the ground is" in said
+    assert "front: a main spring carries" in said and "higher under the rear wheels" in said
+    # The springs of the rear axle are lines: (4456 N - load) / 48 N/mm.
+    (note,) = (text for text in struts.notes if text.startswith("rear: a main spring"))
+    carried, there, longer = (int(word) for word in re.findall(r"-?\d+", note))
+    length = np.linalg.norm(np.subtract(WISHBONE["Spring"]["Location Chassis"], WISHBONE["Spring"]["Location Arm"]))
+    assert there == pytest.approx(48000 * (0.55 - length), abs=1) and "mm longer" in note
+    assert longer == pytest.approx((there - carried) / 48.0, abs=1)
     assert "Minimum Length" not in "\n".join(wishbones.notes)
 
 

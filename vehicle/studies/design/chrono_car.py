@@ -52,7 +52,7 @@ LEFT_OUT = {
 }
 LEFT_OUT_OF_AXLE = {
     "Left Brake Input File": "brakes",
-    "Antirollbar Input File": "anti-roll bar: set stabilizer and its points, or --roll-stiffness of `vehicle new`",
+    "Antirollbar Input File": "anti-roll bar: add the table stabilizer, its points and parts",
 }
 
 
@@ -312,14 +312,19 @@ def _assumptions(car: Car, axles: list[ImportedAxle]) -> list[str]:
     notes = []
     for word, axle in zip(AXLES, axles, strict=True):
         name = next(wheel.name for wheel in car.vehicle.composition.wheels if wheel.axle == word)
+        force = carried[f"main_spring_{name}"]
+        longer = float(np.interp(-force, axle.spring[:, 1], axle.spring[:, 0])) - axle.stretch
+        there = -float(np.interp(axle.stretch, axle.spring[:, 0], axle.spring[:, 1]))
         notes.append(
-            f"{word}: a main spring carries {carried[f'main_spring_{name}']:.0f} N; in Chrono it has "
-            f"{axle.spring_force:.0f} N at these points, and the car settles until both are equal"
+            f"{word}: a main spring carries {force:.0f} N; in Chrono it has {there:.0f} N at these points, and the car "
+            f"settles until it is {1e3 * abs(longer):.0f} mm {'longer' if longer > 0.0 else 'shorter'}"
         )
     front, rear = (axle.points["tyre_patch"][2] for axle in axles)
     if abs(rear - front) > HEIGHTS_AGREE:
-        notes.append(f"the ground is {1e3 * (rear - front):.0f} mm higher under the rear wheels, where they "
-                     "stand in Chrono's design position")  # fmt: skip
+        notes.append(
+            f"the ground is {1e3 * abs(rear - front):.0f} mm {'higher' if rear > front else 'lower'} under the rear "
+            "wheels, as they stand at these points"
+        )
     notes.append("assumed, as the file says behind each number: small masses of massless parts, horizontal stiffness "
                  "and carcass of the tyres, no pneumatic trail, seat rail")  # fmt: skip
     return notes

@@ -41,7 +41,8 @@ class ImportedAxle:
         sources: source by path in the axle.
         left_out: what the template has no place for.
         changed: numbers that are changed.
-        spring_force: force of the main spring at the hardpoints [N], compression positive.
+        spring: extension [m] and force [N] of the main spring, both positive in extension, (n, 2).
+        stretch: its extension at the hardpoints [m].
     """
 
     template: str
@@ -51,7 +52,8 @@ class ImportedAxle:
     sources: dict[str, str] = field(default_factory=dict)
     left_out: list[str] = field(default_factory=list)
     changed: list[str] = field(default_factory=list)
-    spring_force: float = 0.0
+    spring: Vector = field(default_factory=lambda: np.zeros((0, 2)))
+    stretch: float = 0.0
 
     def add_part(self, name: str, mass: float, cog: Vector, inertia: Vector | None, source: str) -> None:
         """Add a part with its tensor of inertia about its centre of gravity [kg m2]; None: as a rod."""
@@ -253,8 +255,8 @@ def _make_rigid(axle: ImportedAxle, name: str) -> None:
 
 
 def _add_spring(axle: ImportedAxle, spring: ChronoFile, line: Vector) -> None:
-    """Add the main spring; note its force at the hardpoints."""
-    stretch = float(np.linalg.norm(line)) - spring.number("Free Length")
+    """Add the main spring; note its law and its extension at the hardpoints."""
+    axle.stretch = float(np.linalg.norm(line)) - spring.number("Free Length")
     if "Spring Curve Data" in spring:
         points = spring.array("Spring Curve Data", -1, 2)
         slope = float(
@@ -263,17 +265,17 @@ def _add_spring(axle: ImportedAxle, spring: ChronoFile, line: Vector) -> None:
         axle.tables["main_spring"] = {"stiffness": slope}
         axle.tables["main_spring.table"] = {"displacement": points[:, 0].tolist(), "force": points[:, 1].tolist()}
         axle.sources["main_spring"] = f"Chrono {spring.source('Spring Curve Data')}"
-        axle.spring_force = -float(np.interp(stretch, *points.T))
+        axle.spring = points
     elif "Spring Coefficient" in spring:
         stiffness = spring.number("Spring Coefficient")
         axle.tables["main_spring"] = {"stiffness": stiffness}
         axle.sources["main_spring"] = f"Chrono {spring.source('Spring Coefficient')}"
-        axle.spring_force = -stiffness * stretch
+        axle.spring = np.array([[-1.0, -stiffness], [1.0, stiffness]])
     else:
         raise DataError(f"{spring.path}: {' / '.join(spring.inside)} has neither Spring Coefficient nor Spring Curve "
                         "Data; a map over deformation and velocity is not read; give a curve")  # fmt: skip
     if "Preload" in spring:
-        axle.spring_force += spring.number("Preload")
+        axle.spring = axle.spring - [0.0, spring.number("Preload")]
     if "Minimum Length" in spring or "Maximum Length" in spring:
         axle.left_out.append(f"{spring.source()}: stops at Minimum Length and Maximum Length; set them at damper.stop")
 
