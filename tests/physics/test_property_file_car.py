@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from tests.property_file_set import write_car
+from vehicle.commands.new import main
+from vehicle.model.parameters.toml_file import write_text
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
@@ -42,7 +44,14 @@ def test_the_damper_follows_its_file(from_files, runs):
 
 
 def test_the_numbers_of_the_run_are_those_of_the_files(from_files, tmp_path):
-    from vehicle.model.parameters.toml_file import write_text
-
     (tmp_path / "vehicle.toml").write_text(write_text(from_files.vehicle))
     assert load_vehicle(tmp_path / "vehicle.toml") == from_files.vehicle
+
+
+def test_a_new_car_takes_a_damper_file(tmp_path, capsys):
+    write_car(tmp_path)
+    assert main([str(tmp_path / "mine"), "--from", "sedan", "--damper-curve-front", str(tmp_path / "front.dpr")]) == 0
+    damper = load_vehicle(tmp_path / "mine" / "vehicle.toml").table["front"]["damper"]
+    assert damper["force"][0] == -1300.0 and damper["velocity"][-1] == 1.0
+    text = (tmp_path / "mine" / "vehicle.toml").read_text(encoding="utf-8")
+    assert "force = [-1300.0" in text and "# [N] given: front.dpr" in text

@@ -39,7 +39,14 @@ def parser() -> Parser:
         dest="source",
         required=True,
         metavar="CAR",
-        help="template: a shipped car with four wheels, as sedan or focus_road, or the file of a car",
+        help="template: a shipped car with four wheels, as sedan or focus_road, the file of a car, or chrono:FILE.json "
+        "of a vehicle of Project Chrono",
+    )
+    parser.add_argument(
+        "--chrono-tyre",
+        type=Path,
+        metavar="FILE.json",
+        help="tyre of all wheels of a vehicle of Chrono whose file names none",
     )
     parser.add_argument(
         "--numbers",
@@ -73,6 +80,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.model.parameters.shipped import vehicle_file
     from vehicle.runs.output.folder import output_folder, write_whole
     from vehicle.runs.output.free_names import named
+    from vehicle.studies.design.chrono_car import PREFIX, new_chrono_car
     from vehicle.studies.design.new_car import new_car, template_files
     from vehicle.studies.design.stated_numbers import NAMES, stated_numbers
 
@@ -82,15 +90,23 @@ def _job(options: argparse.Namespace) -> None:
     if name in CARS and options.folder == Path(name):
         raise ConfigurationError(f"NAME {name}: is the name of a shipped car, which --vehicle would read; take another")
     stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia")})
-    source = vehicle_file(options.source)
+    foreign = Path(options.source.removeprefix(PREFIX)) if options.source.startswith(PREFIX) else None
+    if options.chrono_tyre is not None and foreign is None:
+        raise ConfigurationError(
+            "--chrono-tyre: belongs to --from chrono:FILE.json; another car has its tyres in its file"
+        )
+    source = vehicle_file(options.source) if foreign is None else foreign
     try:
         folder = named(options.held, options.folder, force=options.force, protect=(source,))
     except ConfigurationError as error:
         raise ConfigurationError(str(error).replace("--output", "NAME", 1)) from None
-    result = new_car(name, options.source, stated)
+    if foreign is None:
+        result = new_car(name, options.source, stated)
+    else:
+        result = new_chrono_car(name, foreign, options.chrono_tyre, stated)
     with output_folder(folder, force=options.force) as temporary:
         write_whole(temporary / "vehicle.toml", lambda file: file.write_text(result.text, encoding="utf-8"))
-        for file in template_files(source, result.car):
+        for file in template_files(source, result.car) if foreign is None else ():
             content = file.read_bytes()
             write_whole(temporary / file.name, lambda path, content=content: path.write_bytes(content))  # type: ignore[misc]
     file = folder / "vehicle.toml"

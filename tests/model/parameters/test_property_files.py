@@ -87,6 +87,17 @@ def test_the_source_of_each_number_is_the_file(tmp_path):
     assert sources["front.damper.coulomb_friction"] != sources["front.damper.force"]
 
 
+def test_a_file_over_a_base_names_a_file_alone(tmp_path):
+    write_car(tmp_path)
+    (tmp_path / "other.dpr").write_text(dpr([(-500, -900), (500, 1100)]))
+    (tmp_path / "mine.toml").write_text('base = "vehicle.toml"\n[front.damper]\ncurve = "other.dpr"\n')
+    file = tmp_path / "mine.toml"
+    sources = {entry.path: entry.source for entry in parameter_list(load_vehicle(file), file)}
+    assert numbers(file, "front.damper.force") == [-900.0, 1100.0]
+    assert sources["front.damper.force"].startswith("other.dpr")
+    assert sources["front.main_spring.stiffness"].startswith("front.spr")
+
+
 def test_a_spring_of_a_test_bench_is_a_table(tmp_path):
     (tmp_path / "bench.csv").write_text("displacement [m],force [N]\n-0.2,-9000\n-0.1,-3000\n0,0\n0.1,3000\n")
     tables = {"main_spring": '[front.main_spring]\ncurve = "bench.csv"'}

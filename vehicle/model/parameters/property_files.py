@@ -174,7 +174,8 @@ def spring_of_points(points: Sequence[Point], table: str, where: str) -> dict[st
     """
     if not points[0][0] <= 0.0 <= points[-1][0]:
         raise DataError(f"{where}: a curve from {points[0][0]:g} to {points[-1][0]:g} m, must contain 0")
-    stiffness, scale = _slope(points), max(abs(f) for _, f in points)
+    # Without the round-off of the units.
+    stiffness, scale = float(f"{_slope(points):.12g}"), max(abs(f) for _, f in points)
     if all(abs(f - stiffness * x) <= 1e-9 * scale for x, f in points):
         return {"stiffness": stiffness}
     return {"stiffness": stiffness, table: {"displacement": [x for x, _ in points], "force": [f for _, f in points]}}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.curves import curve_sources
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.toml_file import read_table
@@ -36,7 +37,7 @@ def value_sources(file: Path) -> dict[str, str]:
         if beside.is_file() or base in CARS:
             sources = value_sources(beside if beside.is_file() else vehicle_file(base))
     sources.update(comments(file.read_text(encoding="utf-8")))
-    sources.update(curve_sources(table, file.parent))
+    sources.update(curve_sources(vehicle_table(file), file.parent))
     return sources
 
 

@@ -96,7 +96,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
     table = solved({**table, "name": name}, template, targets)
     sources |= {"name": "given", **_sources_of_targets(targets, stated, template)}
     car = new_car_of(table, template)
-    checks = _checks(car, template, stated)
+    checks = checks_of(car, template, stated)
     _require_met(checks)
     header = (
         f"{name}: made by `python -m vehicle new` from the template {template.name}.\n"
@@ -150,8 +150,14 @@ def _sources_of_targets(targets: list[Target], stated: StatedNumbers, template: 
     return sources
 
 
-def _checks(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
-    """Return all numbers of the new car with their stated values."""
+def checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[Check, ...]:
+    """Return all numbers of a car with their stated values.
+
+    Args:
+        car: the car.
+        template: the car that it was made from.
+        stated: stated numbers.
+    """
     kerb = kerb_model(car.vehicle.table, template)
     whole, loads = car_masses(kerb), axle_loads(kerb, template)
     wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
