@@ -193,12 +193,14 @@ def test_what_follows_a_parameter_is_not_named(reported, tmp_path):
     signal = json.loads((reported.folder / "summary.json").read_text())["command"].split(" --input ")[1]
     heavier = tmp_path / "heavier"
     words = ["--input", signal.split(" --output")[0].strip("'"), "--output", str(heavier), "--engine", "reduced"]
-    assert shaker([*words, "--quiet", "--set", "body.mass=900"]) == 0
+    changes = ["--set", "body.mass=900", "--set", "suspension_mount.stiffness.z=6e5"]
+    assert shaker([*words, "--quiet", *changes]) == 0
     run = read_run(heavier)
     base = base_run(run)
     assert base is not None
     assert len(changed_parameters([base.car.vehicle, run.car.vehicle])) > 3
-    assert "(body mass 900 instead of 813 kg)" in answer([base, run], [modes_of(base), modes_of(run)])
+    wanted = "(body mass 900 instead of 813 kg, front suspension mount stiffness z 600000 instead of 700000 N/m)"
+    assert wanted in answer([base, run], [modes_of(base), modes_of(run)])
 
 
 def test_parameters_are_in_words():

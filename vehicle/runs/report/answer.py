@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.names import point_words, side_of
+from vehicle.names import AXES, point_words, side_of
 from vehicle.runs.report.band_causes import main_path, paths, strongest
 from vehicle.runs.report.base_run import OF_THE_RUN
 from vehicle.runs.report.comfort_class import reactions
@@ -173,10 +173,7 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
     elif len(changed) > MOST_CHANGES:
         parts.append(f"{len(changed)} other parameters, among them {parameter_words(changed[0][0])}")
     else:
-        parts += [
-            f"{parameter_words(path)} {new}{f' instead of {old}' if old != MISSING else ''} {unit}".rstrip()
-            for path, unit, (old, new) in changed
-        ]
+        parts += [_change_words(path, unit, old, new) for path, unit, (old, new) in changed]
     inputs = [_input_words(each) for each in (first, run)]
     if inputs[0] != inputs[1]:
         parts.append(f"{inputs[1]} instead of {inputs[0]}")
@@ -194,8 +191,24 @@ def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[C
     """
     origins = [each.summary["vehicle"] for each in (first, run)]
     paths = [text.partition("=")[0].strip() for text in origins[1]["overrides"] if text not in origins[0]["overrides"]]
-    rows = [row for row in changed if any(row[0] == path or row[0].endswith(f".{path}") for path in paths)]
-    return rows if rows and origins[0]["file"] == origins[1]["file"] else list(changed)
+    # A component of a vector, as stiffness.z, is a part of the parameter.
+    paths = [path[:-2] if path[-2:] in (".x", ".y", ".z") else path for path in paths]
+    rows_of = [[row for row in changed if f".{row[0]}".endswith(f".{path}")] for path in paths]
+    if not rows_of or not all(rows_of) or origins[0]["file"] != origins[1]["file"]:
+        return list(changed)
+    return [row for row in changed if any(row in rows for rows in rows_of)]
+
+
+def _change_words(path: str, unit: str, old: str, new: str) -> str:
+    """Return a changed parameter in words: of a vector only the components that differ."""
+    values = [text[1:-1].split(", ") if text.startswith("[") else [text] for text in (old, new)]
+    if len(values[0]) != len(values[1]) or len(values[1]) != len(AXES):
+        return f"{parameter_words(path)} {new}{f' instead of {old}' if old != MISSING else ''} {unit}".rstrip()
+    return ", ".join(
+        f"{parameter_words(path)} {axis} {after} instead of {before} {unit}".rstrip()
+        for axis, before, after in zip(AXES, *values, strict=True)
+        if before != after
+    )
 
 
 def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes) -> str:
