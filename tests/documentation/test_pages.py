@@ -62,13 +62,13 @@ def test_python_examples_compute_what_the_page_says(site):
     execution = site.execution("docs/python.md")
     names = execution.names
     assert names["ride"].skip >= 2.0 and names["ride"].car.vehicle.driving.speed == pytest.approx(80 / 3.6)
-    comfort = names["table"].column("comfort_overall")
+    comfort = names["table"].column("unweighted")
     again = (
         names["sedan"]
         .varied({"front.damper.coulomb_friction": 120})
         .run(vehicle.Road("B", speed=80, duration=6), engine="reduced")
     )
-    assert comfort[1] == pytest.approx(again.comfort().overall, rel=1e-3) and comfort[0] != comfort[1]
+    assert comfort[1] == pytest.approx(again.comfort().unweighted.overall, rel=1e-3) and comfort[0] != comfort[1]
     (response,) = names["comparison"].responses
     assert 0.5 < response.frac < 0.9999
     path = "bushings.suspension_mount.stiffness.z"
