@@ -21,7 +21,7 @@ from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
-from vehicle.signals.records.table import Record
+from vehicle.signals.records.table import Record, Vector
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
@@ -314,10 +314,16 @@ def _until(signal: Signal, end: float) -> Signal:
     count = int(np.ceil(end / signal.timestep - 1e-6)) + 1
     if count >= signal.time.size or count < MINIMUM_SAMPLES:
         return signal
+
+    def beginning(columns: Mapping[str, Vector]) -> dict[str, Vector]:
+        return {wheel: values[:count] for wheel, values in columns.items()}
+
     return replace(
         signal,
         time=signal.time[:count],
-        displacement={wheel: values[:count] for wheel, values in signal.displacement.items()},
+        displacement=beginning(signal.displacement),
+        slope_velocity=beginning(signal.slope_velocity),
+        profile=beginning(signal.profile),
     )
 
 
