@@ -16,6 +16,7 @@ from scenarios.car_runs import CarRuns
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
@@ -95,7 +96,9 @@ class Point:
         value: value of the parameter.
         relative: comfort value over the comfort value of the reference [-].
         relative_error: standard error of the ratio, from the ratios of the single records [-].
-        comfort: comfort value [m/s2].
+        comfort: comfort value, `unweighted` [m/s2].
+        weighted: weighted RMS of the seat rail (ISO 2631-1) [m/s2].
+        relative_weighted: `weighted` over that of the reference [-].
         comfort_error: standard error, from the single records [m/s2].
         gaussian_error: standard error for a Gaussian road of this length, from the spectrum [m/s2].
         slip, slip_error: share of the time above the slip velocity, right damper [-].
@@ -108,6 +111,8 @@ class Point:
     relative: float
     relative_error: float
     comfort: float
+    weighted: float
+    relative_weighted: float
     comfort_error: float
     gaussian_error: float
     slip: float
@@ -125,8 +130,10 @@ Curves = Mapping[str, Sequence[Point]]
 def point(value: float, numbers: Sequence[Numbers], reference: Sequence[Numbers]) -> Point:
     """Return means over records, and the ratio to the reference on the same records."""
     rows = {name: np.array([record[name] for record in numbers]) for name in numbers[0]}
-    comfort, mean = rows["comfort"], {name: float(np.mean(row)) for name, row in rows.items()}
-    ratio = comfort / np.array([record["comfort"] for record in reference])
+    comfort, mean = rows[UNWEIGHTED], {name: float(np.mean(row)) for name, row in rows.items()}
+    ratio, ratio_weighted = (
+        rows[name] / np.array([record[name] for record in reference]) for name in (UNWEIGHTED, WEIGHTED)
+    )
     return Point(
         value=value,
         relative=float(np.mean(ratio)),
@@ -135,7 +142,10 @@ def point(value: float, numbers: Sequence[Numbers], reference: Sequence[Numbers]
         gaussian_error=float(np.sqrt(np.sum(rows["gaussian_error"] ** 2)) / len(numbers)),
         slip_error=standard_error(rows["slip"]),
         lowest_load=float(np.min(rows["lowest_load"])),
-        **{name: mean[name] for name in ("comfort", "slip", "saturated", "slip_left", "pulling")},
+        comfort=mean[UNWEIGHTED],
+        weighted=mean[WEIGHTED],
+        relative_weighted=float(np.mean(ratio_weighted)),
+        **{name: mean[name] for name in ("slip", "saturated", "slip_left", "pulling")},
     )
 
 

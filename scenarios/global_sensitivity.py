@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time as clock
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +29,7 @@ from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.folder import write_json, write_text
+from vehicle.signals.analysis.ride_comfort import MEANING, UNWEIGHTED, WEIGHTED
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_table import table_cases
@@ -149,7 +150,7 @@ def _job(options: argparse.Namespace) -> None:
     )
     seconds = clock.perf_counter() - started
     caption = (
-        f"comfort value (unweighted RMS of the seat rail, 2 to 50 Hz) on the {options.road} road, RMS "
+        f"comfort of the seat rail on the {options.road} road, RMS "
         f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, tyres "
         f"{all_tyre_words(cases)}, engine {engine}, seed {options.seed}"
     )
@@ -176,15 +177,32 @@ def _job(options: argparse.Namespace) -> None:
 
 def _evaluate(method: str, folder: Path, table: SweepTable, points: Matrix, caption: str, seed: int) -> str:
     """Draw and write the result of a method; returns its text."""
-    comfort = table.column("comfort")
-    if np.all(np.isnan(comfort)):
-        raise SimulationError(f"every run failed; the first: {table.failed[0][1]}")
     evaluate = {"sobol": _sobol, "morris": _morris, "lhs": _hypercube}[method]
-    data, text = evaluate(folder, points, comfort, caption, seed)
-    plain = {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in data.items()}
-    write_json(folder / "results.json", {"caption": caption, **plain})
-    spread = f"Comfort value {np.nanmean(comfort):.3f} +- {np.nanstd(comfort):.3f} m/s2 (mean and scatter)."
-    return f"{text}\n\n{spread}"
+    content: dict[str, object] = {"caption": caption}
+    texts = []
+    for name in (UNWEIGHTED, WEIGHTED):
+        comfort = table.column(name)
+        if np.all(np.isnan(comfort)):
+            raise SimulationError(f"every run failed; the first: {table.failed[0][1]}")
+        data, text = evaluate(_Result(folder, name), points, comfort, f"{name} {caption}", seed)
+        plain = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in data.items()}
+        content |= plain if name == UNWEIGHTED else {name: plain}
+        spread = f"{name}: {np.nanmean(comfort):.3f} +- {np.nanstd(comfort):.3f} m/s2 (mean and scatter)."
+        texts.append(f"## {name}: {MEANING[name]}\n\n{text}\n\n{spread}")
+    write_json(folder / "results.json", content)
+    return "\n\n".join(texts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Result:
+    """Folder of the files of one comfort value."""
+
+    folder: Path
+    name: str
+
+    def __truediv__(self, file: str) -> Path:
+        """Return the path of a figure; the name of the weighted value is in front of the name of the file."""
+        return self.folder / (file if self.name == UNWEIGHTED else f"{self.name}_{file}")
 
 
 Evaluation = tuple[dict[str, object], str]
@@ -193,7 +211,7 @@ Evaluation = tuple[dict[str, object], str]
 WHISKERS = "; whiskers: 95 % intervals (bootstrap)"
 
 
-def _sobol(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
+def _sobol(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
     """Draw first-order and total indices as bars with 95 % intervals, the largest on top; return entries and table."""
     sobol = sobol_indices(RANGES, comfort)
     order = np.argsort(sobol.total)
@@ -228,7 +246,7 @@ def _sobol(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: in
     )
 
 
-def _morris(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
+def _morris(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
     """Draw the scatter of the elementary effects over their mean size; return entries and table."""
     morris = morris_effects(RANGES, points, comfort, seed=seed)
     with figure_file(folder / "effects.png", (9.0, 5.6), "", caption + WHISKERS) as figure:
@@ -254,7 +272,7 @@ def _morris(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: i
     )
 
 
-def _hypercube(folder: Path, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
+def _hypercube(folder: _Result, points: Matrix, comfort: Matrix, caption: str, seed: int) -> Evaluation:
     """Draw the comfort value of every run over each parameter; return entries and table."""
     with figure_file(folder / "scatter.png", (13.0, 2.8 * -(-len(RANGES) // 5) + 0.6), "", caption) as figure:
         panels = figure.subplots(-(-len(RANGES) // 5), 5, sharey=True, squeeze=False)

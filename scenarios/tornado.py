@@ -24,6 +24,7 @@ from scenarios.study import QUICK_NOTE, car_study
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.parameters.paths import value_of
 from vehicle.signals.analysis.comfort import COMFORT_BAND
+from vehicle.signals.analysis.ride_comfort import WEIGHTED
 from vehicle.signals.excitation.exact_road import ROAD_RMS
 
 
@@ -182,7 +183,11 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
 
 def bar_table(bars: Sequence[Bar]) -> str:
     """Return the bars as a Markdown table."""
-    head = [cell for road in ROAD_RMS for cell in (f"{road}: comfort value at the low, high end [%]", "swing [points]")]
+    head = [
+        cell
+        for road in ROAD_RMS
+        for cell in (f"{road}: comfort value at the low, high end [%]", "swing [points]", f"{WEIGHTED} [%]")
+    ]
     rows = []
     for bar in bars:
         row = [bar.label + (f" ({bar.reason})" if bar.reason else ""), f"{bar.nominal:g}", f"{bar.low:g}, {bar.high:g}"]
@@ -192,6 +197,7 @@ def bar_table(bars: Sequence[Bar]) -> str:
                 ", ".join(f"{100.0 * point.relative:.2f} ± {number(100.0 * point.relative_error)}" for point in both)
             )
             row.append(f"{100.0 * bar.swing(road):.1f}")
+            row.append(", ".join(f"{100.0 * point.relative_weighted:.2f}" for point in both))
         rows.append(row)
     return markdown(["parameter", "nominal", "low, high end", *head], rows)
 

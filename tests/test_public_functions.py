@@ -126,9 +126,9 @@ def test_wrong_arguments_are_refused(focus, record, tmp_path):
         (lambda: compare_run(tmp_path, record, bands=(9.0, 3.0)), "must be increasing edges"),
         (lambda: write_report("nowhere", "report.html"), "nowhere: is no folder"),
         (lambda: write_report([tmp_path], "report.pdf"), r"this file is written as \.html"),
-        (lambda: optimise_car(focus, vary, "low.csv", ["comfort"], cars=4), "--cars 4: must be at least 8"),
-        (lambda: optimise_car(focus, vary, "low.csv", ["comfort"], samples=8), "only valid with tolerances"),
-        (lambda: optimise_car(focus, {VISCOUS: (1.0,)}, "low.csv", ["comfort"]), r"must be \(lower, upper\)"),
+        (lambda: optimise_car(focus, vary, "low.csv", ["unweighted"], cars=4), "--cars 4: must be at least 8"),
+        (lambda: optimise_car(focus, vary, "low.csv", ["unweighted"], samples=8), "only valid with tolerances"),
+        (lambda: optimise_car(focus, {VISCOUS: (1.0,)}, "low.csv", ["unweighted"]), r"must be \(lower, upper\)"),
         (lambda: replicate_drive(focus, record, {"knuckle_fr_acc_z": "z"}, wheels=("fr", "fl")), "2 plates"),
         (lambda: replicate_drive(focus, record, ["knuckle_fr_acc_z"], gain=2.0), "--gain 2: must be above 0"),
     ):

@@ -47,6 +47,7 @@ from scenarios.comfort_sensitivity.histories import (
 )
 from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
 from scenarios.study import QUICK_NOTE, car_study
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED
 from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 
@@ -209,7 +210,7 @@ def check_table(comfort: ComfortRuns) -> str:
         for name, car in corners(comfort).items():
             pair = [comfort(comfort.cases(car, road, engine=engine, count=1))[0] for engine in ENGINES]
             reduced, mujoco = pair
-            values = reduced["comfort"], mujoco["comfort"]
+            values = reduced[UNWEIGHTED], mujoco[UNWEIGHTED]
             reference = reference or values
             relative = (
                 f"{100.0 * value / base:.2f}" for value, base in zip(values[::-1], reference[::-1], strict=True)

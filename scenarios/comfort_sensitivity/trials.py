@@ -10,6 +10,7 @@ from scenarios.comfort_runs import SEAT_RAIL_Z, Changes, ComfortRuns, Numbers
 from scenarios.comfort_sensitivity.claims import RIGID_BODY, SOURCE
 from scenarios.comfort_sensitivity.histories import WINDOW_S, ends_of
 from scenarios.evidence import COMFORT_ENDS, LEVELS
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED
 from vehicle.signals.analysis.segments import window_extremes
 from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
@@ -89,4 +90,4 @@ def _cases(comfort: ComfortRuns, car: Changes, road: str, edge: float) -> list[C
 
 
 def _comfort(numbers: list[Numbers]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.array([record["comfort"] for record in numbers])
+    return np.array([record[UNWEIGHTED] for record in numbers])

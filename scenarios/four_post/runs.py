@@ -135,7 +135,7 @@ def run_motion(car: Car, motion: str, level: float, *, duration: float, engine: 
         level=level,
         engine=run.recording.statistics.engine,
         slip={wheel: run.slip_share(wheel) for wheel in dampers},
-        comfort=run.comfort().overall,
+        comfort=run.comfort().unweighted.overall,
         response=run.frf(asked) if response else None,
     )
 

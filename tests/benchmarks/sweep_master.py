@@ -22,8 +22,9 @@ from typing import Any
 import numpy as np
 
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
 from vehicle.studies.sweeps.case_result import Block, Result, row_text
-from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
+from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.plan import plan_sweep
 
 VARIED = ("damper.viscous", "damper.coulomb_friction", "bushings.suspension_mount.stiffness.z")

@@ -87,7 +87,7 @@ def test_doubling_road_and_friction_doubles_comfort_and_keeps_the_slip_in_scale(
     )
     single, two = observe([question(), question(double, rms=0.015)], tmp_path)
     # Rounding, and the 1e-9 N at which the friction forces of a step are called solved.
-    assert two.comfort == pytest.approx(2.0 * single.comfort, rel=1e-6)
+    assert two.unweighted == pytest.approx(2.0 * single.unweighted, rel=1e-6)
     assert two.slip == pytest.approx(single.slip, abs=1e-3)
     static = Car.load().model.static.tyre_load["fl"]
     assert two.lowest_load - static == pytest.approx(2.0 * (single.lowest_load - static), rel=1e-6)
@@ -103,7 +103,7 @@ def test_the_lead_is_left_out():
     assert late["pulling"] == 0.0
     # Parseval with an independent sum: lines of 1/8 Hz from 2 to 50 Hz, all three axes.
     power = sum(np.abs(np.fft.rfft(run[f"seat_rail_acc_{axis}"][3001:])[16:401]) ** 2 for axis in "xyz")
-    assert late["comfort"] == pytest.approx(np.sqrt(2.0 * np.sum(power)) / 8000, rel=1e-9)
+    assert late["unweighted"] == pytest.approx(np.sqrt(2.0 * np.sum(power)) / 8000, rel=1e-9)
     assert RoadMeasure(lead=0.0, wheel="fl")(run)["slip"] != late["slip"]
 
 
@@ -125,7 +125,13 @@ def test_a_run_that_fails_stops_the_study_with_its_reason(tmp_path):
 
 def observation(comfort, slip=0.3):
     others = {"slip": slip, "slip_left": 0.0, "saturated": 0.5, "pulling": 0.0}
-    return {"comfort": comfort, "gaussian_error": 0.02 * comfort, "lowest_load": 1000.0 * comfort, **others}
+    return {
+        "unweighted": comfort,
+        "weighted": 0.7 * comfort,
+        "gaussian_error": 0.02 * comfort,
+        "lowest_load": 1000.0 * comfort,
+        **others,
+    }
 
 
 def test_common_roads_make_the_error_of_a_ratio_small():

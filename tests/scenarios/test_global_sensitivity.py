@@ -46,6 +46,8 @@ def test_quick(method, tmp_path, capsys):
     values = {"sobol": "total", "morris": "mean_size", "lhs": "comfort"}[method]
     assert np.all(np.isfinite(content[values])) and len(content[values]) >= 10
     assert "engine reduced" in content["caption"]
+    assert np.all(np.isfinite(content["weighted"][values])) and content["weighted"][values] != content[values]
+    assert f"weighted_{figure}" in files
     # Going on computes nothing anew.
     assert main([*arguments, "--resume"]) == 0
     assert "# 0 runs computed" in (tmp_path / "out" / "timing.csv").read_text(encoding="utf-8")
@@ -54,8 +56,10 @@ def test_quick(method, tmp_path, capsys):
 def test_a_failed_run_leaves_a_hole_in_the_hypercube_and_is_named_by_the_indices(tmp_path):
     points = points_of("lhs", 24, 1)
     cases = table_cases([parameter.path for parameter in RANGES], points.tolist(), [ShortRoad()])
-    results = [Result(values={"comfort": 1.0 + index}) for index in range(23)] + [Result(reason="no grip")]
-    table = SweepTable(cases=cases, results=results, units={"comfort": "m/s2"}, made={})
+    results = [Result(values={"unweighted": 1.0 + index, "weighted": 2.0}) for index in range(23)] + [
+        Result(reason="no grip")
+    ]
+    table = SweepTable(cases=cases, results=results, units={"unweighted": "m/s2", "weighted": "m/s2"}, made={})
     assert "mean and scatter" in _evaluate("lhs", tmp_path, table, points, "caption", 0)
     assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["comfort"][-2:] == [23.0, None]
     with pytest.raises(DataError, match=r"1 of 2 base points have a failed run.* repeat with --retry-failed"):

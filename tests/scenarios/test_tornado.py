@@ -55,7 +55,7 @@ def test_conclusions_disagree_where_the_bars_do():
     assert all(claim.within for claim in tornado_claims(good))
     bad = [dataclasses.replace(good_bar, at_low=good_bar.at_high, at_high=good_bar.at_low) for good_bar in good]
     assert not any(claim.within for claim in tornado_claims(bad))
-    assert "| Coulomb friction | 1 | 0.8, 1.2 | 90.00 ± 0.10, 110.00 ± 0.10 | 20.0 |" in bar_table(good)
+    assert "| Coulomb friction | 1 | 0.8, 1.2 | 90.00 ± 0.10, 110.00 ± 0.10 | 20.0 | 90.00, 110.00 |" in bar_table(good)
 
 
 def test_a_swing_counts_the_nominal_car():

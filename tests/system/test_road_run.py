@@ -88,7 +88,7 @@ def test_seeds_of_a_road_give_the_error_of_a_difference(tmp_path, monkeypatch):
     arguments += ["--road", "A", "--speed", "100", "--duration", "4", "--output", "out", "--quiet"]
     assert sweep([*arguments, *(word for seed in "123" for word in ("--seed", seed))]) == 0
     with (tmp_path / "out" / "table.csv").open(encoding="utf-8", newline="") as file:
-        comfort = {(row["input"], row["*.damper.coulomb_friction"]): float(row["comfort_overall [m/s2]"])
+        comfort = {(row["input"], row["*.damper.coulomb_friction"]): float(row["unweighted [m/s2]"])
                    for row in csv.DictReader(file)}  # fmt: skip
     with (tmp_path / "out" / "differences.csv").open(encoding="utf-8", newline="") as file:
         *each, _, mean = csv.DictReader(file)

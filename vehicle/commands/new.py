@@ -39,7 +39,7 @@ def parser() -> Parser:
         dest="source",
         required=True,
         metavar="CAR",
-        help=f"template: a shipped car with four wheels ({', '.join(CARS)}), a vehicle file, or chrono:FILE.json of a "
+        help="template: a shipped car with four wheels, as sedan, the file of a car, or chrono:FILE.json of a "
         "vehicle of Project Chrono",
     )
     parser.add_argument(

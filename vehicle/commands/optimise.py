@@ -43,9 +43,9 @@ def parser() -> Parser:
         action="append",
         default=[],
         metavar="NUMBER[@INPUT]",
-        help="an objective: comfort, weighted, seat [m/s2], tyre_load, lowest_load, slip_share [-], travel [m]; one "
-        "axis or wheel is comfort_z, travel_fr; after the @ an input, as road_A_120 or the stem of a file, or mean or "
-        "worst of all; may be repeated",
+        help="an objective: unweighted, weighted, seat_unweighted, seat_weighted [m/s2], seat_value, tyre_load, "
+        "lowest_load, slip_share [-], travel [m]; one axis or wheel is weighted_z, travel_fr; after the @ an input, "
+        "as road_A_120 or the stem of a file, or mean or worst of all; may be repeated",
     )
     search.add_argument(
         "--maximise", action="append", default=[], metavar="NUMBER[@INPUT]", help="an objective to maximise"
@@ -96,7 +96,7 @@ def parser() -> Parser:
         "numbers",
     )
     engine_option(parser, "reduced")
-    skip_option(parser, 2.0)
+    skip_option(parser)
     jobs_option(parser)
     executor_option(parser)
     parser.add_argument(

@@ -29,7 +29,7 @@ def command_parser(name: str, description: str) -> Parser:
     return parser
 
 
-CAR_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}"
+CAR_HELP = f"folder or file of a car, or the name of a shipped car: {', '.join(CARS)}"
 VEHICLE_HELP = f"{CAR_HELP}; the car of Bommer 2006 by default"
 
 
@@ -139,16 +139,11 @@ def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
     )
 
 
-def skip_option(parser: argparse.ArgumentParser, of_a_file: float) -> None:
-    """Add --skip, the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`.
-
-    Args:
-        parser: parser of the command.
-        of_a_file: default for signals of a file [s].
-    """
+def skip_option(parser: argparse.ArgumentParser) -> None:
+    """Add --skip, the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
     text = (
         "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
-        f"default, more below 19 km/h, since a road rises from rest during the first second; {of_a_file:g} with --input"
+        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input"
     )
     parser.add_argument("--skip", type=float, metavar="S", help=text)
 

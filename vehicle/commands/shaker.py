@@ -58,7 +58,7 @@ def parser() -> Parser:
     output_options(parser, None, default="runs/<input stem>, or runs/road_C_80,")
     vehicle_options(parser)
     engine_option(parser, "mujoco")
-    skip_option(parser, 0.0)
+    skip_option(parser)
     parser.add_argument(
         "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
     )
@@ -193,6 +193,7 @@ def _job(options: argparse.Namespace) -> None:
                 slow=options.slow_motion,
                 exaggeration=options.exaggeration,
                 speed=None if drive is None or drive.speed is None else drive.speed / 3.6,
+                profile=(signal.time, signal.profile) if signal.profile else None,
             )
             progress = ProgressLine("film      ", enabled=not options.quiet)
             film(run, path, take, jobs=drawing_jobs(), progress=progress)

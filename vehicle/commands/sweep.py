@@ -51,7 +51,7 @@ def parser() -> Parser:
     )
     vehicle_options(parser)
     engine_option(parser, "auto")
-    skip_option(parser, 2.0)
+    skip_option(parser)
     jobs_option(parser)
     executor_option(parser)
     time_limit_option(parser)

@@ -37,7 +37,7 @@ def test_each_has_a_table_and_a_drawing(run, response):
     for one in (run.car, run, response):
         page = ElementTree.fromstring(one._repr_html_())  # well-formed
         assert page.find(".//table") is not None and page.find(".//{http://www.w3.org/2000/svg}svg") is not None
-    assert f"{run.comfort().overall:.3g} m/s²" in run._repr_html_()
+    assert f"{run.comfort().unweighted.overall:.4g} m/s²" in run._repr_html_()
 
 
 def test_plots_are_pictures(run, response, tmp_path):
@@ -98,7 +98,7 @@ def test_spectra_and_both_comfort_values(run):
     comfort = run.comfort()
     weighted = weighted_rms_of(run.recording.timestep, run.at("seat_rail"))
     assert comfort.weighted.overall == weighted[3] and comfort.weighted.z == weighted[2]
-    assert repr(comfort).startswith("comfort 0.") and "ISO 2631-1" in repr(comfort)
+    assert repr(comfort).startswith("seat rail: unweighted 0.") and "ISO 2631-1" in repr(comfort)
 
 
 def test_files_of_a_run(run, tmp_path):

@@ -41,7 +41,7 @@ def frequencies(car):
 
 def seat_rail(car, piece):
     """Return the RMS of the vertical acceleration of the seat rail, 2 to 50 Hz [m/s2]."""
-    return car.run(piece, engine="reduced").comfort().z
+    return car.run(piece, engine="reduced").comfort().unweighted.z
 
 
 def test_shapes_of_a_test_are_mapped_and_scaled(measured):

@@ -136,7 +136,7 @@ def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
     assert {name for name, check in checks.items() if check["stated"]} == {name.replace("-", "_") for name in SEDAN}
     assert max(abs(check["deviation"]) for check in checks.values()) < 1e-4
     road = Road("B", speed=80, duration=10)
-    same, sedan = (one.run(road, engine="reduced").comfort().overall for one in (car, Car.load("sedan")))
+    same, sedan = (one.run(road, engine="reduced").comfort().unweighted.overall for one in (car, Car.load("sedan")))
     validated(
         "Published cars",
         "sedan's numbers stated to `new`: comfort on a class B road at 80 km/h",
@@ -151,7 +151,7 @@ def test_the_numbers_of_the_sedan_give_its_comfort(tmp_path, capsys):
 def test_five_numbers_run_in_both_engines(tmp_path):
     numbers = {"kerb-mass": 1450, "front-axle-load": 800, "cog-height": 0.55, "wheelbase": 2.65, "track-front": 1.53}
     car = made(tmp_path / "five", *words(numbers))
-    values = [car.run(Road("B", speed=80, duration=3), engine=engine).comfort().overall for engine in
+    values = [car.run(Road("B", speed=80, duration=3), engine=engine).comfort().unweighted.overall for engine in
               ("reduced", "mujoco")]  # fmt: skip
     assert values[0] == pytest.approx(values[1], rel=0.05) and 0.3 < values[0] < 3.0
 

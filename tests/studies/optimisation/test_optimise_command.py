@@ -21,7 +21,7 @@ from vehicle.studies.sweeps.case_table import table_cases
 
 LOOSE = "damper.coulomb_friction=10"
 SKIP = 1.0
-TRADE = ["--minimise", "comfort", "--minimise", "tyre_load"]
+TRADE = ["--minimise", "unweighted", "--minimise", "tyre_load"]
 
 
 @pytest.fixture(scope="module")
@@ -48,13 +48,13 @@ def rows_of(path):
         return list(csv.DictReader(file))
 
 
-DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "comfort [m/s2]", "tyre_load [-]"
+DAMPING, COMFORT, LOAD = "damper.viscous [N s/m]", "unweighted [m/s2]", "tyre_load [-]"
 
 
 def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
     """Vary one parameter: each damper between the best for comfort and the best for the tyre is a compromise."""
     damping = np.linspace(500.0, 2500.0, 11)
-    measure = ride_measure(load_vehicle(), ("comfort", "tyre_load"), SKIP)
+    measure = ride_measure(load_vehicle(), ("unweighted", "tyre_load"), SKIP)
     cases = table_cases(["damper.viscous"], [(c,) for c in damping], [SignalFile(path=road, wheel="fl")], fixed=[LOOSE])
     results = evaluate(cases, measure)
     best = {}
@@ -65,30 +65,30 @@ def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
     front = rows_of(searched / "front.csv")
     dampings = [float(row[DAMPING]) for row in front]
     # The curves are flat at their minima, and 40 cars are few: 4 % of damping is 0.1 % of comfort.
-    assert dampings[0] == pytest.approx(best["comfort"], rel=0.04)
+    assert dampings[0] == pytest.approx(best["unweighted"], rel=0.04)
     assert dampings[-1] == pytest.approx(best["tyre_load"], rel=0.04)
-    assert dampings == sorted(dampings) and best["comfort"] < 0.9 * best["tyre_load"]
-    minimum = min(result.values["comfort"] for result in results)
+    assert dampings == sorted(dampings) and best["unweighted"] < 0.9 * best["tyre_load"]
+    minimum = min(result.values["unweighted"] for result in results)
     assert float(front[0][COMFORT]) <= minimum * 1.0001
-    assert next(row["name"] for row in front if row["name"]) == "best comfort"
+    assert next(row["name"] for row in front if row["name"]) == "best unweighted"
 
 
 def test_files_of_a_search(road, searched):
     summary = json.loads((searched / "summary.json").read_text(encoding="utf-8"))
     assert (searched / "front.png").read_bytes()[:4] == b"\x89PNG"
     assert summary["cars"]["tried"] == 40 == len(rows_of(searched / "cars.csv")) - 1
-    assert set(summary["points"]) == {"best comfort", "best tyre_load", "knee"}
+    assert set(summary["points"]) == {"best unweighted", "best tyre_load", "knee"}
     # The unmodified car is the first row; its damping is that of its vehicle file.
     base = rows_of(searched / "cars.csv")[0]
-    assert base[DAMPING] == "" and float(base[COMFORT]) == summary["base"]["comfort"]
+    assert base[DAMPING] == "" and float(base[COMFORT]) == summary["base"]["unweighted"]
     assert rows_of(searched / "cars.csv")[1][DAMPING] == "2250.0"
     # The vehicle file of the knee point and its overrides give its values.
     knee = summary["points"]["knee"]
     (result,) = evaluate(
         table_cases([], [()], [SignalFile(path=road, wheel="fl")], vehicle=searched / knee["vehicle"]),
-        ride_measure(load_vehicle(), ("comfort",), SKIP),
+        ride_measure(load_vehicle(), ("unweighted",), SKIP),
     )
-    assert result.values["comfort"] == pytest.approx(knee["numbers"]["comfort"], rel=1e-9)
+    assert result.values["unweighted"] == pytest.approx(knee["numbers"]["unweighted"], rel=1e-9)
     damping = knee["parameters"]["damper.viscous"]
     assert knee["overrides"] == [LOOSE, f"front.damper.viscous={damping!r}"]
 
@@ -115,15 +115,15 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     assert main(arguments(road, folder, *options)) == 0
     said = capsys.readouterr().out
     assert "values: worst of 2 cars within the tolerances" in said
-    assert "knee: of 64 new cars " in said and " % are as good in comfort, " in said
+    assert "knee: of 64 new cars " in said and " % are as good in unweighted, " in said
     sample = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["made_cars"]
     assert sample["statistic"] == "worst of 2 cars" and sample["new_cars"] == 64
     # Two thirds to three quarters are expected to be no worse than the worst of two.
-    assert 0.3 < sample["share_as_good"]["knee"]["comfort"] < 1.0
+    assert 0.3 < sample["share_as_good"]["knee"]["unweighted"] < 1.0
     assert f"front of {searched}: hypervolume +" in said
     assert "8 cars, " in said and "knee: --set damper.coulomb_friction=10 --set front.damper.viscous=" in said
     for row in rows_of(folder / "front.csv"):
-        assert float(row[COMFORT]) > 0.0 and row["comfort without tolerances [m/s2]"]
+        assert float(row[COMFORT]) > 0.0 and row["unweighted without tolerances [m/s2]"]
     beside = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["beside"]
     # With all cars within tolerances the worst of them is worse than the best without.
     assert beside["hypervolume_change"] > 0.0 and beside["mean_distance"] > 0.0
@@ -133,30 +133,34 @@ def test_tolerances_and_another_front_beside(road, searched, tmp_path, capsys):
     ("more", "code", "said"),
     [
         ([], 2, "no objective; add --minimise"),
-        (["--minimise", "comfrt"], 2, "focus has no quantity 'comfrt'; choose from comfort, comfort_x"),
+        (["--minimise", "comfrt"], 2, "focus has no quantity 'comfrt'; choose from unweighted, unweighted_x"),
         (
-            ["--minimise", "comfort", "--vary", "damper.viscos=1:2"],
+            ["--minimise", "unweighted", "--vary", "damper.viscos=1:2"],
             2,
             "--vary damper.viscos: no parameter damper.viscos",
         ),
-        (["--minimise", "comfort", "--vary", "damper.friction_law=1:2"], 2, "no number of a vehicle"),
-        (["--minimise", "comfort", "--vary", "front.damper.viscous=1:2"], 2, "set by 2 of these options"),
+        (["--minimise", "unweighted", "--vary", "damper.friction_law=1:2"], 2, "no number of a vehicle"),
+        (["--minimise", "unweighted", "--vary", "front.damper.viscous=1:2"], 2, "set by 2 of these options"),
         (
-            ["--minimise", "comfort", "--vary", "body.mass=-5:900"],
+            ["--minimise", "unweighted", "--vary", "body.mass=-5:900"],
             2,
             "--vary body.mass=-5:900: body.mass: found -5.0 kg, must be",
         ),
-        (["--minimise", "comfort", "--cars", "2"], 2, "--cars 2: must be at least 8"),
-        (["--minimise", "comfort", "--samples", "4"], 2, "--samples: belongs to --tolerance PATH=SIZE"),
-        (["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "2"], 2, "--quantile 2: must be 0.5"),
+        (["--minimise", "unweighted", "--cars", "2"], 2, "--cars 2: must be at least 8"),
+        (["--minimise", "unweighted", "--samples", "4"], 2, "--samples: belongs to --tolerance PATH=SIZE"),
         (
-            ["--minimise", "comfort", "--tolerance", "body.mass=1%", "--quantile", "0.99", "--samples", "8"],
+            ["--minimise", "unweighted", "--tolerance", "body.mass=1%", "--quantile", "2"],
+            2,
+            "--quantile 2: must be 0.5",
+        ),
+        (
+            ["--minimise", "unweighted", "--tolerance", "body.mass=1%", "--quantile", "0.99", "--samples", "8"],
             2,
             "--quantile 0.99: needs at least 128 cars, found --samples 8; set --samples 128",
         ),
-        (["--minimise", "comfort", "--beside", "nowhere"], 3, "--beside nowhere: contains no front.csv with the "),
+        (["--minimise", "unweighted", "--beside", "nowhere"], 3, "--beside nowhere: contains no front.csv with the "),
         (
-            ["--minimise", "comfort", "--limit", "travel<=1e-9", "--cars", "8"],
+            ["--minimise", "unweighted", "--limit", "travel<=1e-9", "--cars", "8"],
             4,
             "0 of 8 cars satisfy all limits; the ",
         ),

@@ -25,8 +25,8 @@ def test_wishes_over_inputs():
     values = np.array([[1.0, 3.0], [5.0, 2.0]])  # (cars, inputs)
     wanted = {"smooth": [1.0, 5.0], "rough": [3.0, 2.0], "mean": [2.0, 3.5], "worst": [3.0, 5.0]}
     for name, numbers in wanted.items():
-        (criterion,) = parsed_criteria([f"comfort@{name}"], [], [], ROADS)
-        assert criterion.of(values, ROADS).tolist() == numbers and criterion.label == f"comfort@{name}"
+        (criterion,) = parsed_criteria([f"unweighted@{name}"], [], [], ROADS)
+        assert criterion.of(values, ROADS).tolist() == numbers and criterion.label == f"unweighted@{name}"
     (large,) = parsed_criteria([], ["lowest_load@worst"], [], ROADS)
     assert large.of(values, ROADS).tolist() == [1.0, 2.0]
     _, lower, upper = parsed_criteria(["x"], [], ["lowest_load >= 0.5", "travel<=-2"], ["smooth"])
@@ -40,15 +40,23 @@ def test_wishes_over_inputs():
 @pytest.mark.parametrize(
     ("minimise", "limits", "said"),
     [
-        ([], [], "no objective; add --minimise comfort, or another quantity, once or more"),
+        ([], [], "no objective; add --minimise unweighted, or another quantity, once or more"),
         (
-            ["comfort"],
+            ["unweighted"],
             [],
-            "--minimise comfort: there are 2 inputs; choose one of comfort@smooth, comfort@rough, comfort@mean, "
-            "comfort@worst",
+            "--minimise unweighted: there are 2 inputs; choose one of unweighted@smooth, unweighted@rough, "
+            "unweighted@mean, unweighted@worst",
         ),
-        (["comfort@wet"], [], "--minimise comfort@wet: no input 'wet'; use one of smooth, rough, mean, worst after @"),
-        (["comfort@mean", "comfort@mean"], [], "comfort@mean: specified more than once; remove the repetition"),
+        (
+            ["unweighted@wet"],
+            [],
+            "--minimise unweighted@wet: no input 'wet'; use one of smooth, rough, mean, worst after @",
+        ),
+        (
+            ["unweighted@mean", "unweighted@mean"],
+            [],
+            "unweighted@mean: specified more than once; remove the repetition",
+        ),
         (["x@mean"], ["travel<0.1"], "--limit travel<0.1: must be NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06"),
         (["x@mean"], ["travel<=nan"], "--limit travel<=nan: must be NUMBER<=VALUE or NUMBER>=VALUE, as travel<=0.06"),
     ],

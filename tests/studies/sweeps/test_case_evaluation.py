@@ -10,12 +10,13 @@ import pytest
 
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import evaluate
-from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
+from vehicle.studies.sweeps.measure import ComfortMeasure
 
 MEASURE = ComfortMeasure(skip=0.2)
 ROADS = [ShortRoad(name="one"), ShortRoad(name="two", seed=2)]
@@ -49,17 +50,17 @@ def test_rows_are_those_of_single_runs(cases, batch_results):
         run = Car.load(None, case.overrides).run(case.source.signal(), engine="reduced", channels=MEASURE.channels)
         for name, value in MEASURE(run).items():
             # Error of the longer step. A second of road has 800 samples after the lead: a share changes by one sample.
-            slack = {"rel": 2e-3} if "comfort" in name or "weighted" in name else {"abs": 1.5 / 800}
+            slack = {"rel": 2e-3} if "weighted" in name else {"abs": 1.5 / 800}
             if name in WAVE_NAMES:  # parts of a complex number, which may be near zero
-                slack = {"abs": 2e-3 * result.values["comfort_overall"]}
+                slack = {"abs": 2e-3 * result.values["unweighted"]}
             assert result.values[name] == pytest.approx(value, nan_ok=True, **slack)
         weighted = weighted_rms_of(
             run.recording.timestep, [run[f"seat_rail_acc_{axis}"] for axis in "xyz"], skip=MEASURE.skip
         )
-        assert result.values["seat_rail_weighted_overall"] == pytest.approx(weighted[3], rel=2e-3)
+        assert result.values["weighted"] == pytest.approx(weighted[3], rel=2e-3)
         fine = replace(MEASURE, timestep=1.25e-4)
         (near,) = evaluate([case], fine)
-        assert near.values["comfort_overall"] == pytest.approx(fine(run)["comfort_overall"], rel=2e-4)
+        assert near.values["unweighted"] == pytest.approx(fine(run)["unweighted"], rel=2e-4)
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class Picky(ComfortMeasure):
         values = super().of(runs)
         if (values["slip_share_fr"] > 0.25).any():
             raise ValueError("slips too much")
-        return values | {"comfort_x": np.where(values["slip_share_fr"] < 0.1, math.inf, values["comfort_x"])}
+        return values | {"unweighted_x": np.where(values["slip_share_fr"] < 0.1, math.inf, values["unweighted_x"])}
 
 
 def test_only_the_run_that_fails_fails(cases, batch_results):
@@ -87,7 +88,7 @@ def test_only_the_run_that_fails_fails(cases, batch_results):
         if share > 0.25:
             assert result.reason == "ValueError: slips too much" and not result.values
         elif share < 0.1:
-            assert result.reason.startswith("SimulationError: comfort_x: infinite")
+            assert result.reason.startswith("SimulationError: unweighted_x: infinite")
         else:
             assert numbers([result]) == numbers([before])
 

@@ -19,6 +19,7 @@ import pytest
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, Worker, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps import executors
 from vehicle.studies.sweeps.case import SignalFile
@@ -26,7 +27,7 @@ from vehicle.studies.sweeps.case_keys import case_keys
 from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.dispatcher import DIED, overdue
 from vehicle.studies.sweeps.executors import executor_factory
-from vehicle.studies.sweeps.measure import WAVE_NAMES, ComfortMeasure
+from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
 FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
@@ -65,7 +66,7 @@ def test_numbers_are_those_of_the_run():
     values = measure(run)
     assert set(values) == set(swept) == {*measure.units, *WAVE_NAMES}
     # A sweep uses a longer time step (`tests/studies/sweeps/test_case_evaluation.py`).
-    assert swept["comfort_overall"] == pytest.approx(values["comfort_overall"], rel=2e-3)
+    assert swept["unweighted"] == pytest.approx(values["unweighted"], rel=2e-3)
     rate = 1.0 / run.recording.timestep
     later, limit = run["damper_fr_velocity"][round(rate) :], run.car.vehicle.damper.slip_velocity
     assert values["slip_share_fr"] == pytest.approx(float((abs(later) > limit).mean()), abs=1e-12)
@@ -73,11 +74,11 @@ def test_numbers_are_those_of_the_run():
     first = run.time[abs(run["damper_fr_velocity"]) > limit][0]
     assert values["first_slip_fr"] == pytest.approx(float(first), abs=1e-12) and first < 1.0
     # Comfort excludes the first second, so it is near but not equal to the comfort of the whole run.
-    assert values["comfort_overall"] == pytest.approx(run.comfort().overall, rel=0.3)
-    assert values["comfort_overall"] != pytest.approx(run.comfort().overall, rel=1e-3)
-    squares = sum(values[f"comfort_{axis}"] ** 2 for axis in "xyz")
-    assert values["comfort_overall"] == pytest.approx(math.sqrt(squares), rel=1e-12)
-    assert 0.0 < values["comfort_error"] < 0.2
+    assert values["unweighted"] == pytest.approx(run.comfort().unweighted.overall, rel=0.3)
+    assert values["unweighted"] != pytest.approx(run.comfort().unweighted.overall, rel=1e-3)
+    squares = sum(values[f"unweighted_{axis}"] ** 2 for axis in "xyz")
+    assert values["unweighted"] == pytest.approx(math.sqrt(squares), rel=1e-12)
+    assert 0.0 < values["unweighted_error"] < 0.2
     assert table.results[0].engine == "reduced"
 
 
@@ -92,9 +93,9 @@ def test_one_and_two_workers_make_the_same_table_bit_for_bit(tmp_path):
     assert texts[0] == texts[1]
     lines = texts[0].decode().splitlines()
     assert len(lines) == 5
-    assert lines[0].startswith("input,damper.coulomb_friction,comfort_x [m/s2],")
-    assert lines[0].endswith("seat_rail_weighted_overall [m/s2],engine,failed because")
-    assert ",first_slip_fl [s],seat_rail_weighted_x [m/s2]," in lines[0]
+    assert lines[0].startswith("input,damper.coulomb_friction,unweighted_x [m/s2],")
+    assert lines[0].endswith("first_slip_fl [s],engine,failed because")
+    assert ",unweighted [m/s2],weighted_x [m/s2]," in lines[0]
     origin = json.loads((tmp_path / "1" / "sweep.json").read_text(encoding="utf-8"))
     assert origin["runs"] == 4 and origin["failed"] == [] and origin["engines_asked"] == ["reduced"]
 

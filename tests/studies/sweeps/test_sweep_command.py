@@ -39,14 +39,14 @@ def test_variations_make_a_table(signal, tmp_path, capsys):
     assert read_variations(output / "table.csv") == (varied, [("2000", "62.5", "7e5"), ("2000", "250", "7e5")])
     assert [row["damper.coulomb_friction"] for row in rows] == ["62.5", "250"]
     assert {row["damper.viscous"] for row in rows} == {"2000"} and {row["input"] for row in rows} == {"road"}
-    assert float(rows[0]["comfort_overall [m/s2]"]) != float(rows[1]["comfort_overall [m/s2]"]) > 0.0
+    assert float(rows[0]["unweighted [m/s2]"]) != float(rows[1]["unweighted [m/s2]"]) > 0.0
     assert {row["engine"] for row in rows} == {"reduced"}
     with (output / "differences.csv").open(encoding="utf-8", newline="") as file:
         first, second = csv.DictReader(file)
     assert (first["difference [m/s2]"], first["half_width_95 [m/s2]"]) == ("0", "0")
-    comfort = [float(row["comfort_overall [m/s2]"]) for row in rows]
+    comfort = [float(row["unweighted [m/s2]"]) for row in rows]
     assert float(second["difference [m/s2]"]) == pytest.approx(comfort[1] - comfort[0], rel=1e-4)
-    error = float(rows[0]["comfort_error [-]"]) * comfort[0]
+    error = float(rows[0]["unweighted_error [-]"]) * comfort[0]
     assert float(first["standard_error [m/s2]"]) == pytest.approx(error, rel=1e-4)
     assert float(second["standard_error_of_difference [m/s2]"]) > 0.0
     # A second call is rejected, or continues with --resume.

@@ -12,7 +12,7 @@ from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
-UNITS = {"comfort_overall": "m/s2", "seat_rail_weighted_overall": "m/s2"}
+UNITS = {"unweighted": "m/s2", "weighted": "m/s2"}
 
 
 def table_of(values, paths, inputs=("a.csv", "b.csv")):
@@ -24,7 +24,7 @@ def table_of(values, paths, inputs=("a.csv", "b.csv")):
             texts = tuple(f"{path}={value}" for path, value in zip(paths, row, strict=True))
             cases.append(Case(source=SignalFile(path=name, wheel="fl"), overrides=texts))
             weighted = number + 1.0 + 2.0 * place
-            results.append(Result(values={"comfort_overall": 2.0 * weighted, "seat_rail_weighted_overall": weighted}))
+            results.append(Result(values={"unweighted": 2.0 * weighted, "weighted": weighted}))
     return SweepTable(cases=cases, results=results, units=UNITS, made={})
 
 

@@ -4,8 +4,8 @@ car = Car.load()
 run = car.run("low.csv")              # or Road("C", speed=80), or a Signal
 run["seat_rail_acc_z"]                # time history
 run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
-run.comfort().overall                 # comfort value of Bommer 2006: unweighted RMS of the seat rail, 2 to 50 Hz
-run.comfort().weighted.overall        # weighted RMS of ISO 2631-1
+run.comfort().unweighted.overall      # unweighted RMS of the seat rail, 2 to 50 Hz (Bommer 2006)
+run.comfort().weighted.overall        # weighted RMS (ISO 2631-1)
 """
 
 from vehicle.runs.car.car import Car

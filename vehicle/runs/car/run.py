@@ -21,9 +21,9 @@ from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
-from vehicle.signals.analysis.comfort import COMFORT_BAND, PointComfort, WeightedComfort, comfort_value
+from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.motion_response import MotionResponse
-from vehicle.signals.analysis.seat_value import weighted_rms_of
+from vehicle.signals.analysis.ride_comfort import RunComfort, run_comfort
 from vehicle.signals.analysis.slip import first_slip, slip_share
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.record_spectra import recorded_spectra
@@ -142,19 +142,32 @@ class Run:
         names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
         return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
 
-    def comfort(self, point: str = "seat_rail") -> PointComfort:
-        """Return the comfort at an output point over the evaluated span, per axis and overall [m/s2].
+    def comfort(self, point: str = "seat_rail") -> RunComfort:
+        """Return both comfort values over the evaluated span, by axis and overall [m/s2].
 
-        Unweighted RMS in 2 to 50 Hz (Bommer 2006); the band ends at the end of the band of the signal. `weighted`
-        contains the weighted RMS as on a seat (ISO 2631-1: Wk, Wd). Both are the values of the report and of
-        `summary.json`. A sweep evaluates the same measures at its longer step: within 2e-4 on the shipped cars.
+        `unweighted` is the RMS in 2 to 50 Hz (Bommer 2006); the band ends at the end of the band of the signal.
+        `weighted` is the RMS weighted as on a seat (ISO 2631-1: Wk, Wd). At the seat rail of a car with a seat,
+        `cushion` has both on the cushion and `seat_value` the SEAT value. Report, `summary.json`, sweeps and searches
+        have the same values, under the names of `values`: bitwise with the MuJoCo engine, within 1e-5 with the
+        reduced engine, which computes many cars in single precision.
+
+        Args:
+            point: output point of the car, as "seat_rail".
         """
-        step = self.recording.timestep
-        value = comfort_value(step, self.at(point), self.signal.band(COMFORT_BAND))
-        axes = [self.recording[f"{point}_acc_{axis}"] for axis in AXES]
-        x, y, z, overall = weighted_rms_of(step, axes, skip=self.skip)
-        weighted = WeightedComfort(x=float(x), y=float(y), z=float(z), overall=float(overall))
-        return PointComfort(x=value.x, y=value.y, z=value.z, overall=value.overall, band=value.band, weighted=weighted)
+
+        def at(name: str) -> npt.NDArray[np.float64]:
+            return np.stack([self.recording[f"{name}_acc_{axis}"] for axis in AXES])
+
+        recorded = all(f"seat_acc_{axis}" in self.recording.channels for axis in AXES)
+        seated = point == "seat_rail" and self.car.vehicle.seated and recorded
+        return run_comfort(
+            self.recording.timestep,
+            at(point),
+            at("seat") if seated else None,
+            skip=self.skip,
+            band=self.signal.band(COMFORT_BAND),
+            point=point.replace("_", " "),
+        )
 
     def psd(self, channels: Sequence[str] | None = None) -> RunSpectra:
         """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.
@@ -222,7 +235,8 @@ class Run:
         if not self.recording.poses.size:
             raise ConfigurationError(f"{file}: the reduced engine stores no poses; run the car with engine='mujoco'")
         speed = (self.road or {}).get("speed_kmh")
-        driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None)
+        profile = (self.signal.time, self.signal.profile) if self.signal.profile else None
+        driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None, profile=profile)
         film(self, Path(file), take or driven, progress=progress)
         return Path(file)
 

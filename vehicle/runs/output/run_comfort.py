@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 
 from vehicle.names import AXES
@@ -59,7 +61,7 @@ def _recorded(run: Run, point: str) -> bool:
 def _at(run: Run, point: str) -> ComfortSummary:
     value = run.comfort(point)
     xyz = [run[f"{point}_acc_{axis}"] for axis in AXES]
-    rms: dict[str, float | None] = {"x": value.x, "y": value.y, "z": value.z, "overall": value.overall}
+    rms: dict[str, float | None] = {**asdict(value.unweighted)}
     iso = evaluate(run.recording.timestep, xyz, skip=run.skip, from_rest=True, highest=run.signal.highest)
     if run.signal.highest is None:
         return {"rms_2_50_hz": rms, "iso2631": iso}

@@ -35,32 +35,6 @@ class ComfortValue:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class WeightedComfort:
-    """Weighted RMS accelerations on a seat (ISO 2631-1: Wd for x and y, Wk for z) [m/s2]."""
-
-    x: float
-    y: float
-    z: float
-    overall: float
-    """vector sum sqrt(x^2 + y^2 + z^2) [m/s2]"""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PointComfort(ComfortValue):
-    """Comfort at an output point by both measures: unweighted RMS in a band, and `weighted`."""
-
-    weighted: WeightedComfort
-
-    def __repr__(self) -> str:
-        """Return a summary in one line."""
-        low, high = self.band
-        return (
-            f"comfort {self.overall:.4g} m/s2 (unweighted RMS, {low:g} to {high:g} Hz), weighted "
-            f"{self.weighted.overall:.4g} m/s2 (ISO 2631-1)"
-        )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Settling:
     """Change of the RMS from the first to the second half of a record."""
 

@@ -181,8 +181,8 @@ def optimise_car(
         vary: path to (lower, upper) bound in the unit of the parameter, as {"front.damper.viscous": (800, 4000)};
             "*.damper.viscous" sets all dampers alike.
         inputs: files or names of shipped ones, roads, signals; one or several.
-        minimise, maximise: objectives, as "comfort", "tyre_load", "travel", "slip_share"; with several inputs
-            "comfort@NAME", "comfort@mean" or "comfort@worst".
+        minimise, maximise: objectives, as "unweighted", "weighted", "tyre_load", "travel"; with several inputs
+            "weighted@NAME", "weighted@mean" or "weighted@worst".
         limits: constraints, as "travel<=0.06", in the unit of the value.
         tolerances: path to half width of the production tolerance: in the unit of the parameter, or as "15%".
         samples: number of cars within the tolerances for each car tried; 8 by default.
@@ -191,7 +191,7 @@ def optimise_car(
         population: cars of a generation, at least 8.
         seed: seed of the search, at least 0; equal seeds give equal searches.
         engine: as in `Car.run`.
-        skip: start of the evaluation [s]; 2 by default, on a road see `Car.run`.
+        skip: start of the evaluation [s]; by default as in `Car.run`.
         jobs: number of processes; the result does not depend on it.
         folder: existing folder in which every car is stored, for the next call to continue; None stores no cars.
         check: run the named cars with MuJoCo too.

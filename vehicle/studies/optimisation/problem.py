@@ -42,7 +42,7 @@ class Criterion:
 
     @property
     def label(self) -> str:
-        """Return quantity and input, as "comfort@road_A_120"."""
+        """Return quantity and input, as "unweighted@road_A_120"."""
         return f"{self.number}@{self.input_name}" if self.input_name else self.number
 
     @property
@@ -172,7 +172,7 @@ def parsed_criteria(
     criteria = [_criterion("--minimise", text, 1.0, math.nan, inputs) for text in minimise]
     criteria += [_criterion("--maximise", text, -1.0, math.nan, inputs) for text in maximise]
     if not criteria:
-        raise ConfigurationError("no objective; add --minimise comfort, or another quantity, once or more")
+        raise ConfigurationError("no objective; add --minimise unweighted, or another quantity, once or more")
     for text in limits:
         parts = re.fullmatch(r"(.+?)\s*(<=|>=)\s*(.+)", text)
         bound = _number(parts[3]) if parts else math.nan

@@ -12,25 +12,36 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Run
-from vehicle.signals.analysis.comfort import comfort_values
-from vehicle.signals.analysis.seat_value import weighted_rms_of
+from vehicle.signals.analysis.ride_comfort import (
+    SEAT_PREFIX,
+    SEAT_VALUE,
+    UNWEIGHTED,
+    WEIGHTED,
+    comfort_columns,
+    comfort_units,
+)
 from vehicle.signals.analysis.slip import slip_shares
-from vehicle.studies.sweeps.measure import of_one
+from vehicle.studies.sweeps.measure import STEP, of_one
 from vehicle.studies.sweeps.run_batch import Runs, Vector
 
 RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 SEAT = tuple(f"seat_acc_{axis}" for axis in AXES)
 
 QUANTITIES = {
-    "comfort": ("m/s2", "unweighted RMS of the seat rail, 2 to 50 Hz, all axes; comfort_x, _y, _z for an axis"),
-    "weighted": ("m/s2", "weighted RMS of the seat rail (ISO 2631-1), all axes"),
-    "seat": ("m/s2", "weighted RMS of the seat (ISO 2631-1), all axes, of a car with an occupant"),
+    "unweighted": ("m/s2", "unweighted RMS of the seat rail, 2 to 50 Hz, all axes; unweighted_z for an axis"),
+    "weighted": ("m/s2", "weighted RMS of the seat rail (ISO 2631-1), all axes; weighted_z for an axis"),
+    "seat_unweighted": ("m/s2", "unweighted RMS of the cushion, of a car with an occupant; seat_unweighted_z"),
+    "seat_weighted": ("m/s2", "weighted RMS of the cushion, of a car with an occupant; seat_weighted_z"),
+    "seat_value": ("-", "SEAT value, of a car with an occupant"),
     "tyre_load": ("-", "RMS of dynamic over static tyre load, all tyres; tyre_load_fr for a wheel"),
     "lowest_load": ("-", "minimum tyre load over static load, all tyres; lowest_load_fr for a wheel"),
     "travel": ("m", "maximum travel of a damper from rest; travel_fr for a wheel"),
     "slip_share": ("-", "share of the time in which a damper slips, mean of all dampers; slip_share_fr for a wheel"),
 }
-"""Quantity to unit and definition."""
+"""Quantity to unit and definition; the first are those of `vehicle.signals.analysis.ride_comfort`."""
+
+COMFORT = frozenset(comfort_units(seated=True)) & set(QUANTITIES)
+"""Quantities that `comfort_columns` computes."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,15 +55,15 @@ class RideMeasure:
         numbers: names of the quantities.
         wheels: wheels of the car.
         dampers: wheels with a damper.
-        skip: excluded time at the beginning [s]: the car starts at rest.
-        timestep: maximum step of the reduced engine [s].
+        skip: excluded time at the beginning [s].
+        timestep: maximum step of the reduced engine [s]; by default that of a single run.
     """
 
     numbers: tuple[str, ...]
     wheels: tuple[str, ...]
     dampers: tuple[str, ...]
-    skip: float = 2.0
-    timestep: float = 5e-4
+    skip: float = 0.0
+    timestep: float = STEP
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -60,10 +71,8 @@ class RideMeasure:
         channels: list[str] = []
         for number in self.numbers:
             quantity, suffix = split_name(number)
-            if quantity in ("comfort", "weighted"):
-                channels += RAIL
-            elif quantity == "seat":
-                channels += SEAT
+            if quantity in COMFORT:
+                channels += (*RAIL, *SEAT) if quantity.startswith(SEAT_PREFIX) else RAIL
             elif quantity in ("tyre_load", "lowest_load"):
                 channels += [f"tyre_{wheel}_force_z" for wheel in ([suffix] if suffix else self.wheels)]
             else:
@@ -81,17 +90,19 @@ class RideMeasure:
 
     def of(self, runs: Runs) -> dict[str, Vector]:
         """Return the quantities of r runs; (r,) each."""
-        return {number: self._number(runs, *split_name(number)) for number in self.numbers}
+        quantities = {split_name(number)[0] for number in self.numbers}
+        columns: Mapping[str, Vector] = {}
+        if quantities & COMFORT:
+            seated = any(quantity.startswith(SEAT_PREFIX) for quantity in quantities)
+            cushion = runs.stacked(*SEAT) if seated else None
+            columns = comfort_columns(runs.timestep, runs.stacked(*RAIL), cushion, skip=self.skip)
+        return {
+            number: columns[number] if number in columns else self._number(runs, *split_name(number))
+            for number in self.numbers
+        }
 
     def _number(self, runs: Runs, quantity: str, suffix: str) -> Vector:
-        # Without the first sample: the FFT of a round number of samples is ten times as fast as that of a prime number.
-        kept = slice(round(self.skip / runs.timestep) + 1, None)
-        if quantity == "comfort":
-            value = comfort_values(runs.timestep, runs.stacked(*RAIL)[:, :, kept])
-            return value.axes[:, AXES.index(suffix)] if suffix else value.overall
-        if quantity in ("weighted", "seat"):
-            histories = runs.stacked(*(RAIL if quantity == "weighted" else SEAT))
-            return np.array([weighted_rms_of(runs.timestep, xyz, skip=self.skip)[3] for xyz in histories])
+        kept = slice(round(self.skip / runs.timestep), None)
         if quantity in ("tyre_load", "lowest_load"):
             wheels = [suffix] if suffix else self.wheels
             loads = [runs[f"tyre_{wheel}_force_z"][:, kept] / runs.tyre_load[wheel][:, None] for wheel in wheels]
@@ -130,10 +141,12 @@ def ride_measure(vehicle: Vehicle, numbers: tuple[str, ...], skip: float) -> Rid
     """
     names = {damper.name for damper in vehicle.composition.dampers}
     dampers = tuple(wheel for wheel in vehicle.wheels if f"damper_{wheel}" in names)
-    has = {"comfort": ("", *AXES), "weighted": ("",), "tyre_load": ("", *vehicle.wheels)}
+    has: dict[str, tuple[str, ...]] = dict.fromkeys((UNWEIGHTED, WEIGHTED), ("", *AXES))
+    has["tyre_load"] = ("", *vehicle.wheels)
     has |= {"lowest_load": ("", *vehicle.wheels)} | dict.fromkeys(("travel", "slip_share"), ("", *dampers))
     if vehicle.seated:
-        has["seat"] = ("",)
+        has |= dict.fromkeys((f"{SEAT_PREFIX}{UNWEIGHTED}", f"{SEAT_PREFIX}{WEIGHTED}"), ("", *AXES))
+        has[SEAT_VALUE] = ("",)
     if not dampers:
         del has["travel"], has["slip_share"]
     available = [f"{quantity}_{suffix}".rstrip("_") for quantity, suffixes in has.items() for suffix in suffixes]

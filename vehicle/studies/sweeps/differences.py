@@ -19,9 +19,9 @@ import numpy as np
 from scipy.special import stdtrit
 
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
+from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WAVE_NAMES
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import Case, Input
-from vehicle.studies.sweeps.measure import WAVE_NAMES
 from vehicle.studies.sweeps.sweep_table import Row, SweepTable
 
 DIFFERENCES = "differences.csv"
@@ -32,7 +32,7 @@ CLASS, SEEDS = "Gaussian roads of this class", "seeds of the generated road"
 
 HEADS = (
     "cars differ on",
-    "comfort_overall [m/s2]",
+    "unweighted [m/s2]",
     "standard_error [m/s2]",
     "difference [m/s2]",
     "standard_error_of_difference [m/s2]",
@@ -40,7 +40,7 @@ HEADS = (
 )
 
 
-VALUES = ("comfort_overall", "comfort_error", *WAVE_NAMES)
+VALUES = (UNWEIGHTED, ERROR, *WAVE_NAMES)
 """Names of the values of a row that the differences need."""
 
 Numbers = tuple[float, ...]
@@ -56,7 +56,7 @@ def has_differences(table: SweepTable) -> bool:
     cars = (case.overrides[case.shared :] for case in table.cases)
     first, good = next(cars, ()), (result for result in table.results if not result.reason)
     return (
-        "comfort_overall" in table.units
+        UNWEIGHTED in table.units
         and any(car != first for car in cars)
         and any(WAVE_NAMES[0] in result.values for result in islice(good, 1))
     )

@@ -9,12 +9,11 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from vehicle.engines.reduced.reduced_run import LONGEST_STEP
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, CORNERS
 from vehicle.runs.car import SATURATED_VELOCITY, Run
-from vehicle.signals.analysis.comfort import comfort_values
-from vehicle.signals.analysis.comfort_error import WAVES
-from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
+from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
 from vehicle.signals.analysis.slip import first_slips, slip_shares
 from vehicle.studies.sweeps.run_batch import Runs, Vector, single
 
@@ -55,8 +54,8 @@ def of_one(measure: BatchMeasure, run: Run) -> dict[str, float]:
     return {name: float(values[0]) for name, values in measure.of(single(run)).items()}
 
 
-WAVE_NAMES = tuple(f"comfort_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
-"""Names of the stored values C_m of `vehicle.signals.analysis.comfort_error`, which have no column in the table."""
+STEP = LONGEST_STEP
+"""Default of the maximum step of a measure [s]: that of a single run, so that both have the same comfort."""
 
 FRONT = tuple(CORNERS.values())[:2]
 """Front wheels, which every car has."""
@@ -64,19 +63,19 @@ FRONT = tuple(CORNERS.values())[:2]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ComfortMeasure:
-    """Measure of comfort and slip: unweighted and weighted RMS of the seat rail, slip shares, first slip.
+    """Measure of comfort and slip: the values of `vehicle.signals.analysis.ride_comfort`, slip shares, first slip.
 
     Attributes:
-        skip: excluded time at the beginning for all values except the first slip [s]: the car starts at rest.
+        skip: excluded time at the beginning for all values except the first slip [s].
         wheels: wheels of the evaluated dampers.
-        seat: add weighted RMS of the seat (ISO 2631-1) and SEAT value, for a car with a seat.
-        timestep: maximum step of the reduced engine [s].
+        seat: add the values on the cushion and the SEAT value, for a car with a seat.
+        timestep: maximum step of the reduced engine [s]; by default that of a single run.
     """
 
-    skip: float = 2.0
+    skip: float = 0.0
     wheels: tuple[str, ...] = FRONT
     seat: bool = False
-    timestep: float = 5e-4
+    timestep: float = STEP
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.skip < math.inf:
@@ -92,42 +91,25 @@ class ComfortMeasure:
     @property
     def units(self) -> Mapping[str, str]:
         """Return name to unit of each value."""
-        comfort = {f"comfort_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"comfort_error": "-"}
         slip = {f"{share}_{wheel}": "-" for share in ("slip_share", "saturated_share") for wheel in self.wheels}
-        if self.seat:
-            comfort |= {f"seat_weighted_{axis}": "m/s2" for axis in (*AXES, "overall")} | {"seat_value": "-"}
-        weighted = {f"seat_rail_weighted_{axis}": "m/s2" for axis in (*AXES, "overall")}
-        return comfort | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels} | weighted
+        return comfort_units(seated=self.seat) | slip | {f"first_slip_{wheel}": "s" for wheel in self.wheels}
 
     def __call__(self, run: Run) -> dict[str, float]:
         """Return the values of a run."""
         return of_one(self, run)
 
     def of(self, runs: Runs) -> dict[str, Vector]:
-        """Return comfort (unweighted RMS, 2 to 50 Hz [m/s2]) with relative standard error, weighted RMS, and slip.
+        """Return both comfort values and slip.
 
-        The standard error applies to Gaussian roads of this class and length, see
-        `vehicle.signals.analysis.comfort_error`; weighted values, SEAT value and slip have no standard error. Slip is
-        motion above `damper.slip_velocity`, the saturated share is above 1 mm/s. The first slip refers to the whole
-        run, as in `summary.json`; NaN without slip.
+        `unweighted_error` is the relative standard error for Gaussian roads of this class and length; weighted values,
+        SEAT value and slip have no standard error. Slip is motion above `damper.slip_velocity`, the saturated share is
+        above 1 mm/s. The first slip refers to the whole run, as in `summary.json`; NaN without slip.
         """
-        interval = runs.timestep
-        kept = slice(round(self.skip / interval), None)
+        kept = slice(round(self.skip / runs.timestep), None)
         rail = runs.stacked(*(f"seat_rail_acc_{axis}" for axis in AXES))
-        value = comfort_values(interval, rail[:, :, kept])
-        numbers = {f"comfort_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)}
-        numbers |= {"comfort_overall": value.overall, "comfort_error": value.error}
-        # Not in `units`, so in no table: for the error of the difference of two cars.
-        numbers |= dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True))
-        weighted = np.array([weighted_rms_of(interval, xyz, skip=self.skip) for xyz in rail])
-        numbers |= {f"seat_rail_weighted_{axis}": weighted[:, i] for i, axis in enumerate((*AXES, "overall"))}
-        if self.seat:
-            seat = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES))
-            weighted = np.array([weighted_rms_of(interval, xyz, skip=self.skip) for xyz in seat])
-            numbers |= {f"seat_weighted_{axis}": weighted[:, i] for i, axis in enumerate((*AXES, "overall"))}
-            vertical = zip(seat[:, 2], runs["seat_rail_acc_z"], strict=True)
-            values = [seat_value(interval, cushion, rail, skip=self.skip).rms for cushion, rail in vertical]
-            numbers["seat_value"] = np.array(values)
+        cushion = runs.stacked(*(f"seat_acc_{axis}" for axis in AXES)) if self.seat else None
+        # The waves are not in `units`, so in no table: they are for the error of the difference of two cars.
+        numbers = comfort_columns(runs.timestep, rail, cushion, skip=self.skip)
         velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in self.wheels}
         limit = runs.slip_velocity
         for share, above in (("slip_share", limit), ("saturated_share", np.full_like(limit, SATURATED_VELOCITY))):

@@ -122,7 +122,7 @@ def run_sweep(
             variations, each path to value.
         inputs: files or names of shipped ones, roads, signals; one or several.
         engine: as in `Car.run`.
-        skip: start of the evaluation [s]; 2 by default, on a road see `Car.run`.
+        skip: start of the evaluation [s]; by default as in `Car.run`, on several inputs the latest of them.
         measure: measure of each run; by default comfort and slip shares.
         jobs: number of processes; the table does not depend on it.
         folder: existing folder in which finished rows are stored, for the next call to reuse; None stores no rows.

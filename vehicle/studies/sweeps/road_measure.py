@@ -11,6 +11,8 @@ import numpy as np
 from vehicle.names import across
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.comfort import comfort_values
+from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
+from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
 from vehicle.signals.excitation.exact_road import RATE_HZ, road
 from vehicle.signals.excitation.signal import Signal
@@ -52,11 +54,12 @@ class RoadInput:
 class RoadMeasure:
     """Measure of runs on a road.
 
-    `comfort` is sqrt(RMSx^2 + RMSy^2 + RMSz^2) of the seat rail, unfiltered, 2 to 50 Hz; `gaussian_error` its standard
-    error over Gaussian roads of this spectrum, see `vehicle.signals.analysis.comfort_error`; `slip` and `slip_left` are
-    shares of the time above the slip velocity, for the damper of `wheel` and the damper of the opposite wheel;
-    `saturated` is the share above 1 mm/s for the damper of `wheel`; `lowest_load` is the minimum load of its tyre;
-    `pulling` is the share of the time with a negative load.
+    `unweighted` and `weighted` are the comfort of the seat rail, see `vehicle.signals.analysis.ride_comfort`; the
+    unweighted value is that of whole periods of the record. `gaussian_error` is its standard error over Gaussian roads
+    of this spectrum, see `vehicle.signals.analysis.comfort_error`; `slip` and `slip_left` are shares of the time above
+    the slip velocity, for the damper of `wheel` and the damper of the opposite wheel; `saturated` is the share above
+    1 mm/s for the damper of `wheel`; `lowest_load` is the minimum load of its tyre; `pulling` is the share of the time
+    with a negative load.
 
     Attributes:
         lead: excluded time at the beginning [s].
@@ -81,7 +84,8 @@ class RoadMeasure:
     def units(self) -> Mapping[str, str]:
         """Return name to unit of each value."""
         return {
-            "comfort": "m/s2",
+            UNWEIGHTED: "m/s2",
+            WEIGHTED: "m/s2",
             "gaussian_error": "m/s2",
             "slip": "-",
             "slip_left": "-",
@@ -98,12 +102,14 @@ class RoadMeasure:
         """Return the values of r runs; (r,) each."""
         # The last sample of the record is the first sample of the next period.
         record = slice(round(self.lead * RATE_HZ) + 1, None)
-        comfort = comfort_values(runs.timestep, np.stack([runs[name][:, record] for name in SEAT_RAIL], axis=1))
+        rail = runs.stacked(*SEAT_RAIL)
+        comfort = comfort_values(runs.timestep, rail[:, :, record])
         right, left = (runs[name][:, record] for name in self._dampers)
         load = runs[f"tyre_{self.wheel}_force_z"][:, record]
         limit = runs.slip_velocity
         return {
-            "comfort": comfort.overall,
+            UNWEIGHTED: comfort.overall,
+            WEIGHTED: np.array([weighted_rms_of(runs.timestep, xyz, skip=self.lead)[3] for xyz in rail]),
             "gaussian_error": comfort.error * comfort.overall,
             "slip": slip_shares(right, limit),
             "slip_left": slip_shares(left, limit),

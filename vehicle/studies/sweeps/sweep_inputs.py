@@ -19,9 +19,6 @@ from vehicle.studies.sweeps.case import Input, SignalFile, signal_of
 Source = Input | Road | Path | str
 """Input of a run: a file, the name of a shipped file, a road, a signal, or a user-defined input."""
 
-START_S = 2.0
-"""Default start of the evaluation on plate signals [s]: the car starts at rest."""
-
 
 def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
     """Return the inputs of the runs of a car.
@@ -70,7 +67,8 @@ def common_start(inputs: Sequence[Input], skip: float | None) -> float:
 
     Args:
         inputs: the inputs.
-        skip: requested start [s]; None for the latest default start of the roads, or `START_S` without a road.
+        skip: requested start [s]; None for the latest default start of the roads, or 0 without a road,
+            as in `Car.run`.
 
     Raises:
         ConfigurationError: the start is negative, not finite, or not before the end of every input.
@@ -78,7 +76,7 @@ def common_start(inputs: Sequence[Input], skip: float | None) -> float:
     """
     defaults = [float(start) for source in inputs if (start := getattr(source, "skip", None)) is not None]
     durations = {source.name: signal_of(source).duration for source in inputs}
-    return evaluation_start(durations, skip, max(defaults, default=START_S))
+    return evaluation_start(durations, skip, max(defaults, default=0.0))
 
 
 def file_of(car: Car) -> Path | None:

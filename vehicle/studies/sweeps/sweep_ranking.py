@@ -9,15 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
 
 Vector = npt.NDArray[np.float64]
 
-WEIGHTED = ("seat_weighted_overall", "seat_rail_weighted_overall")
-"""Columns by which cars are ranked, ISO 2631-1: on the cushion of a car with a seat, otherwise at the seat rail."""
-
-UNWEIGHTED = "comfort_overall"
-"""Column of the unweighted comfort value, 2 to 50 Hz."""
+RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
+"""Columns by which cars are ranked: on the cushion of a car with a seat, otherwise at the seat rail."""
 
 SHOWN = 12
 """Maximum number of cars in the printed table."""
@@ -28,22 +26,29 @@ class RankedCars:
     """Cars of a sweep with their comfort as the mean over all inputs.
 
     Attributes:
-        point: "seat" or "seat rail", the point of the weighted values.
+        prefix: prefix of the columns: `seat_` for the cushion, empty for the seat rail.
         paths: varied parameters.
         cells: values of the parameters of each car, as texts; (cars, paths).
-        weighted: weighted RMS (ISO 2631-1) [m/s2], NaN if a run of the car failed; (cars,).
-        unweighted: unweighted RMS of the seat rail, 2 to 50 Hz [m/s2]; (cars,).
+        weighted: weighted RMS (ISO 2631-1) at the point [m/s2], NaN if a run of the car failed; (cars,).
+        unweighted: unweighted RMS there, 2 to 50 Hz [m/s2]; (cars,).
+        seat_value: SEAT value [-]; (cars,), None for cars without a seat.
         order: cars with a value, most comfortable first.
         inputs: number of inputs.
     """
 
-    point: str
+    prefix: str
     paths: Sequence[str]
     cells: Sequence[Sequence[str]]
     weighted: Vector
     unweighted: Vector
+    seat_value: Vector | None
     order: Sequence[int]
     inputs: int
+
+    @property
+    def point(self) -> str:
+        """Return the words of the point of both values."""
+        return "cushion" if self.prefix else "seat rail"
 
     @property
     def best(self) -> int:
@@ -68,9 +73,10 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
     Args:
         table: table of a sweep with `ComfortMeasure`.
     """
-    ranked_by = next((name for name in WEIGHTED if name in table.units), None)
-    if ranked_by is None or UNWEIGHTED not in table.units:
+    ranked_by = next((name for name in RANKED_BY if name in table.units), None)
+    if ranked_by is None:
         return None
+    prefix = ranked_by.removesuffix(WEIGHTED)
     paths = table.paths()
     rows: dict[tuple[str, ...], list[int]] = {}
     for number, case in enumerate(table.cases):
@@ -84,19 +90,20 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
             numbers
         )
     names = [paths[column] for column in varied if paths[column] != "driving.speed"]
-    weighted, unweighted = (
-        np.array([float(np.mean(table.column(name)[numbers])) for numbers in cars.values()])
-        for name in (ranked_by, UNWEIGHTED)
+    weighted, unweighted, *seat_values = (
+        np.array([float(np.mean(column[numbers])) for numbers in cars.values()])
+        for column in map(table.column, (ranked_by, f"{prefix}{UNWEIGHTED}", *([SEAT_VALUE] if prefix else [])))
     )
     order = [int(car) for car in np.argsort(weighted, kind="stable") if math.isfinite(weighted[car])]
     if not order:
         return None
     return RankedCars(
-        point=ranked_by.partition("_weighted")[0].replace("_", " "),
+        prefix=prefix,
         paths=names,
         cells=list(cars),
         weighted=weighted,
         unweighted=unweighted,
+        seat_value=seat_values[0] if seat_values else None,
         order=order,
         inputs=len({case.source for case in table.cases}),
     )
@@ -107,13 +114,15 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     shown = list(cars.order[:SHOWN])
     if 0 in cars.order and 0 not in shown:
         shown.append(0)
-    heads = [*cars.paths, "weighted [m/s2]", "change", "2 to 50 Hz [m/s2]"]
+    heads = [*cars.paths, f"{cars.prefix}{WEIGHTED} [m/s2]", "change", f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
+    heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
     rows = [
         [
             *cars.cells[car],
             f"{cars.weighted[car]:.4g}",
             "base" if car == 0 else f"{cars.change(car):+.2f} %" if math.isfinite(cars.change(car)) else "-",
             f"{cars.unweighted[car]:.4g}",
+            *([] if cars.seat_value is None else [f"{cars.seat_value[car]:.4g}"]),
         ]
         for car in shown
     ]
@@ -123,7 +132,8 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     if left > 0:
         lines.append(f"and {left} more cars in table.csv")
     over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
-    lines.append(f"weighted: RMS of the {cars.point} (ISO 2631-1); 2 to 50 Hz: unweighted RMS of the seat rail{over}")
+    words = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
+    lines.append(f"{words}; at the {cars.point}{over}")
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
     if best and cars.best == 0:
         lines.append(f"most comfortable is the first car: {best}")

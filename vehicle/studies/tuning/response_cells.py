@@ -135,7 +135,7 @@ def evaluated_cars(
                 for target in cells.targets
             ]
             rows.append(cells.of(responses))
-            comfort.append([each[index].comfort().overall for each in runs])
+            comfort.append([each[index].comfort().unweighted.overall for each in runs])
         if progress is not None:
             progress(min(first + BATCH, len(cars)) / len(cars))
     return np.array(rows), np.array(comfort).reshape(len(cars), len(signals))

@@ -1,0 +1,101 @@
+"""One comfort everywhere: report, run in Python, sweep and search give the same numbers under the same names."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from vehicle.runs.car import Car
+from vehicle.runs.output.saved_run import save_run
+from vehicle.runs.report.comfort_section import comfort as report_section
+from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.markup import number
+from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfort_units
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.studies.optimisation.ride import QUANTITIES, ride_measure
+from vehicle.studies.sweeps.measure import ComfortMeasure
+from vehicle.studies.sweeps.plan import plan_sweep
+
+VISCOUS = "front.damper.viscous"
+NAMES = (
+    "unweighted",
+    "unweighted_x",
+    "unweighted_y",
+    "unweighted_z",
+    "weighted",
+    "weighted_x",
+    "weighted_y",
+    "weighted_z",
+)
+
+
+@pytest.fixture(scope="module")
+def source():
+    return random_road(rms=1e-3, seed=4, wheel="fl", duration=2.0, lower_band_edge=2.0)
+
+
+@pytest.fixture(scope="module")
+def car():
+    return Car.load("focus_road_seated", {VISCOUS: 1500.0})
+
+
+def swept(car, source, engine):
+    """Return the values of the car in a sweep and in a search, without a start of the evaluation that is asked for."""
+    plan = plan_sweep(car, {VISCOUS: [1500.0, 2000.0]}, source, engine=engine)
+    assert plan.skip == 0.0  # as in `Car.run`
+    assert isinstance(plan.measure, ComfortMeasure)
+    from vehicle.studies.sweeps.case_evaluation import evaluate
+
+    names = tuple(name for name in comfort_units(seated=car.vehicle.seated) if name != ERROR)
+    ride = ride_measure(car.vehicle, names, plan.skip)
+    assert ride.timestep == plan.measure.timestep
+    results = [evaluate(plan.cases[:1], measure)[0] for measure in (plan.measure, ride)]
+    assert [result.reason for result in results] == ["", ""]
+    assert [result.engine for result in results] == [engine, engine]
+    return [{name: result.values[name] for name in names} for result in results]
+
+
+def test_report_sweep_python_and_search_are_equal_to_the_last_digit(car, source, tmp_path):
+    run = car.run(source, engine="mujoco")
+    comfort = run.comfort()
+    table, search = swept(car, source, "mujoco")
+    alone = {name: comfort.values[name] for name in table}
+    assert table == search == alone and all(np.isfinite(list(alone.values())))
+    seated = car.vehicle.seated
+    assert set(NAMES) <= set(alone) and ("seat_value" in alone) == seated
+    folder = save_run(run, tmp_path / "run", figures=False)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["comfort"]["seat_rail"]
+    assert summary["rms_2_50_hz"]["overall"] == comfort.unweighted.overall == alone["unweighted"]
+    assert summary["iso2631"]["vector_sum"]["weighted_rms"] == comfort.weighted.overall == alone["weighted"]
+    for axis in "xyz":
+        assert summary["rms_2_50_hz"][axis] == alone[f"unweighted_{axis}"]
+        assert summary["iso2631"][axis]["weighted_rms"] == alone[f"weighted_{axis}"]
+    page = report_section(read_run(folder))
+    for name in ("unweighted", "weighted"):
+        assert number(alone[name]) in page
+
+
+def test_the_reduced_engine_gives_all_printed_digits(car, source):
+    table, search = swept(car, source, "reduced")
+    assert table == search  # to the last digit
+    alone = car.run(source, engine="reduced").comfort().values
+    for name, value in table.items():
+        # A batch is computed in single precision: 24 bit, 1e-7, after some thousand steps.
+        assert value == pytest.approx(alone[name], rel=1e-5)
+
+
+def test_a_cushion_has_both_names_and_the_seat_value():
+    rng = np.random.default_rng(2)
+    rail, cushion = rng.normal(size=(2, 2, 3, 4000))
+    columns = comfort_columns(1e-3, rail, cushion, skip=0.5)
+    assert set(comfort_units(seated=True)) <= set(columns)
+    for prefix, records in (("", rail), ("seat_", cushion)):
+        one = comfort_columns(1e-3, records[1:], skip=0.5)
+        for name in NAMES:
+            assert columns[f"{prefix}{name}"][1] == one[name][0]
+    assert columns["seat_value"][1] == pytest.approx(
+        columns["seat_weighted_z"][1] / columns["weighted_z"][1], rel=1e-12
+    )
+    assert {*NAMES[::4], "seat_unweighted", "seat_weighted", "seat_value"} <= set(QUANTITIES)

@@ -1,0 +1,213 @@
+"""Comfort of runs under the two names of every table: `unweighted` and `weighted`, at the seat rail and on the cushion.
+
+`unweighted` is the RMS of the accelerations in 2 to 50 Hz, sqrt(x^2 + y^2 + z^2) over the axes (Bommer 2006,
+chapter 4); `weighted` is the RMS after the weightings of a seat, Wd for x and y, Wk for z (ISO 2631-1:1997, 6.1 and
+6.5), with the same vector sum. A suffix _x, _y or _z is one axis. The prefix `seat_` is the cushion of a seat;
+`seat_value` is the SEAT value. Reports, runs in Python, sweeps and searches take their values from `comfort_columns`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.names import AXES
+from vehicle.signals.analysis.comfort import COMFORT_BAND, comfort_values
+from vehicle.signals.analysis.comfort_error import WAVES
+from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
+
+Vector = npt.NDArray[np.float64]
+
+UNWEIGHTED, WEIGHTED = "unweighted", "weighted"
+"""The two names of comfort."""
+
+SEAT_PREFIX, SEAT_VALUE = "seat_", "seat_value"
+"""Prefix of the values on the cushion, and the name of the SEAT value."""
+
+ERROR = "unweighted_error"
+"""Name of the relative standard error of `unweighted`, see `vehicle.signals.analysis.comfort_error`."""
+
+WAVE_NAMES = tuple(f"unweighted_wave_{number}_{part}" for number in range(1, WAVES + 1) for part in ("re", "im"))
+"""Names of the values C_m of `vehicle.signals.analysis.comfort_error`, which have no column in a table."""
+
+MEANING = {
+    UNWEIGHTED: "RMS in 2 to 50 Hz",
+    WEIGHTED: "RMS after the weightings of a seat (ISO 2631-1)",
+}
+"""Name to its words on the console, in reports and figures."""
+
+
+def comfort_units(*, seated: bool) -> dict[str, str]:
+    """Return the name of each value of `comfort_columns` to its unit, without `WAVE_NAMES`.
+
+    Args:
+        seated: True for a car with a seat: its cushion and the SEAT value are added.
+    """
+    units: dict[str, str] = {}
+    for prefix in ("", SEAT_PREFIX) if seated else ("",):
+        for name in (UNWEIGHTED, WEIGHTED):
+            units |= dict.fromkeys((f"{prefix}{name}_{axis}" for axis in AXES), "m/s2") | {f"{prefix}{name}": "m/s2"}
+    return units | ({SEAT_VALUE: "-"} if seated else {}) | {ERROR: "-"}
+
+
+def comfort_columns(
+    time_step: float,
+    rail: Vector,
+    cushion: Vector | None = None,
+    *,
+    skip: float = 0.0,
+    band: tuple[float, float] = COMFORT_BAND,
+) -> dict[str, Vector]:
+    """Return both comfort values of r runs; the values of a run are bitwise independent of the other runs.
+
+    Args:
+        time_step: sampling interval [s].
+        rail: accelerations of the seat rail in x, y, z [m/s2], (r, 3, n).
+        cushion: accelerations of the cushion [m/s2], (r, 3, n); None for a car without a seat.
+        skip: excluded time at the beginning [s]; the filters of the weightings process it.
+        band: band of the unweighted value [Hz].
+
+    Returns:
+        Name to values, (r,) each: those of `comfort_units`, and `WAVE_NAMES`. `seat_value` is NaN for a rail at rest.
+
+    Raises:
+        DataError: a record that is too short or not finite.
+    """
+    columns = _point(time_step, rail, skip, band, "")
+    if cushion is not None:
+        on_seat = _point(time_step, cushion, skip, band, SEAT_PREFIX)
+        columns |= {name: values for name, values in on_seat.items() if name in comfort_units(seated=True)}
+        columns[SEAT_VALUE] = np.array(
+            [
+                seat_value(time_step, above[2], below[2], skip=skip).rms if np.any(below[2]) else np.nan
+                for above, below in zip(cushion, rail, strict=True)
+            ]
+        )
+    return columns
+
+
+def _point(time_step: float, records: Vector, skip: float, band: tuple[float, float], prefix: str) -> dict[str, Vector]:
+    """Return the values at one point, with the prefix in front of their names."""
+    value = comfort_values(time_step, records[:, :, round(skip / time_step) :], band)
+    weighted = np.array([weighted_rms_of(time_step, xyz, skip=skip) for xyz in records])
+    columns: Mapping[str, Vector] = {
+        **{f"{UNWEIGHTED}_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)},
+        UNWEIGHTED: value.overall,
+        **{f"{WEIGHTED}_{axis}": weighted[:, number] for number, axis in enumerate(AXES)},
+        WEIGHTED: weighted[:, 3],
+        ERROR: value.error,
+        **dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True)),
+    }
+    return {f"{prefix}{name}": values for name, values in columns.items()}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AxisRms:
+    """RMS accelerations of a point by axis [m/s2]."""
+
+    x: float
+    y: float
+    z: float
+    overall: float
+    """sqrt(x^2 + y^2 + z^2) [m/s2]"""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class PointComfort:
+    """Comfort at one point, under the two names of `comfort_columns`.
+
+    Attributes:
+        point: words of the point, as "seat rail".
+        unweighted: unweighted RMS in `band`.
+        weighted: weighted RMS as on a seat (ISO 2631-1: Wd for x and y, Wk for z).
+        band: band of the unweighted value [Hz].
+    """
+
+    point: str
+    unweighted: AxisRms
+    weighted: AxisRms
+    band: tuple[float, float]
+
+    def __repr__(self) -> str:
+        """Return a summary in one line."""
+        low, high = self.band
+        return (
+            f"{self.point}: unweighted {self.unweighted.overall:.4g} m/s2 ({low:g} to {high:g} Hz), weighted "
+            f"{self.weighted.overall:.4g} m/s2 (ISO 2631-1)"
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class RunComfort(PointComfort):
+    """Comfort of a run at the seat rail; with a seat also on its cushion, and the SEAT value.
+
+    Attributes:
+        cushion: both values on the cushion; None for a car without a seat.
+        seat_value: SEAT value [-]; None for a car without a seat, or a rail at rest.
+        values: all values under their names in sweeps and searches, see `comfort_units`.
+    """
+
+    cushion: PointComfort | None
+    seat_value: float | None
+    values: Mapping[str, float]
+
+    def __repr__(self) -> str:
+        """Return a summary in one line."""
+        text = PointComfort.__repr__(self)
+        if self.cushion is not None:
+            text += f"; {self.cushion!r}"
+        return text if self.seat_value is None else f"{text}; SEAT {self.seat_value:.4g}"
+
+
+def point_comfort(point: str, values: Mapping[str, float], band: tuple[float, float], prefix: str = "") -> PointComfort:
+    """Return the comfort at a point from named values.
+
+    Args:
+        point: words of the point.
+        values: values of `comfort_columns` of one run.
+        band: band of the unweighted values [Hz].
+        prefix: prefix of the names.
+    """
+
+    def axes(name: str) -> AxisRms:
+        x, y, z = (values[f"{prefix}{name}_{axis}"] for axis in AXES)
+        return AxisRms(x=x, y=y, z=z, overall=values[f"{prefix}{name}"])
+
+    return PointComfort(point=point, unweighted=axes(UNWEIGHTED), weighted=axes(WEIGHTED), band=band)
+
+
+def run_comfort(
+    time_step: float,
+    rail: Vector,
+    cushion: Vector | None,
+    *,
+    skip: float,
+    band: tuple[float, float],
+    point: str = "seat rail",
+) -> RunComfort:
+    """Return the comfort of one run; arguments as in `comfort_columns`, with accelerations of (3, n).
+
+    Args:
+        time_step, skip, band: see `comfort_columns`.
+        rail: accelerations of the seat rail [m/s2], (3, n).
+        cushion: accelerations of the cushion [m/s2], (3, n), or None.
+        point: words of the point of `rail`.
+    """
+    above = None if cushion is None else cushion[None]
+    columns = comfort_columns(time_step, rail[None], above, skip=skip, band=band)
+    values = {name: float(columns[name][0]) for name in comfort_units(seated=cushion is not None)}
+    at_rail = point_comfort(point, values, band)
+    seat = values.get(SEAT_VALUE, math.nan)
+    return RunComfort(
+        point=at_rail.point,
+        unweighted=at_rail.unweighted,
+        weighted=at_rail.weighted,
+        band=band,
+        cushion=None if cushion is None else point_comfort("cushion", values, band, SEAT_PREFIX),
+        seat_value=None if math.isnan(seat) else seat,
+        values=values,
+    )
