@@ -72,7 +72,7 @@ def bushing_numbers(file: PropertyFile, beside: Mapping[str, Any]) -> dict[str, 
 
     Args:
         file: property file.
-        beside: numbers beside the name of the file in the vehicle file, which take precedence.
+        beside: further numbers of the same table, which take precedence.
 
     Raises:
         DataError: another type of file, or a wrong block, unit or curve; rotational stiffnesses that differ.
@@ -128,7 +128,7 @@ def stop_numbers(stop: Mapping[str, Any], ends: Mapping[str, list[Point]], path:
                 f"{path}.{end}.clearance: found {clearance!r}; must be the travel of the damper from its design "
                 "position to the stop, a number of at least 0 [m]"
             )
-        # Rows without force ahead of the contact only say that there is none.
+        # Rows with zero force before the contact have no effect.
         contact = max((index for index, (_, f) in enumerate(points) if f == 0.0), default=-1)
         if contact < 0 or contact == len(points) - 1 or points[contact][0] < 0.0:
             raise ConfigurationError(

@@ -102,8 +102,8 @@ class PropertyFile:
             DataError: the file does not contain it.
         """
         if name not in self.blocks:
-            found = ", ".join(f"[{other}]" for other in self.blocks) or "none"
-            raise DataError(f"{self.path}: no block [{name}]; found {found}; add it")
+            present = ", ".join(f"[{other}]" for other in self.blocks) or "none"
+            raise DataError(f"{self.path}: no block [{name}]; found {present}; add it")
         return self.blocks[name]
 
     def unit(self, quantity: str) -> float:
@@ -147,12 +147,12 @@ class PropertyFile:
             DataError: the block is missing; a row is not two finite numbers; fewer than two points; not ascending.
         """
         points: list[tuple[float, float]] = []
-        for line, words in self.block(block).rows:
+        for line, row in self.block(block).rows:
             where = f"{self.path}:{line}: [{block}]"
-            if len(words) != 2:
-                raise DataError(f"{where} has a row of {len(words)} columns, must be 2; a curve over two "
+            if len(row) != 2:
+                raise DataError(f"{where} has a row of {len(row)} columns, must be 2; a curve over two "
                                 "variables is not read")  # fmt: skip
-            x, y = (_finite(word, where) for word in words)
+            x, y = (_finite(word, where) for word in row)
             if points and x * x_unit <= points[-1][0]:
                 raise DataError(f"{where} has {x:g} after {points[-1][0] / x_unit:g}, must be ascending; sort the "
                                 "points, and give each once")  # fmt: skip

@@ -36,9 +36,9 @@ FRONT_AXLE = 0.9
 DRIVER_TO_RAIL = 0.7
 """Height of the position of a driver of Chrono, which is that of a camera, above the seat rail [m]; assumed."""
 LONGITUDINAL, LATERAL = 0.58, 0.52
-"""Horizontal stiffnesses of a standing tyre over its vertical stiffness, as of the sedan [-]."""
+"""Horizontal stiffnesses of a standing tyre over its vertical stiffness, those of the sedan [-]."""
 CARCASS_LONGITUDINAL, CARCASS_LATERAL = 1.15, 0.33
-"""Stiffnesses of the carcass over the vertical stiffness, as of the tyre of the sedan [-]."""
+"""Stiffnesses of the carcass over the vertical stiffness, those of the sedan [-]."""
 
 HEIGHTS_AGREE = 1e-3
 """Difference of the ground under both axles that is not worth a note [m]."""
@@ -57,7 +57,7 @@ LEFT_OUT_OF_AXLE = {
 
 
 PREFIX = "chrono:"
-"""Begins the name of a file of Chrono where the name of a car may stand."""
+"""Prefix of a file of Chrono in the option for a car."""
 
 
 @one_blas_thread()
@@ -96,7 +96,7 @@ def chrono_car(name: str, path: Path, tyre_file: Path | None = None) -> NewCar:
         tyre_file: JSON file of the tyre of all wheels; by default that of the model.
 
     Returns:
-        The car without checks; its notes say what of the files has no place in it, and what is assumed.
+        The car without checks; its notes list values that are left out, and assumed values.
 
     Raises:
         ConfigurationError: a file is missing, the car has not two axles, no tyre is known, or the car cannot be.
@@ -177,7 +177,7 @@ def _placing(shift: Vector) -> Callable[[Vector], Vector]:
 
 
 def _add_wheel(axle: ImportedAxle, position: ChronoFile, tyre: ChronoTyre) -> None:
-    """Add rim and tyre as the part that the tyre is."""
+    """Add rim and tyre as a single part, `tyre`."""
     wheel = position.named_file("Left Wheel Input File")
     axle.add_part(
         "tyre",

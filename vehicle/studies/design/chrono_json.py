@@ -62,7 +62,7 @@ class ChronoFile:
         return self.table[name]
 
     def section(self, name: str) -> ChronoFile:
-        """Return a table inside this one.
+        """Return an inner table.
 
         Raises:
             DataError: it is missing, or no table.
@@ -73,7 +73,7 @@ class ChronoFile:
         return ChronoFile(path=self.path, table=value, inside=(*self.inside, name))
 
     def sections(self, name: str) -> list[ChronoFile]:
-        """Return a list of tables inside this one; empty if it is missing.
+        """Return a list of inner tables; empty if it is missing.
 
         Raises:
             DataError: it is no list of tables.
@@ -130,10 +130,10 @@ class ChronoFile:
         return array
 
     def named_file(self, name: str) -> ChronoFile:
-        """Read a file that this one names: relative to a folder above it (data/vehicle), or beside it.
+        """Read a file by a name in this file: relative to a parent folder (data/vehicle), or in the same folder.
 
         Raises:
-            ConfigurationError: there is no such file.
+            ConfigurationError: the file is missing.
         """
         relative = self.text(name)
         candidates = [folder / relative for folder in self.path.absolute().parents]

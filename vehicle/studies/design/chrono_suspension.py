@@ -1,7 +1,7 @@
 """Axles of a vehicle of Chrono as tables of the templates double_wishbone and macpherson.
 
-Joints of Chrono between an arm and the chassis are revolute; here they are a ball joint and a bushing of `RIGID`. What
-is massless there (dampers, tie rods without a body) has `SMALL` of the mass of the part that carries it.
+Joints of Chrono between an arm and the chassis are revolute; here they are a ball joint and a bushing of `RIGID`. Parts
+without mass in Chrono (dampers, tie rods without a body) have `SMALL` of the mass of the part that carries them.
 Source: ChDoubleWishbone.cpp, ChMacPhersonStrut.cpp and ChUtilsJSON.cpp of Chrono.
 """
 
@@ -219,7 +219,7 @@ def _plane_of(arm: ChronoFile) -> Vector:
 def _add_body(
     axle: ImportedAxle, name: str, section: ChronoFile, to_vehicle: Callable[[Vector], Vector], frame: Vector
 ) -> None:
-    """Add a part with its mass, centre of gravity and inertia in axes of its own."""
+    """Add a part with its mass, centre of gravity and inertia, given in axes of the part."""
     key = "Moments of Inertia" if "Moments of Inertia" in section else "Inertia"
     products = section.array("Products of Inertia", 3) if "Products of Inertia" in section else np.zeros(3)
     inertia = frame @ tensor(section.array(key, 3), products) @ frame.T
@@ -322,7 +322,7 @@ def _add_spindle(axle: ImportedAxle, file: ChronoFile, to_vehicle: Callable[[Vec
 
 
 def _possible(inertia: Vector) -> tuple[Vector, float]:
-    """Return the nearest tensor of inertia that a mass distribution has, and by how much moments are raised [kg m2].
+    """Return the nearest possible tensor of inertia, and the largest increase of a moment [kg m2].
 
     The integrals S = tr(I) / 2 - I of x x, x y, ... have no negative eigenvalue: negative values are set to zero.
     """

@@ -45,7 +45,7 @@ class ChronoTyre:
     Attributes:
         file: its file.
         mass: [kg].
-        inertia: moments about its own x, y, z [kg m2].
+        inertia: moments about x, y, z [kg m2].
         radius: unloaded [m].
         force: d1 [N/m] and d2 [N/m2], or points of deflection [m] and force [N], (n, 2).
         damping: vertical [N s/m].
@@ -106,7 +106,7 @@ def chrono_tyre(file: ChronoFile) -> ChronoTyre:
     if template in ("TMeasyTire", "TMsimpleTire"):
         return _tmeasy(file, template)
     raise DataError(f"{file.path}: a tyre of type {template!r}, must be TMeasyTire, TMsimpleTire or FialaTire; name "
-                    "the file of such a tyre with --chrono-tyre FILE.json")  # fmt: skip
+                    "its file with --chrono-tyre FILE.json")  # fmt: skip
 
 
 def _fiala(file: ChronoFile) -> ChronoTyre:
