@@ -106,17 +106,17 @@ def passage_values(passage: Passage) -> dict[str, float]:
         run = passage.run()
     except SimulationError:
         return {}
-    found = obstacle_values(run)
-    assert found is not None
+    summary = obstacle_values(run)
+    assert summary is not None
     values: dict[str, float] = {}
-    for point, peaks in found["peak_to_peak"].items():
+    for point, peaks in summary["peak_to_peak"].items():
         values |= {f"peak_to_peak_{axis} {point}": peaks[axis] for axis in "xz"}
-        values[f"vdv {point}"] = found["vdv"][point]["overall"]
-    settled = found["settling_s"]["seat_rail"]
+        values[f"vdv {point}"] = summary["vdv"][point]["overall"]
+    settled = summary["settling_s"]["seat_rail"]
     loads = {wheel: run[f"tyre_{wheel}_force_z"][run.evaluated] for wheel in run.car.vehicle.wheels}
     static = run.car.static.tyre_load
     return values | {
-        "knuckle_peak": max(found["knuckle_peak"].values()),
+        "knuckle_peak": max(summary["knuckle_peak"].values()),
         "settling": float("nan") if settled is None else settled,
         "lowest_load": min(100.0 * float(np.min(load)) / static[wheel] for wheel, load in loads.items()),
     }
@@ -180,7 +180,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
 
 
 def dose_claims(values: Mapping[Passage, Values]) -> Sequence[Claim]:
-    """Return the checks: over the speed the dose of a short obstacle has a maximum, and that of a long obstacle rises."""
+    """Return the checks: over the speed a short obstacle has a largest dose, and the dose of a long obstacle rises."""
     rows = []
     for text in dict.fromkeys(passage.obstacle for passage in values):
         row = {passage.speed: each.get("vdv seat_rail", np.nan) for passage, each in values.items()

@@ -1,11 +1,11 @@
 """Difference of both engines on roads with rolling tyres, and the causes of the difference.
 
-python -m tests.benchmarks.rolling_engines [--duration 10] [--speed 80] [--channels 6]
+python -m tests.benchmarks.rolling_engines [--roads A,B] [--duration 10] [--speed 80] [--channels 6]
 
 Each line: point-by-point difference over the RMS of MuJoCo, and in brackets how much larger the RMS of the reduced
-engine is. `static` is the reduced engine with static wheel loads on slopes, `present` with present ones, both against
-MuJoCo at its own step; `fine` at a step of 0.25 ms; `odd` and `even` are the parts of `fine` that change sign with the
-road and that do not: without and with products of two motions.
+engine is. `static` is the reduced engine with static wheel loads on slopes z'/V, `present` with present ones, both
+against MuJoCo at its own step; `fine` at a step of 0.25 ms; `odd` and `even` are the parts of `fine` that change sign
+with the road and that do not: without and with products of two motions.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy.typing as npt
 from vehicle.commands.road import road_drive
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.road_level import CLASSES
 
 Histories = dict[str, npt.NDArray[np.float64]]
 
@@ -28,19 +29,25 @@ FINE = "solver.timestep=0.00025"
 def main() -> None:
     """Print the channels with the largest differences for each car and class."""
     found = argparse.ArgumentParser(description=__doc__)
+    found.add_argument("--roads", default="A,B", help="classes or obstacles, as cleat:20x50")
     found.add_argument("--duration", type=float, default=10.0)
     found.add_argument("--speed", type=float, default=80.0)
     found.add_argument("--channels", type=int, default=6)
     options = found.parse_args()
     for name in ("sedan", "focus_road"):
-        for road in "AB":
-            numbers = dict.fromkeys(("tyre", "rate", "seed", "coherence", "patch"))
+        for road in options.roads.split(","):
+            numbers = dict.fromkeys(("tyre", "rate", "seed", "coherence", "patch", "contact"))
+            numbers |= {"duration": options.duration if road in CLASSES else None}
             asked = argparse.Namespace(**{**vars(options), **numbers, "overrides": []})
             drive = road_drive(road, asked, Car.load(name).vehicle)
             car, fine = (Car.load(name, [*drive.overrides, *more]) for more in ([], [FINE]))
             signal = drive.signal()
             skip = round(drive.skip * car.vehicle.solver.record_rate)
-            down = replace(signal, displacement={wheel: -z for wheel, z in signal.displacement.items()})
+            down = replace(
+                signal,
+                displacement={wheel: -z for wheel, z in signal.displacement.items()},
+                slope_velocity={wheel: -rate for wheel, rate in signal.slope_velocity.items()},
+            )
 
             def reduced(one: object, load: bool, car: Car = car, skip: int = skip) -> Histories:
                 run = simulate_reduced(

@@ -1,6 +1,7 @@
 """`python -m vehicle tune`: hidden values from a logger file, the fitted file, and refused files."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from vehicle.commands.shaker import main as shake
 from vehicle.commands.tune import main
 from vehicle.model.parameters.paths import value_of
 from vehicle.runs.car import Car
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal_file import read_signal
 
 HIDDEN = {
     "damper.viscous": 2150.0,
@@ -33,8 +36,11 @@ def record(tmp_path_factory):
     """MDF4 file of a hidden car in MuJoCo over 8 s: other names, other units, another clock, 3 % noise."""
     asammdf = pytest.importorskip("asammdf")
     folder = tmp_path_factory.mktemp("bench")
-    run = Car.load("focus", HIDDEN).run("high.csv", channels=list(CHANNELS))
     noise, length = np.random.default_rng(1), 8000
+    high = read_signal(find_input("high.csv"), wheel="fl")
+    cut = {wheel: values[: length + 200] for wheel, values in high.displacement.items()}
+    beginning = replace(high, time=high.time[: length + 200], displacement=cut)
+    run = Car.load("focus", HIDDEN).run(beginning, channels=list(CHANNELS))
     signals = []
     for name, (label, unit, factor) in CHANNELS.items():
         values = factor * run[name][:length]

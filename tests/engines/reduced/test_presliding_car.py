@@ -44,7 +44,7 @@ def test_every_channel_against_mujoco(level):
     # On class D a linear tyre pulls by 1.4 kN, which is outside the range of both engines.
     validated(
         "Reduced engine", f"comfort over that of MuJoCo, presliding friction, class {level}",
-        reduced.comfort().overall / stepped.comfort().overall, 1.0,
+        reduced.comfort().weighted.overall / stepped.comfort().weighted.overall, 1.0,
         abs=5e-3 if level == "D" else 1e-3, source="second derivation: MuJoCo",
     )  # fmt: skip
 
@@ -57,8 +57,8 @@ def test_a_stiff_curve_is_coulomb_friction(engine):
     )
     validated(
         "Dampers and friction", f"comfort with presliding friction of 1e9 N/m over that of Coulomb friction, {engine}",
-        stiff.comfort().overall / line.comfort().overall, 1.0, abs=2e-3,
+        stiff.comfort().weighted.overall / line.comfort().weighted.overall, 1.0, abs=2e-3,
         source="second derivation: friction line of 16 um/s in place of the elements",
     )  # fmt: skip
-    soft = Car.load("focus_road", presliding(2e5)).run(road, engine=engine).comfort().overall
-    assert abs(soft / line.comfort().overall - 1.0) > 0.01
+    soft = Car.load("focus_road", presliding(2e5)).run(road, engine=engine).comfort().weighted.overall
+    assert abs(soft / line.comfort().weighted.overall - 1.0) > 0.01

@@ -15,7 +15,7 @@ from vehicle.commands.input_options import ROAD_NUMBERS
 from vehicle.commands.road import road_drive
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car, Run
-from vehicle.signals.excitation.iso_road import Contact, drive
+from vehicle.signals.excitation.iso_road import drive
 
 SPEED, WHEELBASE = 20.0, 2.6
 EDGE = SPEED / WHEELBASE
@@ -36,9 +36,6 @@ class Hump:
     def contact(self, start: float, step: float, steps: int, side: str, highest: float) -> tuple[np.ndarray, None]:
         place = start + step * np.arange(steps)
         return np.asarray(1e-3 * np.exp(-(((place - 30.0) / 0.1) ** 2))), None
-
-    def contact(self, start: float, step: float, steps: int, side: str, highest: float) -> Contact:
-        return self.height(start, step, steps, side, highest), None
 
 
 def equal_axles(folder: Path) -> Car:

@@ -6,8 +6,10 @@ import argparse
 import struct
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
+from tests.validation import validated
 from vehicle.commands.input_options import record_choice
 from vehicle.commands.road import road_drive
 from vehicle.commands.shaker import parser
@@ -199,8 +201,8 @@ def crg(path, form, grid, slope=None):
         end=100.0 + 0.5 * (rows - 1), form=form, more="" if slope is None else "D:reference line slope,m/m\n"
     )
     table = grid if slope is None else np.column_stack([slope, grid])
-    if form == "KRBI":
-        data = struct.pack(f">{table.size}f", *table.ravel())
+    if form in ("KRBI", "KDBI"):
+        data = struct.pack(f">{table.size}{'f' if form == 'KRBI' else 'd'}", *table.ravel())
         path.write_bytes(head.encode() + data + b"\0" * (-len(data) % 80))
         return path
     width = 10 if form == "LRFI" else 20
@@ -213,7 +215,25 @@ def crg(path, form, grid, slope=None):
     return path
 
 
-@pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI"])
+@pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])
+def test_the_tracks_of_a_car_on_a_surface(tmp_path, form):
+    """Heights about 2 m, a slope and a bump, in each format of numbers; linear between the sections."""
+    u, v = 0.5 * np.arange(40), np.array([-1.0, 0.0, 1.0])
+    grid = 2.0 + 0.05 * np.sin(u)[:, None] + 0.01 * v + 0.02 * np.exp(-((u[:, None] - 7.0 - v) ** 2))
+    road = read_road(crg(tmp_path / "road.crg", form, grid, np.full(40, 0.01)), 1.2)
+    wanted: dict[Side, npt.NDArray[np.float64]] = {
+        "right": 0.6 * grid[:, 0] + 0.4 * grid[:, 1],
+        "left": 0.6 * grid[:, 2] + 0.4 * grid[:, 1],
+    }
+    for side, height_of_side in wanted.items():
+        validated(
+            "Roads and excitation", f"heights of an OpenCRG surface of format {form}, {side} track of a car",
+            road.contact_at(np.asarray(u, dtype=np.float64), side)[0], height_of_side - height_of_side[0] + 0.01 * u,
+            abs=1e-6, unit="m", source="second derivation: a writer of its own, linear between the sections",
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])
 def test_a_surface_is_read(tmp_path, form):
     rng = np.random.default_rng(3)
     grid = np.round(2.0 + 0.01 * rng.standard_normal((9, 3)), 7)
@@ -259,6 +279,46 @@ def test_a_damaged_surface_is_refused(tmp_path):
     path.write_text(path.read_text().rsplit("\n", 3)[0])
     with pytest.raises(DataError, match="truncated or damaged"):
         read_surface(path)
+
+
+@pytest.mark.parametrize("form", ["LRFI", "LDFI", "KRBI", "KDBI"])
+def test_every_damage_is_named_with_the_file(tmp_path, form):
+    grid = 2.0 + 0.01 * np.random.default_rng(4).standard_normal((40, 3))
+    path = crg(tmp_path / "road.crg", form, grid)
+    whole = path.read_bytes()
+    start = whole.index(b"$$$$$$$$\n")
+
+    def refused(data, message, track=1.5):
+        path.write_bytes(data)
+        with pytest.raises(DataError, match=message) as raised:
+            read_road(path, track)
+        assert str(path) in str(raised.value)
+
+    # A header without end, cut off at any place, and numbers cut off at any place.
+    refused(whole[:start] + whole[start + 9 :], "no line \\$\\$\\$\\$ before the numbers")
+    for kept in (0, 30, start // 2, start):
+        refused(whole[:kept], "no line \\$\\$\\$\\$|not|empty|no ")
+    for share in (0.0, 0.1, 0.5, 0.9):
+        refused(whole[: start + 9 + int(share * (len(whole) - start - 9))], "claims|truncated or damaged|damaged")
+    # More or fewer rows, sections or a wider step than the header claims.
+    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 219.5"), "claims|according to its")
+    refused(whole.replace(b"REFERENCE_LINE_END_U = 119.5", b"REFERENCE_LINE_END_U = 102.5"), "according to its")
+    refused(
+        whole.replace(b"D:long section 3,m\n", b"D:long section 3,m\nD:long section 4,m\n"),
+        "claims|fewer than the 4 numbers of its header",
+    )
+    refused(whole.replace(b"D:long section 3,m\n", b""), "sections|according|more than the 2 numbers of its header")
+    refused(whole.replace(b"REFERENCE_LINE_INCREMENT = 0.5", b"REFERENCE_LINE_INCREMENT = 0"), "must be above 0")
+    refused(whole.replace(b"LONG_SECTION_V_INCREMENT = 1.0", b"LONG_SECTION_V_INCREMENT = x"), "must be a number")
+    refused(whole.replace(form.encode(), b"XXXX"), "numbers in the format 'XXXX'; must be one of")
+    # Missing numbers at the edge, which the right wheels would need; a narrow car drives beside them.
+    grid[5:9, 0] = np.nan
+    crg(path, form, grid)
+    refused(
+        path.read_bytes(), r"the right track, v = -0.750 m, is outside the road at 4 of 40 points, first at u = 102.5"
+    )
+    assert np.isfinite(read_surface(path).height(0.5)).all()
+    refused(whole, "outside the road at 40 of 40 points", track=2.4)
 
 
 def erd(path, samples=200, unit="mm", kind=5, count=2):

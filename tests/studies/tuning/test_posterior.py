@@ -115,6 +115,56 @@ def test_posterior_of_a_linear_model_is_the_closed_form():
     assert np.all(low < expected) and np.all(expected < high)
 
 
+def nonlinear_car(powers, data, noise):
+    """Return an emulator with one Legendre term for each cell."""
+    size = len(data)
+    cells = ResponseCells(
+        targets=(), names=("a", "b")[:size], weights=(), data=np.array(data), noise=np.full(size, noise)
+    )
+    emulator = Emulator(powers=np.array(powers), coefficients=np.eye(size), left_out=np.zeros(size))
+    return EmulatedCar(parameters=PARAMETERS, cells=cells, emulator=emulator, comfort=None, signals=(), cars=64)
+
+
+def test_two_separate_modes_have_their_probabilities():
+    """Cells (3 u^2 - 1) / 2 and v: modes at u = 0.6 and -0.6, a hundredth wide. Walkers alone would stay in theirs."""
+    pytest.importorskip("emcee")
+    noise = 0.02
+    posterior = posterior_of(nonlinear_car([[2, 0], [0, 1]], [0.04, 0.2], noise), discrepancy=0.0)
+    assert max(posterior.r_hat) < 1.01
+    samples = posterior.chains.reshape(-1, 2)
+    validated(
+        SUBJECT, "probability of one of two equal modes 55 standard deviations apart", np.mean(samples[:, 0] > 0.0),
+        0.5, abs=0.05, source="closed form: symmetry",
+    )  # fmt: skip
+    assert np.all(np.abs(np.abs(samples[:, 0]) - 0.6) < 0.1)
+    density = scipy.stats.norm(scale=noise).pdf
+    grid = np.linspace(-1.0, 1.0, 40_001)
+    evidence = 0.25 * np.trapezoid(density(0.04 - (1.5 * grid**2 - 0.5)), grid)
+    validated(
+        SUBJECT, "logarithm of the evidence of a posterior with two modes", posterior.log_evidence[0],
+        np.log(evidence), abs=0.03, source="closed form: quadrature",
+    )  # fmt: skip
+
+
+def test_a_mode_at_a_bound():
+    """Data that no value within the bounds follows, as those of another law: u presses on 1."""
+    pytest.importorskip("emcee")
+    noise, data = 0.1, (2.0, -0.1)
+    posterior = posterior_of(nonlinear_car([[1, 0], [0, 1]], data, noise), discrepancy=0.0)
+    assert max(posterior.r_hat) < 1.01
+    truncated = scipy.stats.truncnorm(-3.0 / noise, -1.0 / noise, loc=data[0], scale=noise)
+    validated(
+        SUBJECT, "mean distance from a bound at which a posterior ends", np.mean(1.0 - posterior.chains[:, :, 0]),
+        1.0 - truncated.mean(), rel=0.1, source="closed form: truncated normal distribution",
+    )  # fmt: skip
+    normal = scipy.stats.norm
+    evidence = normal.logsf(1.0 / noise) + np.log(0.25)
+    validated(
+        SUBJECT, "logarithm of the evidence of a posterior at a bound", posterior.log_evidence[0], evidence, abs=0.03,
+        source="closed form: integral of the normal distribution over the bounds",
+    )  # fmt: skip
+
+
 def test_errors_of_emulator_and_model_widen_the_intervals():
     pytest.importorskip("emcee")
     spreads = [

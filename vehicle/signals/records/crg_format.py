@@ -237,8 +237,14 @@ def _table(path: Path, data: bytes, number_format: str, columns: int, rows: int 
     for start in range(0, len(lines), per_row):
         row = "".join(line.ljust(LINE)[: per_line * width] for line in lines[start : start + per_row])
         cells.append([row[n * width : (n + 1) * width].strip() for n in range(columns)])
+        found = sum(map(bool, cells[-1])) + bool(row[columns * width :].strip())
+        if found != columns:
+            raise DataError(
+                f"{path}: row {len(cells)} of the numbers has {'more' if found > columns else 'fewer'} than the "
+                f"{columns} numbers of its header; the file is damaged; export it again"
+            )
     try:
-        numbers = [[np.nan if not cell or cell.startswith("*") else float(cell) for cell in row] for row in cells]
+        numbers = [[np.nan if cell.startswith("*") else float(cell) for cell in row] for row in cells]
     except ValueError as error:
         raise DataError(f"{path}: numbers in the format {number_format}: {error}; the file is damaged") from None
     return np.array(numbers)

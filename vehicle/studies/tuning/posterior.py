@@ -25,6 +25,7 @@ from vehicle.errors import ConfigurationError, MissingPartError, SimulationError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range, checked_ranges
 from vehicle.runs.car import Car
+from vehicle.studies.tuning.annealing import annealed, bounded, fitted_mixture
 from vehicle.studies.tuning.convergence import effective_samples, r_hat
 from vehicle.studies.tuning.emulator import Emulator, fitted_emulator
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -42,21 +43,18 @@ DISCREPANCY = 0.1
 WALKERS = 40
 """Number of walkers of the ensemble; more than twice any usual number of parameters."""
 
-SEARCH = 600
-"""Steps of differential evolution from which the independent proposals of the sampler are fitted."""
-
 BLOCK, MOST_BLOCKS = 500, 40
-"""Steps between two checks of the convergence, and maximum number of blocks. With independent proposals a
-posterior near a Gaussian of six parameters needs 500 steps, 1 s; ensemble moves alone needed more than a minute."""
+"""Steps between two checks of the convergence, and maximum number of blocks. With independent proposals a posterior of
+six parameters needs 500 to 2500 steps, 1 to 2 s; ensemble moves alone needed more than a minute."""
 
-FREEDOM = 5.0
-"""Degrees of freedom of the proposals."""
+REFIT, FITTED = 5, 5000
+"""Blocks after which the proposal is fitted again and the chains begin anew, and samples to which it is fitted."""
 
 CONVERGED = 1.01
 """Maximum R-hat, the limit of Vehtari et al. (2021)."""
 
 DRAWS = 20_000
-"""Draws of the importance sampling of the evidence, and of the prior for the first positions."""
+"""Draws of the importance sampling of the evidence."""
 
 EVIDENCE_BOUND = 10.0
 """Minimum ratio of the evidences of two laws for a decision: "strong" in Kass and Raftery, JASA 90 (1995), 773-795,
@@ -172,7 +170,8 @@ def emulated_car(
     """
     checked = checked_ranges(parameters)
     cells = response_cells(targets)
-    points = 2.0 * scipy.stats.qmc.Sobol(len(checked), seed=seed).random(cars) - 1.0
+    sequence = scipy.stats.qmc.Sobol(len(checked), seed=seed)
+    points = 2.0 * sequence.random_base2(max(cars - 1, 1).bit_length())[:cars] - 1.0
     paths = [parameter.path for parameter in checked]
     done = progress or (lambda fraction: None)
     built = []
@@ -217,29 +216,22 @@ def posterior_of(
     size = len(car.parameters)
 
     def log_likelihood(points: Vector) -> Vector:
-        inside = np.all(np.abs(points) <= 1.0, axis=1)
-        misfit = np.sum((data - car.emulator(np.clip(points, -1.0, 1.0))) ** 2 / variance, axis=1)
-        return np.where(inside, constant - 0.5 * misfit, -np.inf)
+        misfit = np.sum((data - car.emulator(bounded(points))) ** 2 / variance, axis=1)
+        return np.asarray(constant - 0.5 * misfit)
 
     random = np.random.default_rng(seed)
-    prior = random.uniform(-1.0, 1.0, (DRAWS, size))
-    first = log_likelihood(prior)
-    weights = np.exp(0.25 * (first - first.max())) + 1e-12  # wider than the posterior
-    chosen = random.choice(DRAWS, WALKERS, replace=False, p=weights / weights.sum())
-    search = emcee.EnsembleSampler(
-        WALKERS, size, log_likelihood, moves=[(emcee.moves.DEMove(), 0.9), (emcee.moves.StretchMove(), 0.1)],
-        vectorize=True,
-    )  # fmt: skip
-    search.random_state = np.random.RandomState(seed).get_state()
-    state = search.run_mcmc(prior[chosen], SEARCH)
-    near = search.get_chain(discard=SEARCH // 2, flat=True)
-    proposal = _Proposal(near.mean(axis=0), np.atleast_2d(np.cov(near.T)))
-    moves = [(emcee.moves.MHMove(proposal), 0.7), (emcee.moves.DEMove(), 0.3)]
-    sampler = emcee.EnsembleSampler(WALKERS, size, log_likelihood, moves=moves, vectorize=True)
-    sampler.random_state = search.random_state
-    for _ in range(MOST_BLOCKS):
+    population = annealed(log_likelihood, size, random)
+    state = population[random.choice(population.shape[0], WALKERS, replace=False)]
+    for block in range(MOST_BLOCKS):
+        if block % REFIT == 0:  # a proposal that missed a mode is fitted again to the walkers that are in it
+            moves = [(emcee.moves.MHMove(fitted_mixture(population)), 0.7), (emcee.moves.DEMove(), 0.3)]
+            sampler = emcee.EnsembleSampler(
+                WALKERS, size, lambda points: log_likelihood(points) + _log_prior(points), moves=moves, vectorize=True
+            )
+            sampler.random_state = np.random.RandomState(seed + block).get_state()
         state = sampler.run_mcmc(state, BLOCK)
         kept = np.swapaxes(sampler.get_chain(discard=sampler.iteration // 4), 0, 1)
+        population = kept.reshape(-1, size)[:: max(kept.shape[0] * kept.shape[1] // FITTED, 1)]
         factors = tuple(r_hat(kept[:, :, index]) for index in range(size))
         if max(factors) < CONVERGED:
             break
@@ -249,11 +241,11 @@ def posterior_of(
             f"posterior of {car.parameters[worst].path}: R-hat {factors[worst]:.3f} after {BLOCK * MOST_BLOCKS} steps, "
             f"must be below {CONVERGED:g}; narrow the bounds or leave out parameters that the data do not determine"
         )
-    samples = kept.reshape(-1, size)
-    best = float(np.max(log_likelihood(samples[:: max(samples.shape[0] // DRAWS, 1)])))
+    samples = kept.reshape(-1, size)[:: max(kept.shape[0] * kept.shape[1] // DRAWS, 1)]
+    best = float(np.max(log_likelihood(samples)))
     return Posterior(
         car=car,
-        chains=kept,
+        chains=bounded(kept),
         r_hat=factors,
         effective=tuple(effective_samples(kept[:, :, index]) for index in range(size)),
         log_evidence=_log_evidence(log_likelihood, samples, random),
@@ -262,37 +254,9 @@ def posterior_of(
     )
 
 
-class _Proposal:
-    """t distribution with 5 degrees of freedom and 1.5 times a covariance: wider tails than a Gaussian posterior.
-
-    Args:
-        mean: centre, (p,).
-        covariance: covariance of the samples, (p, p).
-    """
-
-    def __init__(self, mean: Vector, covariance: Vector) -> None:
-        self.mean, size = mean, mean.size
-        self.factor = np.linalg.cholesky(1.5 * covariance + 1e-12 * np.eye(size))
-        gamma = scipy.special.gammaln
-        self.constant = float(
-            gamma(0.5 * (FREEDOM + size)) - gamma(0.5 * FREEDOM) - 0.5 * size * np.log(FREEDOM * np.pi)
-        ) - float(np.sum(np.log(np.diag(self.factor))))
-
-    def log_density(self, points: Vector) -> Vector:
-        """Return ln of the density at points, (points, p)."""
-        scaled = scipy.linalg.solve_triangular(self.factor, (points - self.mean).T, lower=True)
-        square = np.sum(scaled**2, axis=0)
-        return np.asarray(self.constant - 0.5 * (FREEDOM + self.mean.size) * np.log1p(square / FREEDOM))
-
-    def draw(self, count: int, random: Any) -> Vector:
-        """Return draws of a random generator of NumPy, (count, p)."""
-        normal = random.normal(size=(count, self.mean.size)) @ self.factor.T
-        return np.asarray(self.mean + normal / np.sqrt(random.chisquare(FREEDOM, size=(count, 1)) / FREEDOM))
-
-    def __call__(self, points: Vector, random: Any) -> tuple[Vector, Vector]:
-        """Return independent new points and ln q(old) - ln q(new), as `emcee.moves.MHMove` needs."""
-        new = self.draw(points.shape[0], random)
-        return new, self.log_density(points) - self.log_density(new)
+def _log_prior(points: Vector) -> Vector:
+    """Return ln of the standard normal density, (points, p) -> (points,): a uniform prior of u = 2 Phi(v) - 1."""
+    return np.asarray(-0.5 * np.sum(points**2, axis=1) - 0.5 * points.shape[1] * np.log(2.0 * np.pi))
 
 
 def _log_evidence(
@@ -300,18 +264,15 @@ def _log_evidence(
 ) -> tuple[float, float]:
     """Return ln of the mean likelihood over the prior by importance sampling, and its standard error.
 
-    Proposal: 0.9 of a t distribution (5 degrees of freedom) with mean and 1.5 times the covariance of the samples, 0.1
-    of the prior.
+    Proposal: 0.9 of the mixture of t distributions fitted to the samples, 0.1 of the prior.
     """
-    size = samples.shape[1]
-    proposal = _Proposal(samples.mean(axis=0), np.atleast_2d(np.cov(samples.T)))
-    prior = 2.0**-size
+    proposal = fitted_mixture(samples)
     from_prior = random.uniform(size=DRAWS) < 0.1
     draws = proposal.draw(DRAWS, random)
-    draws[from_prior] = random.uniform(-1.0, 1.0, (int(from_prior.sum()), size))
-    inside = np.all(np.abs(draws) <= 1.0, axis=1)
-    density = 0.9 * np.exp(proposal.log_density(draws)) + 0.1 * prior * inside
-    logarithm = np.where(inside, log_likelihood(draws) + np.log(prior) - np.log(density), -np.inf)
+    draws[from_prior] = random.standard_normal((int(from_prior.sum()), samples.shape[1]))
+    prior = _log_prior(draws)
+    density = np.logaddexp(np.log(0.9) + proposal.log_density(draws), np.log(0.1) + prior)
+    logarithm = log_likelihood(draws) + prior - density
     top = float(np.max(logarithm))
     ratio = np.exp(logarithm - top)
     mean = float(np.mean(ratio))

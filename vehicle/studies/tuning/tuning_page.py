@@ -49,11 +49,11 @@ def tuning_page(
 
 def _driving(tuned: TunedCar) -> str:
     """Return how the tyres stand or roll in the measurements."""
-    words = []
+    states = []
     for each in tuned.measurements:
         road = None if isinstance(each.target, FrfTarget) else each.target.road
-        words.append((tuned.start if road is None else road.rolling).vehicle.driving.words)
-    return ", ".join(dict.fromkeys(words))
+        states.append((tuned.start if road is None else road.rolling).vehicle.driving.words)
+    return ", ".join(dict.fromkeys(states))
 
 
 def _values(tuned: TunedCar) -> Markup:
