@@ -33,6 +33,14 @@ LINEAR, VELOCITY, FORCE, COEFFICIENT = range(4)
 """Kinds of outputs, as in runtime/car.h."""
 
 
+LOAD_MEANING = {
+    "m": "travel of the wheel centre against the body, upwards",
+    "N": "force of the element on its moving part, in the axes of its carrier",
+    "N m": "torque of the spring in the joint",
+}
+"""Descriptions of load channels by unit."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Output:
     """Output of an FMU.
@@ -113,7 +121,7 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
             slope=_of_plates(model, direct_slopes(model, rows_of_loads)),
         )
         for name, row in zip(rows_of_loads.names, _each(rows), strict=True):
-            add(Output(name=name, unit=units[name], meaning="load, see docs/reference.md"), row)
+            add(Output(name=name, unit=units[name], meaning=LOAD_MEANING[units[name]]), row)
     rates = model.matrices.sensors @ (model.modal * model.poles) if model.matrices.sensors.size else model.slip[:0]
     no_plates = np.zeros((len(rates), len(system.inputs)))
     sensors = _each(_linear(model, Outputs(poles=rates, height=no_plates, velocity=no_plates)))
