@@ -47,7 +47,7 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
-    "comparison": {"analysis", "car", "linear", "notebook", "records", "rendering", "threads"},
+    "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}

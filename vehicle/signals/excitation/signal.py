@@ -39,7 +39,7 @@ class PlateMotion:
     """Second time derivative of the displacement [m/s2], wheel -> shape (m,)."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Signal:
     """Upward plate displacements z(t) on a uniform time grid that begins at t = 0.
 
@@ -61,6 +61,10 @@ class Signal:
     source: str = "array"
     sha256: str | None = None
     highest: float | None = None
+
+    def __repr__(self) -> str:
+        """Return source, length and wheels in a line."""
+        return f"Signal({self.source}, {self.duration:g} s, wheels {', '.join(self.wheels)})"
 
     def __post_init__(self) -> None:
         time = _read_only(self.time)
