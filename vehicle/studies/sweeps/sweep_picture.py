@@ -49,7 +49,7 @@ def draw_ranked(path: Path, cars: RankedCars, units: Mapping[str, str], caption:
     """
     parameters = cars.numbers()
     assert parameters is not None
-    title = f"Comfort at the {cars.point} over the varied parameters"
+    title = f"Comfort {cars.point} over the varied parameters"
     over = f"mean of {cars.inputs} inputs" if cars.inputs > 1 else "one input"
     names = [f"{name} [{units[name]}]" if units.get(name) else name for name in cars.paths]
     plot_sweep(path, names, parameters, cars.weighted, cars.unweighted, title, "; ".join(filter(None, (over, caption))))

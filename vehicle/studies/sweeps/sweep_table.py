@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.runs.output.folder import check_file, write_text
 from vehicle.signals.records.formats import recognised_format
 from vehicle.signals.records.sheet_format import read_sheet_texts
 from vehicle.signals.records.text_format import read_texts
@@ -124,6 +125,24 @@ class SweepTable:
             ConfigurationError: fewer than two cars have comfort values, or a varied value is no number.
         """
         return _later("sweep_picture").plotted(_later("sweep_ranking").ranked_cars(self), ax)
+
+    def report(self, file: Path | str, *, force: bool = False) -> Path:
+        """Write the report of the sweep as one HTML file: best and base car, picture, tables.
+
+        Args:
+            file: name of the report, with the ending .html.
+            force: replace a report that was written there before.
+
+        Raises:
+            ConfigurationError: another ending, or a file that exists without `force`.
+            OutputError: the file cannot be written.
+        """
+        path = Path(file)
+        check_file(path, ending=".html", force=force)
+        evaluated = f"evaluated from {self.made.get('evaluated_from_s') or 0:g} s on"
+        name = ", ".join(self.made.get("vehicles", ("car",)))
+        write_text(path, _later("sweep_page").sweep_page(self, name, units={}, caption=evaluated))
+        return path
 
     def _repr_html_(self) -> str:
         """Return the cars in the order of comfort for a notebook."""
