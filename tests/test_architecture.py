@@ -22,7 +22,7 @@ WINGS = {
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "linear", "reduced", "lumped"),
     "drawing": ("rendering", "notebook"),
-    "runs": ("car", "comparison", "output", "report"),
+    "runs": ("car", "fmu", "comparison", "output", "report"),
     "studies": ("design", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
@@ -52,6 +52,7 @@ ROOMS: dict[str, set[str]] = {
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
+    "fmu": {"car", "laws", "parameters", "reduced", "version"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
@@ -60,8 +61,9 @@ ROOMS: dict[str, set[str]] = {
     | {"report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
-    "report": {"analysis", "car", "linear", "output", "parameters", "records", "rendering", "simulation", "version"},
-    "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "linear"}
+    "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
+    | {"simulation", "version"},
+    "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "fmu", "linear"}
     | {"optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
     | {"sweeps", "threads", "tuning", "version"},
     "threads": set(),
@@ -69,7 +71,17 @@ ROOMS: dict[str, set[str]] = {
     "compiler": set(),
     "errors": set(),
     "names": set(),
-    "__init__": {"car", "comparison", "excitation", "optimisation", "output", "parameters", "records", "replication"}
+    "__init__": {
+        "car",
+        "comparison",
+        "excitation",
+        "fmu",
+        "optimisation",
+        "output",
+        "parameters",
+        "records",
+        "replication",
+    }
     | {"report", "sweeps", "tuning"},
     "__main__": {"commands", "version"},
     **{name: {"commands"} for name in OLDER},

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what pip cannot, on Debian, as root: the off-screen OpenGL library (OSMesa) and the venv module; with the
-# word "tests" what tests alone need: Chromium and its driver, which open the report, and CalculiX, which makes bodies.
+# word "tests" what tests alone need: Chromium, its driver and Poppler, which open and print the report, and CalculiX,
+# which makes bodies.
 set -u
 PATH=$PATH:/sbin:/usr/sbin
 wanted=()
@@ -8,6 +9,7 @@ if [ "${1:-}" = tests ]; then
   without="the tests of the report in a browser and of bodies from CalculiX are skipped"
   [ -x /usr/bin/chromium ] || wanted+=(chromium)
   [ -x /usr/bin/chromedriver ] || wanted+=(chromium-driver)
+  command -v pdftoppm >/dev/null || wanted+=(poppler-utils)
   command -v ccx >/dev/null || wanted+=(calculix-ccx)
 else
   without="without libosmesa6 there are no films"

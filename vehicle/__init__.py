@@ -59,6 +59,7 @@ if TYPE_CHECKING:
     from vehicle.runs.comparison.compared_run import compare as compare
     from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
+    from vehicle.runs.fmu.fmu_file import write_fmu as write_fmu
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
     from vehicle.runs.output.saved_run import save_run as save_run
     from vehicle.runs.report.report_file import write_report as write_report
@@ -122,6 +123,7 @@ _MODULES = {
     "shipped_inputs": "vehicle.signals.excitation.input_files",
     "sweep": "vehicle.studies.sweeps.plan",
     "tune": "vehicle.studies.tuning.car_fit",
+    "write_fmu": "vehicle.runs.fmu.fmu_file",
     "write_report": "vehicle.runs.report.report_file",
     "write_signal": "vehicle.signals.excitation.signal_file",
 }

@@ -16,6 +16,9 @@ SIDE_SIGN = {"right": 1.0, "left": -1.0}
 ENGINES = ("mujoco", "reduced", "auto")
 """Engines of a run: complete MuJoCo model, reduced model, or the reduced model inside its valid range."""
 
+FMI_VERSIONS = ("2", "3")
+"""Versions of the Functional Mock-up Interface (FMI) of an exported car, the default first."""
+
 AXES = ("x", "y", "z")
 
 _UNITS = {

@@ -41,7 +41,6 @@ from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.runs.output.folder import write_whole
 from vehicle.studies.tuning.fit_result import TuningResult
-from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
 from vehicle.studies.tuning.least_squares import Target, fit
 from vehicle.studies.tuning.measured_targets import SPACING, MeasuredTarget
@@ -168,7 +167,7 @@ def _draw(
     end = tuning.build(result.values)
     for index, measurement in enumerate(measurements, 1):
         target = measurement.target
-        if isinstance(target, FrfTarget):
+        if not isinstance(target, RecordTarget):
             file = folder / f"frf_{index}_{target.name}.png"
             write_whole(file, partial(plot_responses, target=target, start=start, fitted=end, source=source))
         else:

@@ -9,11 +9,11 @@ from importlib import import_module
 import numpy as np
 import pytest
 
-from vehicle.commands.advice import axis_of, wheel_of
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.inspect import main as inspect
 from vehicle.errors import SimulationError
 from vehicle.signals.records.channel import Channel
+from vehicle.signals.records.channel_words import axis_of, suggested_channels, wheel_of
 
 
 @pytest.mark.parametrize(
@@ -35,6 +35,34 @@ def test_names_tell_the_wheel(name, wheel):
 )
 def test_names_tell_the_axis(name, direction, axis):
     assert axis_of(Channel(name=name, values=np.zeros(3), direction=direction)) == axis
+
+
+def test_names_and_units_suggest_model_channels():
+    names = {
+        "Stempel VL": ("mm", "plate_fl_displacement"),
+        "Federweg VL": ("mm", None),
+        "Radträger VL z": ("g", "knuckle_fl_acc_z"),
+        "Hub RR vertical": ("m/s2", "knuckle_rr_acc_z"),
+        "Sitzschiene z": ("m/s²", "seat_rail_acc_z"),
+        "seat Z": ("g", "seat_acc_z"),
+        "Motor x": ("g", "engine_acc_x"),
+        "Roof z": ("g", None),
+        "Wheel FL z": ("mm/s", None),
+    }
+    channels = [Channel(name=name, values=np.zeros(3), unit=unit) for name, (unit, _) in names.items()]
+    expected = {model: name for name, (_, model) in names.items() if model}
+    assert suggested_channels(channels) == expected
+    assert suggested_channels(channels, ["engine_acc_x"]) == {"engine_acc_x": "Motor x"}
+
+
+def test_plate_and_accelerations_of_one_file_give_the_comparison(tmp_path, capsys):
+    time = np.arange(4800) / 400.0
+    columns = [("Shaker FL", "mm", sine(time, 1.0, 2.0)), ("Hub FL z", "g", sine(time, 0.1, 2.0))]
+    written(tmp_path / "a.csv", time, columns)
+    assert inspect([str(tmp_path / "a.csv")]) == 0
+    line = capsys.readouterr().out.splitlines()[-1]
+    assert line.startswith("  python -m vehicle compare RUN --measured ")
+    assert line.endswith(" --map 'plate_fl_displacement=Shaker FL' --map 'knuckle_fl_acc_z=Hub FL z'")
 
 
 def written(path, time, columns):

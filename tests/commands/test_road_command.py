@@ -43,6 +43,34 @@ def test_a_measured_profile_is_met_at_the_speed(tmp_path):
     np.testing.assert_allclose(signal.displacement["fl"][late], 0.5 * wave, atol=1e-8)
 
 
+def test_the_file_holds_the_road_beside_what_the_tyre_takes(tmp_path, capsys):
+    file = tmp_path / "cleat.csv"
+    arguments = ["--obstacle", "cleat:20x50:right@15", "--speed", "36", "--output", str(file)]
+    assert main(["--vehicle", "sedan", *arguments]) == 0
+    assert (tmp_path / "cleat.png").is_file()
+    table = np.genfromtxt(file, delimiter=",", names=True, deletechars="", skip_header=3)
+    distance = 10.0 * table["time_[s]"]
+    on = (distance > 15.0 + 2e-6) & (distance < 15.05 - 2e-6)
+    assert on.sum() == 4
+    np.testing.assert_allclose(table["road_fr_[m]"], np.where(on, 0.02, 0.0), atol=1e-9)
+    assert not np.any(table["road_fl_[m]"]) and not np.any(table["slope_fl_[-]"])
+    # The tyre is lifted before and behind the cleat: up the slope, then down it.
+    felt = distance[table["displacement_fr_[m]"] > 1e-4]
+    assert felt[0] < 14.9 and felt[-1] > 15.15
+    slope = table["slope_fr_[-]"]
+    assert np.sum(slope) == pytest.approx(0.0, abs=1e-3 * np.sum(np.abs(slope)))
+    assert distance[np.argmax(slope)] < 15.0 and distance[np.argmin(slope)] > 15.05 and 0.1 < slope.max() < 0.4
+    # It drives plates like any other file.
+    np.testing.assert_allclose(
+        read_signal(file, accept_implausible=True).displacement["fr"], table["displacement_fr_[m]"], atol=1e-9
+    )
+    assert main(["--vehicle", "sedan", *arguments, "--no-figures"]) == 2
+    (tmp_path / "cleat.csv").unlink()
+    assert main(["--vehicle", "sedan", *arguments]) == 2
+    assert "cleat.png" in capsys.readouterr().err
+    assert main(["--vehicle", "sedan", *arguments, "--no-figures"]) == 0
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 from importlib import import_module
 
 import pytest
@@ -16,6 +17,7 @@ from vehicle.model.parameters.paths import value_of
 NEEDS = {
     "docs/python.md": ("pymoo", "pandas"),
     "docs/tutorials/study.md": ("pymoo",),
+    "docs/tutorials/thirty-minutes.md": ("asammdf",),
     "docs/howto/optimise.md": ("pymoo",),
     "docs/howto/loads.md": ("rainflow",),
     "docs/howto/shaker.md": ("rainflow", "h5py"),
@@ -83,6 +85,16 @@ def test_python_examples_compute_what_the_page_says(site):
 def test_the_tutorial_finds_the_stiffness_of_the_bench(site):
     names = site.execution("docs/tutorials/own-measurement.md").names
     assert names["result"].values["bushings.suspension_mount.stiffness.z"] == pytest.approx(5.0e5, rel=0.05)
+
+
+def test_the_newcomer_finds_the_parameters_of_both_files(site):
+    prepared("docs/tutorials/thirty-minutes.md")
+    execution = site.execution("docs/tutorials/thirty-minutes.md")
+    fitted = json.loads((execution.folder / "runs" / "tune" / "tune.json").read_text(encoding="utf-8"))
+    for row in fitted["parameters"]:
+        assert abs(row["value"] - execution.names["real"][row["path"]]) < 3.0 * row["standard_error"]
+        assert row["standard_error"] < 0.01 * row["value"]
+    assert "coulomb_friction from " in (execution.folder / "a_or_b.html").read_text(encoding="utf-8")
 
 
 def test_python_examples_show_every_public_function():

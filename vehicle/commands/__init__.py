@@ -19,6 +19,7 @@ COMMANDS = (
     "optimise",
     "tune",
     "new",
+    "fmu",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 

@@ -2,44 +2,16 @@
 
 from __future__ import annotations
 
-import re
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.errors import VehicleError
+from vehicle.signals.records.channel_words import axis_of, map_options, suggested_channels, wheel_of, words_of
 
 if TYPE_CHECKING:
     from vehicle.signals.records.channel import Channel, Measurement
-
-FRONT = ("front", "f", "vorn", "vorne", "v", "va")
-REAR = ("rear", "r", "back", "hinten", "hinter", "h", "ha")
-RIGHT = ("right", "r", "rechts", "re")
-LEFT = ("left", "l", "links", "li")
-"""Words for the ends and the sides of a car."""
-
-PAIRS = {
-    "fr": "fr",
-    "fl": "fl",
-    "rr": "rr",
-    "rl": "rl",
-    "vr": "fr",
-    "vl": "fl",
-    "hr": "rr",
-    "hl": "rl",
-    "rf": "fr",
-    "lf": "fl",
-    "lr": "rl",
-}
-"""Two letters for a wheel, in English and German, the side first or last."""
-
-AXES = {
-    "x": ("x", "longitudinal", "long", "fore", "laengs", "längs"),
-    "y": ("y", "lateral", "lat", "quer"),
-    "z": ("z", "vertical", "vert", "vertikal", "hoch", "heave"),
-}
-"""Words for the axes."""
 
 SHAKER_WHEEL = "fl"
 """Shaker wheel of the car `focus`, the default of the command `shaker`."""
@@ -49,48 +21,6 @@ SHORTEST = 8.0
 
 LARGEST_CHECKED = 200_000_000
 """Largest file that is read a second time, to see that the command runs [bytes]."""
-
-
-def words_of(name: str) -> list[str]:
-    """Return the words of a channel name in small letters: split at signs, digits and capitals.
-
-    Args:
-        name: as in "Shaker_FR", "accSeatZ", "Feder vorn links".
-    """
-    parts = re.findall(r"[A-ZÄÖÜ]?[a-zäöüß]+|[A-ZÄÖÜ]+(?![a-zäöüß])", name)
-    return [part.lower() for part in parts]
-
-
-def wheel_of(name: str) -> str:
-    """Return the wheel in the name of a channel; empty if there is none.
-
-    Args:
-        name: as "FR", "VL", "rear left", "hinten rechts", "LeftFront".
-    """
-    parts = words_of(name)
-    pair = next((PAIRS[word] for word in parts if word in PAIRS), "")
-    if pair:
-        return pair
-    end = next((letter for letter, names in (("f", FRONT), ("r", REAR)) if _any(parts, names)), "")
-    side = next((letter for letter, names in (("r", RIGHT), ("l", LEFT)) if _any(parts, names)), "")
-    return end + side if end and side else ""
-
-
-def _any(parts: Sequence[str], names: Sequence[str]) -> bool:
-    """Return True if a word of more than one letter is among the names."""
-    return any(word in names for word in parts if len(word) > 1)
-
-
-def axis_of(channel: Channel) -> str:
-    """Return the axis of a channel, from its direction or its name; empty if it has none.
-
-    Args:
-        channel: of a measurement.
-    """
-    if channel.direction:
-        return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
-    parts = words_of(channel.name)
-    return next((axis for axis, names in AXES.items() if any(word in names for word in parts)), "")
 
 
 def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
@@ -128,6 +58,20 @@ def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
     if histories:
         return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"
+
+
+def comparison_for(measurement: Measurement, file: str) -> str:
+    """Return the command that compares the accelerations of a file with a run of its plate; empty without both.
+
+    Args:
+        measurement: the file.
+        file: name of the file as typed.
+    """
+    suggested = suggested_channels(measurement.channels)
+    plates = [name for name in suggested if name.startswith("plate_")]
+    if not plates or len(plates) == len(suggested):
+        return ""
+    return f"{_line('compare', 'RUN', '--measured', file)} {map_options(suggested)}"
 
 
 def _line(*arguments: str) -> str:

@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.advice import command_for
+from vehicle.commands.advice import command_for, comparison_for
 from vehicle.commands.command_line import command
 from vehicle.commands.input_options import database_option
 from vehicle.commands.options import command_parser, message_options
@@ -43,7 +43,13 @@ def _job(options: argparse.Namespace) -> None:
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
         command, reason = command_for(measurement, name)
-        return {**contents(measurement), "command": command or None, "command_reason": reason}
+        comparison = comparison_for(measurement, name) or None
+        return {
+            **contents(measurement),
+            "command": command or None,
+            "command_reason": reason,
+            "comparison": comparison,
+        }
 
     names, several = expanded(options.files)
     if not several:
@@ -201,6 +207,9 @@ def report(content: dict[str, Any]) -> str:
         lines += [f"{content['command_reason']}:", f"  {content['command']}"]
     else:
         lines.append(f"no command: {content['command_reason']}")
+    if content["comparison"]:
+        lines += ["compares the accelerations with the run RUN of that command; tune takes the same --map:",
+                  f"  {content['comparison']}"]  # fmt: skip
     return "\n".join(lines)
 
 

@@ -39,7 +39,7 @@ def parser() -> Parser:
         dest="source",
         required=True,
         metavar="CAR",
-        help=f"template: a shipped car with four wheels ({', '.join(CARS)}), or a vehicle file",
+        help="template: a shipped car with four wheels, as sedan or focus_road, or the file of a car",
     )
     parser.add_argument(
         "--numbers",

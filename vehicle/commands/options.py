@@ -29,7 +29,7 @@ def command_parser(name: str, description: str) -> Parser:
     return parser
 
 
-CAR_HELP = f"vehicle file, or the name of a shipped car: {', '.join(CARS)}"
+CAR_HELP = f"folder or file of a car, or the name of a shipped car: {', '.join(CARS)}"
 VEHICLE_HELP = f"{CAR_HELP}; the car of Bommer 2006 by default"
 
 

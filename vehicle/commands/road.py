@@ -9,13 +9,18 @@ from typing import TYPE_CHECKING
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_file_of
 from vehicle.commands.input_options import ROAD_NUMBERS, record_choice, road_options
-from vehicle.commands.options import command_parser, message_options, output_options, vehicle_options
+from vehicle.commands.options import command_parser, figures_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from vehicle.drawing.rendering.road_plot import RoadTrack, Vector
     from vehicle.model.parameters.vehicle import Vehicle
     from vehicle.runs.car.road import Drive, Road
+    from vehicle.signals.excitation.road_drive import RoadDrive
+    from vehicle.signals.excitation.signal import Signal
 
 
 def parser() -> Parser:
@@ -34,14 +39,18 @@ def parser() -> Parser:
     )
     road_options(parser, lambda _: True, lambda options: options.road_class is not None)
     output_options(parser, Path("road.csv"), metavar="FILE.csv")
+    figures_option(parser)
     message_options(parser, quiet=True)
     return parser
 
 
 def _job(options: argparse.Namespace) -> None:
+    from vehicle.drawing.rendering.road_plot import plot_road
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.runs.output.folder import write_whole
+    from vehicle.runs.output.free_names import named_file
     from vehicle.signals.excitation.obstacle import Obstacle
+    from vehicle.signals.excitation.road_drive import RoadDrive
     from vehicle.signals.excitation.signal_file import write_signal
 
     roads = [road for road in (options.road_class, options.profile, options.obstacle) if road is not None]
@@ -49,14 +58,52 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError("road: needed is one of --class, --profile and --obstacle")
     inputs = tuple(file for file in (options.profile, options.vehicle) if file is not None)
     path = output_file_of(options, options.output, ending=".csv", protect=inputs)
+    picture = path.with_suffix(".png")
+    if options.figures:
+        named_file(options.held, picture, ending=".png", force=options.force, protect=inputs)
     vehicle = load_vehicle(options.vehicle, options.overrides)
     if options.obstacle is not None:
         Obstacle.parse(options.obstacle)
-    signal = road_drive(roads[0] if options.road_class is None else roads[0].upper(), options, vehicle).signal()
-    write_whole(path, lambda file: write_signal(file, signal, [signal.source, f"wheels of {vehicle.name}"]))
+    drive = road_drive(roads[0] if options.road_class is None else roads[0].upper(), options, vehicle)
+    signal, comments, beside = drive.signal(), [f"wheels of {vehicle.name}"], {}
+    if isinstance(drive, RoadDrive):
+        slopes = drive.slopes(signal)
+        beside = {f"road_{wheel} [m]": signal.profile[wheel] for wheel in signal.wheels}
+        beside |= {f"slope_{wheel} [-]": slopes[wheel] for wheel in signal.wheels}
+        comments.append("displacement and slope: what the tyre takes of the road below it")
+    write_whole(path, lambda file: write_signal(file, signal, [signal.source, *comments], beside=beside))
+    if options.figures and isinstance(drive, RoadDrive):
+        distance, tracks = _shown_tracks(drive, signal, slopes)
+        title = drive.name.replace("_", " ")
+        write_whole(picture, lambda file: plot_road(file, distance, tracks, title, signal.source))
     if not options.quiet:
         sizes = ", ".join(f"{wheel} {1e3 * float(z.std()):.3g}" for wheel, z in signal.displacement.items())
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")
+
+
+def _shown_tracks(
+    drive: RoadDrive, signal: Signal, slopes: Mapping[str, Vector]
+) -> tuple[Vector, dict[str, RoadTrack]]:
+    """Return distances [m] and the road below the foremost wheel of each track, for the picture.
+
+    Equal tracks are one. A short drive is shown to its end.
+    """
+    import numpy as np
+
+    from vehicle.drawing.rendering.road_plot import RoadTrack
+
+    distance, (begin, end) = signal.time * drive.speed / 3.6, drive.shown
+    shift = max(end - float(distance[-1]), 0.0)
+    inside = (distance >= begin - shift) & (distance <= end - shift)
+    leaders = {f"{side} track": wheel for wheel, behind, side in reversed(drive.wheels) if behind == 0.0}
+    tracks = {
+        name: RoadTrack(signal.profile[wheel][inside], signal.displacement[wheel][inside], slopes[wheel][inside])
+        for name, wheel in sorted(leaders.items())
+    }
+    first, *others = tracks.values()
+    if others and all(np.array_equal(track.road, first.road) for track in others):
+        tracks = {"both tracks": first}
+    return distance[inside], tracks
 
 
 def class_or_profile(text: str) -> str | Path:

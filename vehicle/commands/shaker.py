@@ -193,6 +193,7 @@ def _job(options: argparse.Namespace) -> None:
                 slow=options.slow_motion,
                 exaggeration=options.exaggeration,
                 speed=None if drive is None or drive.speed is None else drive.speed / 3.6,
+                profile=(signal.time, signal.profile) if signal.profile else None,
             )
             progress = ProgressLine("film      ", enabled=not options.quiet)
             film(run, path, take, jobs=drawing_jobs(), progress=progress)

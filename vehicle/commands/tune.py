@@ -8,12 +8,11 @@ import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.compare import clock_of, drift_option, mapping_options, measured_choice
+from vehicle.commands.compare import drift_option
 from vehicle.commands.destination import output_folder_of
-from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
     CAR_HELP,
     command_parser,
@@ -23,6 +22,7 @@ from vehicle.commands.options import (
     set_option,
 )
 from vehicle.commands.parser import Parser
+from vehicle.commands.tune_measurements import has_files, measured_targets, measurement_options
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import vehicle_file
 
@@ -33,30 +33,6 @@ if TYPE_CHECKING:
     from vehicle.studies.tuning.posterior_text import NamedPosterior
 
 OUTPUT = Path("runs/tune")
-
-
-class _Measurement(argparse.Action):
-    """Action that adds measurement files to the list of all, in the order of the command line."""
-
-    def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
-        listed = getattr(namespace, "measurements", None) or []
-        content = str(option).removeprefix("--")
-        added = [argparse.Namespace(content=content, file=file, signal=None, stuck=False) for file in values]
-        namespace.measurements = [*listed, *added]
-        namespace.latest = added
-
-
-class _OfMeasurement(argparse.Action):
-    """Action that sets an option of the measurement files of the preceding --frf or --record."""
-
-    def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
-        latest = getattr(namespace, "latest", None)
-        if not latest:
-            raise ConfigurationError(f"{option}: belongs to the --frf or --record before it; place it after one")
-        for each in latest:
-            if self.dest == "stuck" and each.content != "frf":
-                raise ConfigurationError(f"--stuck: belongs to --frf; {each.file} contains time histories")
-            setattr(each, self.dest, values if self.nargs is None else True)
 
 
 def parser() -> Parser:
@@ -73,44 +49,12 @@ def parser() -> Parser:
         help="parameters to fit and their bounds above 0, in their unit, as front.damper.viscous=800:4000; the fit "
         "begins at the value of the car, which --set changes",
     )
-    parser.set_defaults(measurements=[], latest=[])
-    files = parser.add_argument_group("measurements")
-    files.add_argument(
-        "--frf",
-        nargs="+",
-        type=Path,
-        action=_Measurement,
-        metavar="FILE",
-        help="measured FRFs, or accelerations and plate as time histories, in any format of `inspect`; repeatable",
+    measurement_options(parser)
+    responses = parser.scoped_group(
+        "FRFs",
+        needs="--frf, or to --levels",
+        active=lambda options: has_files(options, "frf") or any(each.levels for each in options.measurements),
     )
-    files.add_argument(
-        "--record",
-        nargs="+",
-        type=Path,
-        action=_Measurement,
-        metavar="FILE",
-        help="measured time histories, of a bump or of another input, in any format of `inspect`; repeatable",
-    )
-    files.add_argument(
-        "--signal",
-        action=_OfMeasurement,
-        metavar="FILE",
-        help="plate displacement of the files of the preceding --frf or --record; the plate in each file by default",
-    )
-    files.add_argument(
-        "--stuck",
-        nargs=0,
-        action=_OfMeasurement,
-        help="the dampers stick at the level of the preceding --frf: linear car, no plate signal needed",
-    )
-    mapping_options(files)
-    record_options(files, "", channel=False)
-    files.add_argument(
-        "--channels",
-        metavar="NAME,...",
-        help="fitted channels of the model; by default all in the files",
-    )
-    responses = parser.scoped_group("FRFs", needs="--frf", active=lambda options: _has_files(options, "frf"))
     responses.add_argument(
         "--band", default="3:45", metavar="A:B", help="fitted frequencies [Hz]; %(default)s by default"
     )
@@ -137,7 +81,7 @@ def parser() -> Parser:
         "noise is overestimated",
     )
     records = parser.scoped_group(
-        "time histories", needs="--record", active=lambda options: _has_files(options, "record")
+        "time histories", needs="--record", active=lambda options: has_files(options, "record")
     )
     records.add_argument(
         "--delay",
@@ -148,7 +92,9 @@ def parser() -> Parser:
     )
     drift_option(records)
     records.add_argument(
-        "--stretch", metavar="FROM:TO", help="fitted part of the signal [s]; the whole record by default"
+        "--stretch",
+        metavar="FROM:TO",
+        help="fitted part of the signal [s]; the whole record by default, on a road from 2 s on",
     )
     records.add_argument(
         "--lowpass",
@@ -186,10 +132,6 @@ def parser() -> Parser:
     return parser
 
 
-def _has_files(options: argparse.Namespace, content: str) -> bool:
-    return any(each.content == content for each in options.measurements)
-
-
 def _job(options: argparse.Namespace) -> None:
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
@@ -211,9 +153,10 @@ def _job(options: argparse.Namespace) -> None:
     parameters = ranges_of(car.vehicle, {entry.path: (entry.low, entry.high) for entry in bounds})
     require_fittable(parameters, car.vehicle)
     files = tuple(each.file for each in options.measurements)
-    protect = tuple(Path(each.signal) for each in options.measurements if each.signal is not None)
+    inputs = [name for each in options.measurements for name in (each.signal, each.road) if name is not None]
+    protect = tuple(Path(name) for name in inputs)
     folder = output_folder_of(options, OUTPUT, protect=(*files, *protect))
-    targets = _measured(options, car)
+    targets = measured_targets(options, car)
     if not (options.quiet or options.json):
         for text in dict.fromkeys(text for target in targets for text in target.notices):
             print(f"notice: {text}", file=sys.stderr, flush=True)
@@ -243,47 +186,6 @@ def _job(options: argparse.Namespace) -> None:
         print(f"{folder}: {', '.join(names)}")
 
 
-def _measured(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
-    """Return the targets of all measurement files."""
-    from vehicle.studies.tuning.measured_targets import measured_histories, measured_responses
-
-    choice = measured_choice(options)
-    shared: dict[str, Any] = {
-        "choice": choice,
-        "inverted": options.turned,
-        "fitted": options.channels.split(",") if options.channels else (),
-    }
-    delay, drift = clock_of(options)
-    targets = []
-    for each in options.measurements:
-        if each.content == "frf":
-            target = measured_responses(
-                car,
-                each.file,
-                each.signal,
-                stuck=each.stuck,
-                band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
-                spacing=options.spacing,
-                window=options.window,
-                averages=options.averages,
-                **shared,
-            )
-        else:
-            stretch = _pair("--stretch", options.stretch, "FROM:TO in s, as 4.9:6.5") if options.stretch else None
-            target = measured_histories(
-                car,
-                each.file,
-                each.signal,
-                delay=delay,
-                drift=drift,
-                stretch=stretch,
-                lowpass=options.lowpass,
-                **shared,
-            )
-        targets.append(target)
-    return targets
-
-
 def _posteriors(
     options: argparse.Namespace, car: Car, parameters: Sequence[Range], measured: Sequence[MeasuredTarget]
 ) -> list[NamedPosterior]:
@@ -311,18 +213,6 @@ def _posteriors(
         emulated = emulated_car(law_car, law_parameters, targets, cars=options.samples, progress=progress)
         posteriors.append((name, posterior_of(emulated, discrepancy=0.01 * options.discrepancy)))
     return posteriors
-
-
-def _pair(option: str, text: str, needed: str) -> tuple[float, float]:
-    """Return two ascending numbers of at least 0, separated by a colon."""
-    numbers: Sequence[float]
-    try:
-        numbers = [float(part) for part in text.split(":")]
-    except ValueError:
-        numbers = []
-    if len(numbers) != 2 or not 0.0 <= numbers[0] < numbers[1]:
-        raise ConfigurationError(f"{option} {text}: must be {needed}")
-    return numbers[0], numbers[1]
 
 
 main = command(parser, _job)

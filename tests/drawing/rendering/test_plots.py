@@ -16,7 +16,7 @@ from tests.drawing.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.drawing.rendering import plots
 from vehicle.drawing.rendering.figure import FADED, wrapped_phase
 from vehicle.drawing.rendering.frf_plot import plot_frfs
-from vehicle.drawing.rendering.plots import distinct, outline, plot_frf, plot_time
+from vehicle.drawing.rendering.plots import distinct, envelope, plot_frf, plot_time
 from vehicle.drawing.rendering.recorded_run import excerpt_start, liveliest
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -215,19 +215,46 @@ def test_without_slip_the_knuckle_decides(run):
     assert 0.0 <= start <= 0.2
 
 
-def test_an_outline_keeps_the_extremes_of_every_pixel_column(monkeypatch):
-    """Column by column, sample by sample: nothing is lost, and nothing moves by more than a piece, 0.11 columns."""
-    monkeypatch.setattr(plots, "MOST_POINTS", 800)
-    count, columns = 12_347, 43
+def test_an_envelope_keeps_every_sample_and_has_no_gaps():
+    """Each sample is between minimum and maximum of its segment; neighbouring segments share a sample."""
+    count = 12_347
     time, values = np.linspace(0.0, 1e-3 * (count - 1), count), np.random.default_rng(1).normal(size=count)
     values[[0, 5003, count - 1]] = 90.0, -80.0, 70.0  # of a single sample each, at both ends too
-    at, drawn = outline(time, values)
-    assert 600 < drawn.size <= 800 and np.all(np.diff(at) >= 0.0)
-    piece, width = 0.031, time[-1] / columns
-    for column in range(columns):
-        begin, end = column * width, (column + 1) * width
-        seen = [y for t, y in zip(at, drawn, strict=True) if begin <= t <= end]
-        surely = [y for t, y in zip(time, values, strict=True) if begin + piece <= t <= end]
-        perhaps = [y for t, y in zip(time, values, strict=True) if begin <= t <= end + piece]
-        assert min(perhaps) <= min(seen) <= min(surely) and max(surely) <= max(seen) <= max(perhaps)
-    np.testing.assert_array_equal(outline(time[:800], values[:800])[1], values[:800])
+    at, low, high = envelope(time, values)
+    assert at.size == low.size == high.size == plots.SEGMENTS and np.all(np.diff(at) > 0.0)
+    length = time[-1] / plots.SEGMENTS
+    for middle, bottom, top in zip(at, low, high, strict=True):
+        inside = values[np.abs(time - middle) <= 0.5 * length - 1e-3]
+        around = values[np.abs(time - middle) <= 0.5 * length + 1e-3]
+        assert around.min() <= bottom <= inside.min() and inside.max() <= top <= around.max()
+    assert np.all(low[1:] <= high[:-1]) and np.all(low[:-1] <= high[1:])
+    assert (low.min(), high[0], high[-1]) == (-80.0, 90.0, 70.0)
+    for part in envelope(time[: plots.SEGMENTS], values[: plots.SEGMENTS])[1:]:
+        np.testing.assert_array_equal(part, values[: plots.SEGMENTS])
+
+
+def test_no_error_band_where_the_coherence_is_low(long_run, response, tmp_path, figures):
+    """There the band would be wider than the magnitude."""
+    low = (response.frequency > 8.0) & (response.frequency < 12.0)
+    coherence = np.where(low, 0.49, response.coherence)
+    plot_frf(tmp_path / "frf.png", long_run, dataclasses.replace(response, coherence=coherence), "")
+    bands: Any = [part for part in every_axis(figures[0])[0].collections if isinstance(part, PolyCollection)]
+    assert len(bands) == 4
+    for band in bands:
+        edges = np.concatenate([path.vertices[:, 0] for path in band.get_paths()])
+        assert edges.min() < 8.0 and edges.max() > 12.0
+        assert not np.any((edges > 8.0) & (edges < 12.0))
+
+
+def test_figures_of_runs_that_are_compared_have_equal_scales(long_run, tmp_path, figures):
+    louder = dataclasses.replace(
+        long_run,
+        recording=dataclasses.replace(
+            long_run.recording, channels={name: 3.0 * values for name, values in long_run.recording.channels.items()}
+        ),
+    )
+    for run in (long_run, louder):
+        plot_time(tmp_path / "time.png", run, page=True, others=[long_run, louder])
+    plot_time(tmp_path / "time.png", long_run, page=True)
+    limits = [[axis.get_ylim() for axis in every_axis(figure)] for figure in figures]
+    assert limits[0] == limits[1] != limits[2]

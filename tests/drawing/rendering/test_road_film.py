@@ -60,6 +60,28 @@ def test_every_wheel_stands_on_the_strip_of_its_track(road_car, road_run):
     assert ahead == pytest.approx(road_run.recording["plate_fr_displacement"][420], abs=3.5e-5)
 
 
+def test_the_strip_is_the_road_itself_where_it_is_known(road_car, road_run):
+    """A cleat of 50 mm, which the tyre takes as a longer and lower bump."""
+    wheels, time = road_car.vehicle.composition.wheels, road_run.recording.time
+    profile = {
+        wheel.name: np.where(np.abs(SPEED * time - 10.0 - (wheel.patch[0] - 0.85)) < 0.025, 0.02, 0.0)
+        for wheel in wheels
+    }
+    strip = RoadStrip(wheels, road_run.recording, SPEED, 1e-3, (time, profile))
+    moment = float(time[400])
+    under = np.array([0.85 + SPEED * moment - 10.0])
+    assert strip.height(1, under, moment, 0.0) == pytest.approx(0.02, abs=2e-3)
+    np.testing.assert_array_equal(strip.height(1, under + np.array([-0.1, 0.1]), moment, 0.0), 0.0)
+    scene = mujoco.MjvScene(road_car.model, maxgeom=2000)
+    strip.draw(scene, moment, 0.0, 2.0)
+    boxes = scene.geoms[: scene.ngeom]
+    top = max(box.pos[2] for box in boxes)
+    assert top == pytest.approx(wheels[0].patch[2] + 0.04 - 0.015, abs=5e-3)
+    # Short pieces at the cleat only.
+    short = [box for box in boxes if box.size[0] < 0.02]
+    assert 8 <= len(short) <= 32 and all(abs(box.pos[0] - under[0]) < 0.1 for box in short)
+
+
 @pytest.mark.render
 @pytest.mark.usefixtures("film_machine")
 def test_the_road_passes_in_the_film(road_run):

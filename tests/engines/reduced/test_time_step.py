@@ -11,7 +11,7 @@ from vehicle.engines.reduced.car_table import CarTable
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, SINGLE
-from vehicle.engines.reduced.time_step import EXACT, solve_dampers
+from vehicle.engines.reduced.time_step import EXACT, solve_forces
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.vehicle import load_vehicle
 
@@ -27,7 +27,7 @@ LAWS: list[dict[str, Any]] = [
         "force": (-240.0, 0.0, 5.0, 155.0, 900.0),
     },
 ]
-solve = numba_module().njit(**EXACT)(lambda t, r, dampers: solve_dampers(t, r, dampers))
+solve = numba_module().njit(**EXACT)(lambda t, r, owners, dampers: solve_forces(t, r, owners, dampers))
 
 
 def table_of(gain, laws, element):
@@ -60,7 +60,7 @@ def test_velocities_and_forces_of_coupled_dampers_are_consistent(count, own_gain
         arriving, hold = size * generator.standard_normal(count), 20.0 * generator.standard_normal(count)
         t[r.work :][:count], t[r.hold :][:count] = arriving[:, None], hold[:, None]
         t[r.stick :][:count] = 0.0  # The forces are constant over the step.
-        solve(t, r, (0.0,) * count)
+        solve(t, r, np.zeros(0, dtype=np.int64), (0.0,) * count)
         velocity, force = t[r.velocity :][:count, 0], t[r.inputs :][:count, 0]
         # v = a + G f, and f follows from v: the curve acts with the mean of both ends.
         np.testing.assert_allclose(velocity, arriving + gain @ force, rtol=1e-7, atol=1e-7 * size)

@@ -14,9 +14,10 @@ from vehicle.engines.simulation import stepping
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.compiled import CompiledRows
+from vehicle.engines.simulation.element_records import copy_row
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.rows import Rows
-from vehicle.engines.simulation.sampling import Loop, copy_row, keep_sample, move_plates
+from vehicle.engines.simulation.sampling import Loop, keep_sample, move_plates
 from vehicle.signals.excitation.signal import Signal
 
 ROUND_OFF = 1e-12
@@ -105,6 +106,7 @@ def _evaluate(rows: Rows, compiled: CompiledRows | None) -> Values:
             data.qvel[:] = 0.1 * way
             data.time = visit * rows.weights.timestep
             state.plate_velocity[:, 2] = 0.1 + 0.2 * np.arange(len(state.plate_velocity))
+            state.slope_velocity[:] = 0.3 - 0.1 * np.arange(len(state.slope_velocity))
             state.plate_acceleration[:, 2] = 1.0 - 3.0 * np.arange(len(state.plate_velocity))
             if compiled is None:
                 mujoco.mj_step(model, data)

@@ -77,11 +77,12 @@ def add_mode(spec, number, omega, ratio=0.0):
     )
 
 
-def add_damper(spec, body, parameters, *, stiffness=0.0, pieces=(), rest=0.0):
+def add_damper(spec, body, parameters, *, stiffness=0.0, pieces=(), rest=0.0, sliders=()):
     """Slide joint `damper_fr` along x with the user actuator of a damper.
 
     `parameters` are viscous, smoothing, sliding limit, static limit, Stribeck velocity and exponent; `pieces`
-    are slope, middle and limit of the clamped lines beside it, `rest` is the whole force at rest.
+    are slope, middle and limit of the clamped lines beside it, `rest` is the whole force at rest, `sliders` are
+    stiffness and share of the limit of the elements of presliding friction.
     """
     body.add_joint(
         name="damper_fr",
@@ -95,13 +96,20 @@ def add_damper(spec, body, parameters, *, stiffness=0.0, pieces=(), rest=0.0):
     )
     actuator = spec.add_actuator(name="damper_fr", trntype=mujoco.mjtTrn.mjTRN_JOINT, target="damper_fr")
     actuator.gaintype, actuator.biastype = mujoco.mjtGain.mjGAIN_USER, mujoco.mjtBias.mjBIAS_USER
-    law = FRICTION_LAWS.index("coulomb" if parameters[3] == parameters[2] else "stribeck")
+    word = "coulomb" if parameters[3] == parameters[2] else "stribeck"
+    law = FRICTION_LAWS.index("presliding" if len(sliders) else word)
     actuator.biasprm = [*parameters[:6], rest, rest - sum(np.clip(-e * m, -w, w) for e, m, w in pieces), law, 0.0]
     for number, piece in enumerate(pieces):
         tendon = spec.add_tendon(name=f"valve_{number}")
         tendon.wrap_joint("damper_fr", 1.0)
         tendon.frictionloss = piece[2]
         spec.add_numeric(name=f"law/valve_{number}", data=piece)
+    if len(sliders):
+        spec.add_numeric(name="presliding/damper_fr", data=np.ravel(sliders))
+    for number, (_, share) in enumerate(sliders[1:], start=1):
+        tendon = spec.add_tendon(name=f"presliding/damper_fr/{number}")
+        tendon.wrap_joint("damper_fr", 1.0)
+        tendon.frictionloss = share * parameters[2]
 
 
 class Stepper:

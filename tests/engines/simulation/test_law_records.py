@@ -101,8 +101,8 @@ def test_a_friction_law_with_40_numbers_of_its_own(tmp_path: Path) -> None:
     (laws / "wave.py").write_text(LAW, encoding="utf-8")
     edit(
         tmp_path / "vehicle/model/parameters/force_elements.py",
-        '("coulomb", "stribeck")',
-        '("coulomb", "stribeck", "wave")',
+        '("coulomb", "stribeck", "presliding")',
+        '("coulomb", "stribeck", "presliding", "wave")',
     )
     names = ", ".join(f'"{name}"' for name in NUMBERS)
     edit(laws / "damper.py", '            "spare",\n', f'            "spare",\n            {names},\n')

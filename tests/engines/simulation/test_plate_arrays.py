@@ -16,7 +16,7 @@ ROAD = random_road(rms=5e-4, seed=2, wheel="fr", duration=3.0)
 def test_some_rows_are_those_of_all(rows):
     arguments = (ROAD, 5e-4, 6000, ("fr", "fl"), 10)
     every, some = PlateArrays.of(*arguments), PlateArrays.of(*arguments, slice(*rows))
-    for name in ("displacement", "velocity", "acceleration", "row_velocity"):
+    for name in ("displacement", "velocity", "acceleration", "row_velocity", "slope_velocity"):
         whole = getattr(every, name)
         assert len(whole) == 6011
         np.testing.assert_allclose(

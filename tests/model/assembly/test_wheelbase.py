@@ -29,9 +29,13 @@ class Hump:
 
     repeats = True
 
-    def height(self, start: float, step: float, steps: int, side: str, highest: float) -> np.ndarray:
+    @property
+    def bare(self) -> Hump:
+        return self
+
+    def contact(self, start: float, step: float, steps: int, side: str, highest: float) -> tuple[np.ndarray, None]:
         place = start + step * np.arange(steps)
-        return np.asarray(1e-3 * np.exp(-(((place - 30.0) / 0.1) ** 2)))
+        return np.asarray(1e-3 * np.exp(-(((place - 30.0) / 0.1) ** 2))), None
 
 
 def equal_axles(folder: Path) -> Car:

@@ -118,7 +118,7 @@ CASES = {
     "31 number for a text": ("name=3", "name: found 3, must be a text in quotes"),
     "31 unknown word": (
         "damper.friction_law=viscous",
-        "damper.friction_law: found 'viscous', must be one of coulomb, stribeck",
+        "damper.friction_law: found 'viscous', must be one of coulomb, stribeck, presliding",
     ),
     "32 XML in a name": (
         'name="a\\"/><b"',

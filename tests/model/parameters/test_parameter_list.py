@@ -52,7 +52,7 @@ def test_a_changed_value_loses_its_source():
     (same,) = Car.load("sedan").search("FRONT coulomb")
     assert repr(same) == "front.damper.coulomb_friction = 80 N  # assumed: seal and guide of a strut"
     (law,) = car.search("front.damper.friction_law")
-    assert law.range == "coulomb, stribeck"
+    assert law.range == "coulomb, stribeck, presliding"
     (speed,) = car.search("driving.speed")
     assert (speed.value, speed.source) == (0.0, DEFAULT)
     assert len(car.search()) > 200 and car.search("nowhere") == []

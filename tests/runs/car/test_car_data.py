@@ -203,7 +203,7 @@ def test_what_is_not_defined_is_said_in_words(shown):
     assert one_axle.support_percent(one_axle.axles[0]) is None
     text = str(one_axle)
     assert "wheelbase, anti-dive in per cent and distribution of roll stiffness: not defined, since 1 axle" in text
-    assert "rear_support_right 1948 N" in text and "nan" not in text
+    assert "rear support right 1948 N" in text and "nan" not in text
     assert "rear: not steered; its template five_link has no steering_axis" in str(shown["focus_road"])
     assert "front: modes with sliding dampers have the smallest slope" in str(shown["sedan"])
     weightless = Car.load("sedan", {"gravity": 0.0}).show()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import io
 import json
+import shutil
+import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,7 +30,7 @@ FLAGS = (
 def browser(reported, tmp_path_factory) -> Iterator[Any]:
     """The report, opened."""
     if not (CHROMIUM.is_file() and DRIVER.is_file()):
-        pytest.skip("chromium and chromium-driver are not installed: tools/system-libraries.sh browser installs them")
+        pytest.skip("chromium and chromium-driver are not installed: tools/system-libraries.sh tests installs them")
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 
@@ -122,7 +124,46 @@ def _origin(canvas):
     return ScrollOrigin.from_element(canvas)
 
 
-def test_the_page_prints(browser):
-    pdf = base64.b64decode(browser.print_page())
-    assert pdf.startswith(b"%PDF") and len(pdf) > 50_000
-    assert 6 <= pdf.count(b"/Type /Page\n") + pdf.count(b"/Type /Page ") <= 30
+@pytest.fixture
+def printed(browser) -> Iterator[Any]:
+    """The page with the style of paper, as wide as the text of A4."""
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    yield browser
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+def test_paper_has_no_form_controls_and_nothing_folded(printed):
+    """Neither controls nor headings without content; the gallery of modes remains as pictures."""
+    shown = printed.execute_script(
+        "const names = 'select, input, nav, video, summary, #mode-canvas, #mode-gallery canvas';"
+        "return [...document.querySelectorAll(names)]"
+        ".filter((one) => one.checkVisibility()).map((one) => one.tagName + one.parentElement.tagName);"
+    )
+    assert set(shown) == {"CANVASBUTTON"} and len(shown) > 20
+    headings = [one.text for one in printed.find_elements("css selector", "h2") if one.is_displayed()]
+    assert "Modes" in headings and "All values" not in headings
+    printed.execute_script("document.querySelector('#tables details').open = true;")
+    assert printed.find_element("css selector", "#tables table").is_displayed(), "what is unfolded is printed"
+    printed.execute_script("document.querySelector('#tables details').open = false;")
+
+
+def test_print_has_six_to_eight_pages_and_none_is_half_empty(browser, tmp_path):
+    from selenium.webdriver.common.print_page_options import PrintOptions
+
+    options = PrintOptions()
+    options.set_page_size(PrintOptions.A4)
+    pdf = base64.b64decode(browser.print_page(options))
+    (tmp_path / "report.pdf").write_bytes(pdf)
+    filled = fill_of_pages(tmp_path / "report.pdf")
+    assert 6 <= len(filled) <= 8
+    assert min(filled[:-1]) > 0.5, filled
+    assert filled[-1] > 0.25, filled
+
+
+def fill_of_pages(pdf: Path) -> list[float]:
+    """Height down to the last ink of each page over the height of the page."""
+    if shutil.which("pdftoppm") is None:
+        pytest.skip("pdftoppm is not installed: tools/system-libraries.sh tests installs it")
+    subprocess.run(["pdftoppm", "-r", "20", "-gray", str(pdf), str(pdf.with_suffix(""))], check=True, timeout=60)
+    pages = [np.asarray(Image.open(path)) for path in sorted(pdf.parent.glob(f"{pdf.stem}-*.pgm"))]
+    return [float(np.flatnonzero((page < 200).any(axis=1)).max() / len(page)) for page in pages]

@@ -17,8 +17,11 @@ from vehicle.commands.report import main
 from vehicle.commands.shaker import main as shaker
 from vehicle.drawing.rendering.wireframe import GROUPS, car_wireframe, unit_factor
 from vehicle.runs.car import Car
+from vehicle.runs.report.band_causes import main_path
+from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.differences import changed_parameters, difference, shipped_origin
+from vehicle.runs.report.differences import changed_parameters, difference, parameter_words, shipped_origin
+from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.moving_modes import FULL
 
 EMPTY = {"meta", "link", "input", "img", "br"}
@@ -65,6 +68,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     assert "default-src 'none'" in unescape(reported.text)
     wanted = [
         "Result",
+        "This run",
         "Findings",
         "Car, signal, engine",
         "The car",
@@ -76,7 +80,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
         "Modes",
     ]
     assert outline.titles == [*wanted, "All values", "How to repeat the run"]
-    assert reported.text.count("<svg ") == 5  # car, bands of the comfort, FRFs, time histories, spectra
+    assert reported.text.count("<svg ") == 6  # change, bands of the comfort, car, FRFs, time histories, spectra
 
 
 def test_the_page_says_the_numbers_of_the_summary(reported, outline):
@@ -88,7 +92,9 @@ def test_the_page_says_the_numbers_of_the_summary(reported, outline):
     top = max(summary["peaks"]["knuckle_fl_acc_z"], key=lambda peak: peak["magnitude"])
     assert f"The highest vertical resonance at the knuckle is at {top['frequency_hz']:.1f} Hz" in words
     assert "front.damper.coulomb_friction" in words and "a<b>&c.csv" in words
-    assert all(notice in words for notice in summary["notices"])
+    general = [notice for notice in summary["notices"] if "inertia tensor" in notice or "has no seat" in notice]
+    assert len(general) == 2, "true of every run of this car"
+    assert all((notice in words) == (notice not in general) for notice in summary["notices"])
     assert summary["command"].startswith("python -m vehicle.shaker --input ") and summary["command"] in words
     assert summary["files"]["report"] == "report.html"
 
@@ -102,7 +108,7 @@ def test_a_report_of_the_folder_is_that_of_the_command(reported, tmp_path, capsy
     assert "exists; give --force" in capsys.readouterr().err
 
 
-def empty_figure(path, *arguments):
+def empty_figure(path, *arguments, **options):
     path.write_text('<svg viewBox="0 0 1 1"></svg>')
 
 
@@ -114,7 +120,8 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     assert main([str(reported.folder), str(reported.folder), "--output", str(page), "--quiet"]) == 0
     found = Outline()
     found.feed(page.read_text(encoding="utf-8"))
-    assert found.titles[:2] == ["Result", "Comparison of the runs"] and found.titles[-1] == "Modes"
+    wanted = ["Result", "Comparison of the runs", "Frequency responses and spectra", "Time histories"]
+    assert found.titles[:4] == wanted and found.titles[5:] == ["Modes", "Each run"]
     assert "None: the cars have equal parameters." in found.words
     assert page.stat().st_size < 6e6
 
@@ -134,8 +141,54 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     before, after = (each["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"] for each in summaries)
     answer = text.partition('<p class="answer">')[2].partition("<")[0]
     word = "rises" if after > before else "falls"
-    assert "main_spring.stiffness from " in answer and f"{word} from {before:.3g} to {after:.3g} m/s²" in answer
-    assert re.search(r"% of the change \(mean square\) arise along [xyz] between [\d.]+ and [\d.]+ Hz", answer)
+    assert (
+        "front main spring stiffness 12000 instead of " in answer
+        and f"{word} from {before:.3g} to {after:.3g} m/s²" in answer
+    )
+    assert re.search(
+        r"% of the change \(mean square\) is (fore-aft|lateral|vertical) between [\d.]+ and [\d.]+ Hz", answer
+    )
+    assert re.search(r"carried into the body by the (front|engine|hydraulic|torque|rear|linear) ?[a-z ]+", answer)
+    assert not re.search(r"_f[lr]\b", answer), "words instead of names of the model"
+
+
+def test_a_changed_car_is_compared_with_the_unchanged_one(reported, tmp_path):
+    """The value before the change is that of a run of the unchanged car by the command."""
+    summary = json.loads((reported.folder / "summary.json").read_text())
+    unchanged = tmp_path / "unchanged"
+    signal = summary["command"].split(" --input ")[1].split(" --output")[0].strip("'")
+    assert shaker(["--input", signal, "--output", str(unchanged), "--engine", "reduced", "--quiet"]) == 0
+    before, after = (
+        json.loads((folder / "summary.json").read_text())["comfort"]["seat_rail"]["iso2631"]["vector_sum"]
+        for folder in (unchanged, reported.folder)
+    )
+    answer = unescape(reported.text).partition('<p class="answer">')[2].partition("<")[0]
+    assert answer.startswith("run against the unchanged focus (front damper Coulomb friction 100 instead of 125 N): ")
+    assert f"from {before['weighted_rms']:.3g} to {after['weighted_rms']:.3g} m/s²" in answer
+    assert base_run(read_run(unchanged)) is None, "an unchanged car has no other to be compared with"
+
+
+@pytest.mark.parametrize(
+    ("shares", "words"),
+    [
+        ({"suspension_mount_fl": 0.6, "suspension_mount_fr": 0.1}, "the front left suspension mount (60 %)"),
+        ({"suspension_mount_fl": 0.4, "suspension_mount_fr": 0.3}, "the front suspension mount, left and right (70 %)"),
+        ({"pivot_rl": 0.5, "linear_mount": 0.6}, "the engine mount (60 %)"),
+        ({"stab_body_fl": 0.5, "stab_body_fr": -0.4}, "the front left anti-roll bar bearing (50 %)"),
+    ],
+)
+def test_the_main_path_is_in_the_words_of_the_car(shares, words):
+    assert main_path(shares) == words
+
+
+def test_parameters_are_in_words():
+    words = {
+        "front.damper.coulomb_friction": "front damper Coulomb friction",
+        "engine.parts.engine.mass": "engine mass",
+        "front.bushings.suspension_mount.stiffness.z": "front suspension mount stiffness z",
+        "body.cog.x": "body cog x",
+    }
+    assert {path: parameter_words(path) for path in words} == words
 
 
 @pytest.mark.parametrize(

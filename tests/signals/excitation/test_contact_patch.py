@@ -21,7 +21,7 @@ def test_a_measured_wave_is_lower_by_its_sinc() -> None:
     distance, wave = np.arange(0.0, 20.0, 0.002), 4.0
     height = np.sin(2.0 * np.pi * wave * distance)
     road = MeasuredRoad(distance=distance, right=height, left=0.0 * height, source="wave", patch=PATCH)
-    found = road.height(5.0, 0.01, 1000, "right", 50.0)
+    found = road.contact(5.0, 0.01, 1000, "right", 50.0)[0]
     place = 5.0 + 0.01 * np.arange(1000)
     validated(
         "Roads and excitation", "a contact patch on a measured wave of 0.25 m", found,
@@ -29,7 +29,7 @@ def test_a_measured_wave_is_lower_by_its_sinc() -> None:
     )  # fmt: skip
     # Ahead of its first place it is a plane, which half a patch reaches into.
     whole = replace(road, left=1.0 + 0.3 * distance)
-    starting = whole.height(-0.1, 0.05, 5, "left", 50.0)
+    starting = whole.contact(-0.1, 0.05, 5, "left", 50.0)[0]
     assert starting == pytest.approx([0.0, 0.0, 0.3 * 0.05**2 / 2.0 / PATCH, 0.3 * 0.05, 0.3 * 0.1], abs=1e-12)
 
 
@@ -48,16 +48,17 @@ def test_the_mean_over_the_patch_is_that_of_the_road_itself(corners: bool) -> No
     # Middles of equal parts: the error is 1e-5 of an edge of the cleat, where one part of 10 000 may lie on it.
     place, parts = np.linspace(0.0, 2.9, 59), PATCH * ((np.arange(10_000) + 0.5) / 10_000 - 0.5)
     point = replace(road, patch=0.0)
-    wanted = np.array([np.mean(point.height_at(at + parts, "right")) for at in place])
+    wanted = np.array([np.mean(point.contact_at(at + parts, "right")[0]) for at in place])
     validated(
         "Roads and excitation",
         f"mean height under a contact patch, {'corners of a cleat' if corners else 'random samples'}",
-        road.height_at(place, "right"), wanted, abs=1e-6, unit="m", source="second derivation: sum over 10 000 places",
+        road.contact_at(place, "right")[0], wanted, abs=1e-6, unit="m",
+        source="second derivation: sum over 10 000 places",
     )  # fmt: skip
     if corners:
-        np.testing.assert_allclose(point.height_at(np.linspace(0.0, 3.0, 501), "right").max(), 0.02)
+        np.testing.assert_allclose(point.contact_at(np.linspace(0.0, 3.0, 501), "right")[0].max(), 0.02)
         # All of the cleat under the patch: its area over the length of the patch.
-        assert road.height_at(np.array([1.0255]), "right") == pytest.approx(0.02 * 0.05 / PATCH)
+        assert road.contact_at(np.array([1.0255]), "right")[0] == pytest.approx(0.02 * 0.05 / PATCH)
 
 
 def test_a_class_is_lower_by_its_sinc() -> None:

@@ -77,7 +77,7 @@ def test_bom_crlf_and_quotes_are_accepted_with_notice(tmp_path):
     assert np.array_equal(signal.displacement["fr"], CLEAN)
     assert signal.notices == (
         "byte order mark at the beginning of the file skipped",
-        "line ends of another system (CR) read as line ends",
+        "line ends of Windows (CR LF) or old Mac (CR) read as line ends",
     )
 
 

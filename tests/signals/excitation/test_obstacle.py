@@ -29,7 +29,7 @@ DRIVE = RoadDrive(road="cleat:20x50@30", speed=36.0, wheels=WHEELS, track=1.5, r
 def heights(text, at, **contact):
     """Heights of both tracks [m] at distances [m], (2, n)."""
     road = Obstacle.parse(text).road(length=60.0, patch=contact.pop("patch", 0.0), envelope=contact.get("envelope"))
-    return np.array([road.height_at(np.asarray(at), side) for side in ("right", "left")])
+    return np.array([road.contact_at(np.asarray(at), side)[0] for side in ("right", "left")])
 
 
 def test_texts_name_shape_sizes_side_and_place() -> None:

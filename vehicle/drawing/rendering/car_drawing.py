@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure, wrapped
 from vehicle.drawing.rendering.wireframe import GROUPS, CarWireframe
 
 if TYPE_CHECKING:
@@ -30,20 +30,21 @@ ARM = 1.2
 """Drawn length of a line from a contact point to a swing centre that lies farther away [m]."""
 
 
-def plot_car(path: Path, wire: CarWireframe, data: Any) -> None:
+def plot_car(path: Path, wire: CarWireframe, data: Any, size: tuple[float, float] = (11.0, 8.0)) -> None:
     """Write the drawing of a car.
 
     Args:
         path: PNG or SVG file.
         wire: lines of the car.
         data: a `vehicle.runs.car.car_data.CarData` of the same car.
+        size: width and height [inch].
     """
     count = max(1, len(data.axles))
     caption = (
         "blue: lines from the contact points to the swing centres, cut at 1.2 m; red: steering axis; "
         "green: roll centre; black and white: centre of gravity. Dimensions in mm"
     )
-    with saved_figure(path, (11.0, 8.0), f"{data.name}: {data.mass_kg:.0f} kg", caption) as figure:
+    with saved_figure(path, size, f"{data.name}: {data.mass_kg:.0f} kg", wrapped(caption, size[0])) as figure:
         grid = figure.add_gridspec(2, count, height_ratios=(1.15, 1.0))
         _side_view(figure.add_subplot(grid[0, :]), wire, data)
         for column, axle in enumerate(data.axles):

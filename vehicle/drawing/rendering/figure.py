@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,14 +27,24 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 FADING = ((-1.0, 0.5, 0.2), (0.5, 0.8, 0.5), (0.8, 2.0, 1.0))
 """Ranges of coherence and the opacity of a magnitude in each: motion that the plate does not cause is pale."""
 
-FADED = "pale: coherence below 0.8, paler: below 0.5"
-"""Explanation of `FADING` in a caption."""
+FADED = "pale: coherence below 0.8, paler and without its band: below 0.5"
+"""Explanation of `FADING` and `SHOWN_BAND` in a caption."""
+
+SHOWN_BAND = 0.5
+"""Coherence from which the band of the random error is drawn: below it the band is wider than the magnitude and would
+cover the other curves."""
+
+PAGE_WIDTH = 9.5
+"""Width of a figure of a report [inch]: on 180 mm of paper its text of 9 points has 6.7 points."""
 
 EDGE = 0.06
 """Distance of title and caption from the edge of a figure with placed axes [inch]."""
 
 COMPRESSION = 3
 """Compression level of PNG files: higher levels take three times as long and save a tenth of the file."""
+
+LETTERS_PER_INCH = 15.0
+"""Letters of a caption on an inch of its figure: DejaVu Sans has 0.55 em a letter on average, here of 8.5 points."""
 
 INK = "#444444"
 """Colour of captions."""
@@ -46,6 +57,9 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FRF_BAND = (1.0, 50.0)
 FRF_TICKS = (1, 2, 3, 5, 10, 20, 30, 50)
 """Frequency axis of an FRF [Hz]."""
+
+FULL_LABEL = 7.0
+"""Height of a figure [inch] with space for the whole label of the magnitude of an FRF."""
 
 STYLE = {
     "figure.dpi": 110,
@@ -122,6 +136,16 @@ def saved_figure(
         figure.savefig(path, format=form, **save_options)
 
 
+def wrapped(caption: str, width: float) -> str:
+    """Return a caption in lines that fit under a figure.
+
+    Args:
+        caption: one line of text.
+        width: of the figure [inch].
+    """
+    return textwrap.fill(caption, int(LETTERS_PER_INCH * width))
+
+
 def power_of_ten(value: float, _: int | None = None) -> str:
     """Return the label of a decade as plain text; the labels of matplotlib need its parser of formulas.
 
@@ -141,7 +165,9 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
         coherence_ticks: ticks of the coherence axis.
     """
     upper, middle, lower = axes[:, 0]
-    upper.set(xscale="log", yscale="log", xlim=FRF_BAND, ylabel="acceleration / plate displacement [(m/s²)/m]")
+    low = figure.get_size_inches()[1] < FULL_LABEL
+    label = "FRF [(m/s²)/m]" if low else "acceleration / plate displacement [(m/s²)/m]"
+    upper.set(xscale="log", yscale="log", xlim=FRF_BAND, ylabel=label)
     middle.set(ylim=(-180.0, 180.0), yticks=(-180, -90, 0, 90, 180), ylabel="phase [deg]")
     lower.set(ylim=(0.0, 1.05), yticks=coherence_ticks, ylabel="coherence [-]")
     upper.yaxis.set_major_formatter(power_of_ten)
@@ -192,6 +218,29 @@ def fading(
         label_of_line = label if opacity == 1.0 else None
         if label_of_line or joined.any():
             axis.plot(frequency, np.where(joined, values, np.nan), alpha=opacity, label=label_of_line, **style)
+
+
+def error_band(
+    axis: Axes,
+    frequency: npt.NDArray[np.float64],
+    values: npt.NDArray[np.float64],
+    half: npt.NDArray[np.float64],
+    coherence: npt.NDArray[np.float64],
+    colour: str,
+) -> None:
+    """Draw the band of the random error of a magnitude, not where the coherence is below `SHOWN_BAND`.
+
+    Args:
+        axis: the axis.
+        frequency: [Hz], (m,).
+        values: magnitude, (m,).
+        half: half width of the band, (m,).
+        coherence: gamma^2 [-], (m,); where it is unknown the band is drawn.
+        colour: of the curve.
+    """
+    low = np.maximum(values - half, 0.01 * values)
+    where = ~(coherence < SHOWN_BAND)
+    axis.fill_between(frequency, low, values + half, where=where, alpha=0.25, linewidth=0.0, color=colour)
 
 
 def shade(

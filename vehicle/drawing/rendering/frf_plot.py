@@ -14,10 +14,12 @@ from vehicle.drawing.rendering.figure import (
     INK,
     LINES,
     UNDRIVEN,
+    error_band,
     fading,
     frf_axes,
     saved_figure,
     shade,
+    wrapped,
     wrapped_phase,
 )
 from vehicle.drawing.rendering.plots import NO_LEVELS, REGION, plot_frf
@@ -33,7 +35,13 @@ DECADES = 1e4
 """Range of the magnitude axis: smaller values are errors of a plate without effect on the channel."""
 
 
-def plot_frfs(path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str) -> None:
+def plot_frfs(
+    path: Path,
+    run: RecordedRun,
+    responses: Sequence[MotionResponse],
+    caption: str,
+    size: tuple[float, float] = (13.0, 8.6),
+) -> None:
     """Plot the FRFs of a run.
 
     Args:
@@ -41,14 +49,15 @@ def plot_frfs(path: Path, run: RecordedRun, responses: Sequence[MotionResponse],
         run: the run.
         responses: responses to each motion of the plates, with rows of all acceleration channels.
         caption: line under the picture.
+        size: width and height [inch].
     """
     if len(responses) > 1:
-        _plot_separated(path, run, responses, caption)
+        _plot_separated(path, run, responses, caption, size)
         return
     motion, title = responses[0].motion, ""
     if len(motion) > 1:
         title = f"FRFs to the common motion of {_plates(motion, run.car.model.vehicle.wheels)}"
-    plot_frf(path, run, responses[0].response, caption, title)
+    plot_frf(path, run, responses[0].response, caption, title, size)
 
 
 def _plates(motion: Mapping[str, float], wheels: Sequence[str]) -> str:
@@ -61,7 +70,9 @@ def _plates(motion: Mapping[str, float], wheels: Sequence[str]) -> str:
     return "plates " + ", ".join(f"{names[wheel]} ({factor:+.3g})" for wheel, factor in motion.items())
 
 
-def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str) -> None:
+def _plot_separated(
+    path: Path, run: RecordedRun, responses: Sequence[MotionResponse], caption: str, max_size: tuple[float, float]
+) -> None:
     """Plot a column for each of a few channels, a line for each plate motion, and the multiple coherence."""
     vehicle = run.car.model.vehicle
     rows = {name: row for row, name in enumerate(vehicle.acceleration_channels)}
@@ -74,7 +85,8 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
     inside = np.asarray(np.isfinite(levels).all(axis=0))
     single = all(len(response.motion) == 1 for response in responses)
     title = f"FRFs to each of {len(responses)} {'plates' if single else 'motions of the plates'}, which act at once"
-    with saved_figure(path, (max(7.2, 5.0 * len(shown)), 8.6), title, f"{caption}; {FADED}") as figure:
+    size = (min(max(7.2, 5.0 * len(shown)), max_size[0]), max_size[1])
+    with saved_figure(path, size, title, wrapped(f"{caption}; {FADED}", size[0])) as figure:
         axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False)
         for (magnitude, phase, coherence), (name, heading) in zip(axes.T, shown.items(), strict=True):
             for colour, line, response in zip(cycle(COLOURS), cycle(LINES), responses, strict=False):
@@ -82,11 +94,9 @@ def _plot_separated(path: Path, run: RecordedRun, responses: Sequence[MotionResp
                     response.response.response[rows[name]],
                     REGION * response.response.random_error[rows[name]],
                 )
-                size = np.abs(values)
-                low = np.maximum(size - error, 0.01 * size)
-                magnitude.fill_between(frequency, low, size + error, alpha=0.25, linewidth=0.0, color=colour)
+                size, coherent = np.abs(values), responses[0].response.coherence[rows[name]]
+                error_band(magnitude, frequency, size, error, coherent, colour)
                 style = {"color": colour, "linestyle": line}
-                coherent = responses[0].response.coherence[rows[name]]
                 fading(magnitude, frequency, size, coherent, _plates(response.motion, vehicle.wheels), **style)
                 phase.plot(frequency, wrapped_phase(values), linewidth=0.8, **style)
             coherence.plot(frequency, responses[0].response.coherence[rows[name]], color=INK)

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.drawing.rendering.open_axes import Axes
-from vehicle.drawing.rendering.plots import outline
 
 
 def draw_histories(
@@ -25,6 +24,6 @@ def draw_histories(
     """
     for axis, (name, (values, unit)) in zip(axes[:, 0], histories.items(), strict=True):
         (colour,) = islice(cycle(COLOURS), len(axis.lines), len(axis.lines) + 1)
-        axis.plot(*outline(time, values), linewidth=0.7, color=colour, label=name)
+        axis.plot(time, values, linewidth=0.7, color=colour, label=name)
         axis.set(ylabel=f"{name}\n[{unit.replace('m/s2', 'm/s²')}]", xlim=(time[0], time[-1]))
     axes[-1, 0].set_xlabel("time [s]")

@@ -7,7 +7,7 @@ its size is known in advance.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -22,6 +22,9 @@ LABEL_DISTANCE = 0.52
 LABEL_DEPTH = 0.25
 """Distance from an axis to the upper edge of its horizontal label [inch]."""
 
+CAPTION_LINE = 0.15
+"""Height of a further line of a caption [inch]."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Margins:
@@ -35,6 +38,10 @@ class Margins:
     """between columns"""
     down: float = 0.0
     """between rows"""
+
+    def above(self, caption: str) -> Margins:
+        """Return the margins above a caption of one or several lines."""
+        return replace(self, bottom=self.bottom + CAPTION_LINE * caption.count("\n"))
 
 
 def placed_axes(

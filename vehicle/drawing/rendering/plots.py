@@ -11,18 +11,22 @@ import numpy.typing as npt
 from vehicle.drawing.rendering.figure import (
     COLOURS,
     FADED,
+    FULL_LABEL,
     INK,
     LINES,
+    PAGE_WIDTH,
     UNDRIVEN,
+    error_band,
     fading,
     frf_axes,
     saved_figure,
     shade,
+    wrapped,
     wrapped_phase,
 )
 from vehicle.drawing.rendering.placed_axes import Margins, placed_axes
 from vehicle.drawing.rendering.recorded_run import RecordedRun, dampers_of, level_words, liveliest, wheels_of
-from vehicle.names import side_of
+from vehicle.names import side_of, wheel_words
 from vehicle.signals.analysis.frf import FrequencyResponse
 
 REGION = 1.96
@@ -34,14 +38,20 @@ NO_LEVELS = (1.0, 1e5)
 DETAIL = 2.0
 """Length of the magnified stretch [s]."""
 
-MOST_POINTS = 250_000
-"""Points of a line: a record of four minutes is drawn as it is, of a longer one the outline."""
+SEGMENTS = 1200
+"""Segments of the envelope of a whole record: two to the millimetre of a page, finer than the line."""
 
 CELLS = 2000
 """Of a characteristic, across its width and its height: finer than a dot of a page."""
 
 DOTS_AT_ONCE = 2**18
 """Dots of a long record that are looked at together."""
+
+LEGEND_FACTOR = 30.0
+"""Range of a low magnitude axis above the curves, for the legend."""
+
+ENVELOPE_OPACITY = 0.6
+"""Opacity of the envelopes: equal envelopes of several channels stay visible through each other."""
 
 LEGEND_COLUMNS = 2
 LEGEND_ROOM = 0.22
@@ -50,11 +60,26 @@ LEGEND_ROOM = 0.22
 FRF_MARGINS = Margins(left=0.74, right=0.14, bottom=0.68, top=0.52, across=0.26, down=0.2)
 HISTORY_MARGINS = Margins(left=0.92, right=3.65, bottom=0.68, top=0.5, across=0.28, down=0.18)
 DAMPER_MARGINS = Margins(left=12.25, right=0.2, bottom=0.68, top=0.5, down=0.72)
+PAGE_HEIGHT = 6.0
+PAGE_HISTORY = Margins(left=0.92, right=0.2, bottom=2.25, top=0.25, across=0.28, down=0.08)
+PAGE_DAMPERS = Margins(left=0.92, right=0.2, bottom=0.68, top=4.5, across=0.28)
+"""Height and margins on a page [inch]: the characteristics of the dampers are below the histories, not beside them."""
+
+SHORT = {"plate\ndisplacement": "plate z\n", "acceleration z\n": "accel. z\n", "damper velocity\n": "damper\n"}
+SHORT |= {"tyre force z\n": "tyre z\n"}
+"""Labels of the vertical axes on a page, where the panels are low."""
 
 SLIPPING, SLIP_LIMIT, MAGNIFIED = "#f2b8b5", INK, "#fff3c4"
 
 
-def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption: str, title: str = "") -> None:
+def plot_frf(
+    path: Path,
+    run: RecordedRun,
+    response: FrequencyResponse,
+    caption: str,
+    title: str = "",
+    size: tuple[float, float] = (13.0, 8.6),
+) -> None:
     """Write the FRF picture: magnitudes with the 95 % band of their random error, grey outside the band of the input.
 
     Args:
@@ -63,6 +88,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
         caption: line under the picture: input, level, estimator.
         title: what the FRFs are to, where that is not one plate.
+        size: width and height [inch].
     """
     rows = {name: row for row, name in enumerate(run.car.model.vehicle.acceleration_channels)}
     wheel, wheels = run.wheel, run.car.model.vehicle.wheels
@@ -80,14 +106,12 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
     frequency = response.frequency
     inside = np.asarray(np.isfinite(response.response).any(axis=0))
     shown = np.abs(response.response[[rows[name] for labels in groups.values() for name in labels]])
-    with saved_figure(
-        path,
-        (13.0, 8.6),
-        title or f"FRFs to the plate under the {run.car.model.vehicle.wheel_text(wheel)}",
-        f"{caption}; {FADED}",
-        placed=True,
-    ) as figure:
-        axes = placed_axes(figure, FRF_MARGINS, widths=(1.0, 1.0), heights=(2.2, 1.0, 0.9), sharex=True, sharey="row")
+    title = title or f"FRFs to the plate under the {run.car.model.vehicle.wheel_text(wheel)}"
+    caption = wrapped(f"{caption}; {FADED}", size[0])
+    with saved_figure(path, size, title, caption, placed=True) as figure:
+        axes = placed_axes(
+            figure, FRF_MARGINS.above(caption), widths=(1.0, 1.0), heights=(2.2, 1.0, 0.9), sharex=True, sharey="row"
+        )
         for column, (title, labels) in enumerate(groups.items()):
             magnitude, phase, coherence = axes[:, column]
             for number, (name, label) in enumerate(labels.items()):
@@ -96,8 +120,7 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
                 style = {"color": COLOURS[colour], "linestyle": LINES[colour]}
                 row = rows[name]
                 values, error = np.abs(response.response[row]), REGION * response.random_error[row]
-                low = np.maximum(values - error, 0.01 * values)
-                magnitude.fill_between(frequency, low, values + error, alpha=0.25, linewidth=0.0, color=COLOURS[colour])
+                error_band(magnitude, frequency, values, error, response.coherence[row], COLOURS[colour])
                 fading(magnitude, frequency, values, response.coherence[row], label, **style)
                 phase.plot(frequency, wrapped_phase(response.response[row]), **style)
                 coherence.plot(frequency, response.coherence[row], **style)
@@ -109,15 +132,18 @@ def plot_frf(path: Path, run: RecordedRun, response: FrequencyResponse, caption:
         frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
         levels = shown[:, inside]
         levels = levels[np.isfinite(levels) & (levels > 0.0)]
-        axes[0, 0].set_ylim(*(0.5 * levels.min(), 2.0 * levels.max()) if levels.size else NO_LEVELS)
+        above = LEGEND_FACTOR if size[1] < FULL_LABEL else 2.0
+        axes[0, 0].set_ylim(*(0.5 * levels.min(), above * levels.max()) if levels.size else NO_LEVELS)
 
 
-def plot_time(path: Path, run: RecordedRun) -> None:
+def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Sequence[RecordedRun] = ()) -> None:
     """Write the main time histories: the whole record, its liveliest moment, and the characteristic of each damper.
 
     Args:
         path: PNG file.
         run: the run.
+        page: draw for the width of a page.
+        others: runs with which this one is compared; their figures have equal scales.
     """
     recording, wheel, wheels = run.recording, run.wheel, wheels_of(run.recording)
     dampers = dampers_of(recording)
@@ -144,25 +170,41 @@ def plot_time(path: Path, run: RecordedRun) -> None:
     end = min(start + DETAIL, float(time[-1]))
     inside = (time >= start) & (time <= end)
     caption = (
-        f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at wheel {wheel}; "
+        f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at the "
+        f"{wheel_words(wheel, wheels)}; "
         f"tyres {run.car.model.vehicle.driving.words}; dashed: slip velocity ±{1e3 * slip:g} mm/s, "
         f"red: {side} damper in slip"
     )
-    with saved_figure(path, (15.0, 9.2), "Main time histories", caption, placed=True) as figure:
-        rows = len(panels) * (1.0,)
-        axes = placed_axes(figure, HISTORY_MARGINS, widths=(2.0, 1.6), heights=rows, sharey="row")
-        characteristics = placed_axes(figure, DAMPER_MARGINS, heights=len(dampers) * (1.0,))[:, 0]
+    size = (PAGE_WIDTH, PAGE_HEIGHT) if page else (15.0, 9.2)
+    title = "" if page else "Main time histories"
+    caption = wrapped(caption, size[0])
+    with saved_figure(path, size, title, caption, placed=True) as figure:
+        rows, each = len(panels) * (1.0,), len(dampers) * (1.0,)
+        margins = (PAGE_HISTORY if page else HISTORY_MARGINS).above(caption)
+        axes = placed_axes(figure, margins, widths=(2.0, 1.6), heights=rows, sharey="row")
+        if page:
+            characteristics = placed_axes(figure, PAGE_DAMPERS.above(caption), widths=each)[0]
+        else:
+            characteristics = placed_axes(figure, DAMPER_MARGINS.above(caption), heights=each)[:, 0]
         for (whole, detail), (unit, scale, lines) in zip(axes, panels, strict=True):
             for number, (name, label) in enumerate(lines.items()):
                 style = {"color": COLOURS[number], "linestyle": LINES[number], "zorder": 2.5 - 0.1 * number}
-                values = scale * recording[name]
-                whole.plot(*outline(time, values), linewidth=0.5, label=label, **style)
-                detail.plot(time[inside], values[inside], **style)
-            lowest, highest = whole.get_ylim()
-            room = LEGEND_ROOM * -(-len(lines) // LEGEND_COLUMNS)
-            whole.set(ylim=(lowest, highest + room * (highest - lowest)), ylabel=unit)
+                detail.plot(time[inside], scale * recording[name][inside], label=label, **style)
+            # A wide envelope would hide a narrow one.
+            spread = {name: float(np.std(recording[name])) for name in lines}
+            for number, name in enumerate(sorted(lines, key=lambda name: -spread[name])):
+                at, low, high = envelope(time, scale * recording[name])
+                colour = COLOURS[list(lines).index(name)]
+                whole.fill_between(
+                    at, low, high, color=colour, linewidth=0.4, alpha=ENVELOPE_OPACITY, zorder=2.0 + 0.1 * number
+                )
+            lowest, highest = _range([run, *others], list(lines), scale)
+            columns = len(lines) if page else LEGEND_COLUMNS
+            room = LEGEND_ROOM * (1.6 if page else 1.0) * -(-len(lines) // columns)
+            label = next((unit.replace(word, short) for word, short in SHORT.items() if page and word in unit), unit)
+            whole.set(ylim=(lowest, highest + room * (highest - lowest)), ylabel=label.replace("\n ", "\n"))
             if len(lines) > 1 or "acceleration" in unit:
-                whole.legend(loc="upper right", ncols=LEGEND_COLUMNS)
+                whole.legend(*detail.get_legend_handles_labels(), loc="upper right", ncols=columns)
             whole.axvspan(start, end, color=MAGNIFIED, zorder=0)
             whole.set_xlim(time[0], time[-1])
             detail.set_xlim(start, end)
@@ -175,33 +217,53 @@ def plot_time(path: Path, run: RecordedRun) -> None:
             axis.tick_params(labelbottom=False)
         for axis in axes[-1]:
             axis.set_xlabel("time [s]")
-        axes[0, 0].set_title("whole record")
+        axes[0, 0].set_title("whole record: minimum to maximum")
         axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
+        fast, strong = (
+            _range([run, *others], [f"damper_{name}_{quantity}" for name in dampers], scale)
+            for quantity, scale in (("velocity", 1e3), ("force", 1.0))
+        )
+        fast = (min(fast[0], -1.1e3 * slip), max(fast[1], 1.1e3 * slip))
         for axis, name in zip(characteristics, dampers, strict=True):
             dots = distinct(1e3 * recording[f"damper_{name}_velocity"], recording[f"damper_{name}_force"])
             axis.plot(*dots, ".", markersize=1.5, color=COLOURS[0], zorder=3, rasterized=True)
             for limit in (-1e3 * slip, 1e3 * slip):
                 axis.axvline(limit, color=SLIP_LIMIT, linewidth=0.8, linestyle="--")
-            axis.set(
-                xlabel="damper velocity [mm/s]", ylabel="damper force [N]", title=f"{side_of(name, wheels)} damper"
-            )
+            axis.set(xlabel="damper velocity [mm/s]", title=f"{side_of(name, wheels)} damper", xlim=fast, ylim=strong)
+            if axis is characteristics[0] or not page:
+                axis.set_ylabel("damper force [N]")
+            else:
+                axis.tick_params(labelleft=False)
 
 
-def outline(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
-    """Reduce a long history to minimum and maximum of short segments, which looks the same at any width of a page.
+def _range(runs: Sequence[RecordedRun], channels: Sequence[str], scale: float) -> tuple[float, float]:
+    """Return the limits of an axis that shows channels of several runs: their extremes and a margin of 5 %."""
+    values = [run.recording.channels[name] for run in runs for name in channels if name in run.recording.channels]
+    if not values:
+        return -1.0, 1.0
+    low, high = scale * min(float(part.min()) for part in values), scale * max(float(part.max()) for part in values)
+    margin = 0.05 * (high - low) or 1.0
+    return low - margin, high + margin
+
+
+def envelope(time: npt.NDArray[np.float64], values: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:
+    """Reduce a history to the minimum and maximum of `SEGMENTS` segments of equal length.
+
+    Neighbours share a sample, so that the area between minimum and maximum has no gaps.
 
     Args:
         time: sample times [s], (n,).
         values: samples, (n,).
 
     Returns:
-        Time and values, unchanged up to `MOST_POINTS`; otherwise both extremes at the first time of each segment.
+        Middle of each segment [s], minimum, maximum; each sample is a segment where there are fewer.
     """
-    if time.size <= MOST_POINTS:
-        return time, values
-    starts = np.arange(0, time.size, -(-2 * time.size // MOST_POINTS))
-    ends = np.stack([np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)], axis=1)
-    return np.repeat(time[starts], 2), ends.ravel()
+    if time.size <= SEGMENTS:
+        return time, values, values
+    edges = np.linspace(0, time.size - 1, SEGMENTS + 1).astype(int)
+    low, high = (extreme.reduceat(values, edges[:-1]) for extreme in (np.minimum, np.maximum))
+    ends = values[edges[1:]]
+    return 0.5 * (time[edges[:-1]] + time[edges[1:]]), np.minimum(low, ends), np.maximum(high, ends)
 
 
 def distinct(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.float64], ...]:

@@ -1,6 +1,6 @@
-"""Road under the wheels: a strip for each track, whose height is computed from the plate displacement.
+"""Road under the wheels: a strip for each track, whose height is the profile of the road, or the plate displacement.
 
-A wheel at x0 with the plate displacement z(t) reaches at the time t the point of the road that is at x at the time
+A wheel at x0 over the height z(t) of the road reaches at the time t the point of the road that is at x at the time
 t + (x0 - x) / V, so
 
     h(x, t) = z(t + (x0 - x) / V),    x to the rear,
@@ -10,7 +10,7 @@ and every following wheel has the same road. Outside the record the road is leve
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -22,8 +22,11 @@ from vehicle.model.parameters.composition import PlacedWheel
 
 Vector = npt.NDArray[np.float64]
 
-PIECE = 0.05
-"""Length of a straight segment of the strip [m]."""
+PIECE, PARTS = 0.05, 4
+"""Length of a straight segment of the strip [m], and number of parts of a segment whose road is not straight."""
+
+STRAIGHT = 2e-4
+"""Maximum deviation of the road from a straight segment [m]."""
 
 REACH = 1.3
 """Length of the strip in front of the first and after the last wheel [m]."""
@@ -46,9 +49,17 @@ class RoadStrip:
         recording: recording with the displacement of every plate.
         speed: speed of the car [m/s].
         interval: time between two frames [s], which determines the length of a stripe.
+        profile: times [s], and heights of the road itself by wheel [m], in place of the plates.
     """
 
-    def __init__(self, wheels: Sequence[PlacedWheel], recording: Recording, speed: float, interval: float) -> None:
+    def __init__(
+        self,
+        wheels: Sequence[PlacedWheel],
+        recording: Recording,
+        speed: float,
+        interval: float,
+        profile: tuple[Vector, Mapping[str, Vector]] | None = None,
+    ) -> None:
         self.time, self.speed = recording.time, speed
         self.stripe = max(SHORTEST_STRIPE, np.ceil(8.0 * speed * interval) / 4.0)
         positions = [wheel.patch[0] for wheel in wheels]
@@ -60,7 +71,10 @@ class RoadStrip:
         step = recording.timestep
         self.integrals: list[tuple[Vector, Vector]] = []
         for wheel in self.leaders:
-            height = recording[f"plate_{wheel.name}_displacement"]
+            if profile is None:
+                height = recording[f"plate_{wheel.name}_displacement"]
+            else:
+                height = np.interp(recording.time, profile[0], profile[1][wheel.name])
             means = 0.5 * step * (height[1:] + height[:-1])
             self.integrals.append((height, np.concatenate([[0.0], np.cumsum(means)])))
 
@@ -90,10 +104,15 @@ class RoadStrip:
             # Segment ends move with the road to the rear.
             moved = self.speed * time
             first, last = (int(np.floor((end - moved) / PIECE)) for end in self.ends)
-            numbers = np.arange(first, last + 1)
-            x = np.asarray(numbers * PIECE + moved, dtype=np.float64)
-            z = wheel.patch[2] + factor * self.height(track, x, time, exposure)
-            shades = COLOURS[np.floor(numbers[:-1] * PIECE / self.stripe).astype(int) % 2]
+            numbers = np.arange(first, last + 1.0 / PARTS, 1.0 / PARTS)
+            height = self.height(track, np.asarray(numbers * PIECE + moved, dtype=np.float64), time, exposure)
+            straight = np.interp(numbers, numbers[::PARTS], height[::PARTS])
+            bent = np.abs(height - straight)[:-1].reshape(-1, PARTS).max(axis=1) > STRAIGHT
+            kept = np.append(np.repeat(bent, PARTS), True)
+            kept[::PARTS] = True
+            numbers, height = numbers[kept], height[kept]
+            x, z = np.asarray(numbers * PIECE + moved, dtype=np.float64), wheel.patch[2] + factor * height
+            shades = COLOURS[np.floor(numbers[:-1] * PIECE / self.stripe + 1e-9).astype(int) % 2]
             for number, shade in enumerate(shades):
                 rise = np.array([x[number + 1] - x[number], 0.0, z[number + 1] - z[number]])
                 length = np.linalg.norm(rise)

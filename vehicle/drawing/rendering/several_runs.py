@@ -10,10 +10,12 @@ import numpy as np
 
 from vehicle.drawing.rendering.figure import (
     COLOURS,
+    FADED,
     LINES,
     fading,
     frf_axes,
     saved_figure,
+    wrapped,
     wrapped_phase,
 )
 from vehicle.drawing.rendering.recorded_run import RecordedRun
@@ -26,6 +28,7 @@ def plot_responses(
     channels: Mapping[str, str],
     title: str = "",
     caption: str = "",
+    size: tuple[float, float] = (13.0, 7.6),
 ) -> None:
     """Plot FRFs of several runs over each other, with a column for each channel.
 
@@ -34,8 +37,9 @@ def plot_responses(
         runs: name to run and FRFs of all its acceleration channels.
         channels: channel recorded in all runs to the title of its column.
         title, caption: above and below the figure.
+        size: width and height [inch].
     """
-    with saved_figure(path, (13.0, 7.6), title, caption) as figure:
+    with saved_figure(path, size, title, wrapped(f"{caption}; {FADED}" if caption else FADED, size[0])) as figure:
         axes = figure.subplots(
             3, len(channels), sharex=True, sharey="row", height_ratios=(2.2, 1.0, 0.9), squeeze=False
         )
@@ -43,8 +47,8 @@ def plot_responses(
             for (name, (run, response)), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
                 row = run.car.model.vehicle.acceleration_channels.index(channel)
                 style = {"color": colour, "linestyle": line}
-                size = np.abs(response.response[row])
-                fading(column[0], response.frequency, size, response.coherence[row], name, **style)
+                magnitude = np.abs(response.response[row])
+                fading(column[0], response.frequency, magnitude, response.coherence[row], name, **style)
                 column[1].plot(response.frequency, wrapped_phase(response.response[row]), **style)
                 column[2].plot(response.frequency, response.coherence[row], **style)
             column[0].set_title(title_of_column)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -74,6 +74,8 @@ class Take:
     """factor of all motion; by default, the largest displacement becomes 5 to 8 cm"""
     speed: float | None = None
     """speed on the road [m/s], to draw the moving road; None on a rig"""
+    profile: tuple[Vector, Mapping[str, Vector]] | None = None
+    """times [s], and heights of the road itself by wheel [m]; by default, the road is drawn as the plates move"""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.duration < np.inf:
@@ -151,7 +153,9 @@ class Shot:
         largest, node = self._largest()
         factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
         self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=reason)
-        self.road = None if take.speed is None else RoadStrip(self.composition.wheels, recording, take.speed, interval)
+        self.road = None
+        if take.speed is not None:
+            self.road = RoadStrip(self.composition.wheels, recording, take.speed, interval, take.profile)
         self.visible = VISIBLE_TIME / np.sqrt(take.slow)
         self.scale_top = 1e-3 * round_up(1e3 * node)
         self.overlay = Overlay(

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.figure import COLOURS, INK, LINES, power_of_ten, saved_figure
+from vehicle.drawing.rendering.figure import COLOURS, INK, LINES, PAGE_WIDTH, power_of_ten, saved_figure, wrapped
 from vehicle.signals.analysis.road_level import CLASS_WIDTH, CLASSES, REFERENCE, RoadLevel
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 
@@ -35,6 +35,7 @@ def plot_spectra(
     channels: Mapping[str, str],
     title: str = "",
     caption: str = "",
+    max_width: float = 13.0,
 ) -> None:
     """Plot densities, third octaves and cumulative RMS of accelerations, a column for each channel.
 
@@ -45,8 +46,10 @@ def plot_spectra(
         runs: name to the spectra of a run.
         channels: channel that is in all runs to the title of its column.
         title, caption: above and below the figure.
+        max_width: maximum width [inch].
     """
-    with saved_figure(path, (max(7.0, 1.6 + 3.8 * len(channels)), 8.6), title, caption) as figure:
+    size = (min(max(7.0, 1.6 + 3.8 * len(channels)), max_width), 8.6 if max_width > PAGE_WIDTH else 6.6)
+    with saved_figure(path, size, title, wrapped(caption, size[0])) as figure:
         axes = figure.subplots(
             3, len(channels), sharex=True, sharey="row", height_ratios=(2.0, 1.3, 1.3), squeeze=False
         )

@@ -50,6 +50,33 @@ class LinearSegment:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SliderElements:
+    """Groups of parallel Jenkins elements (`vehicle.model.laws.jenkins`) over one displacement each, g groups.
+
+    Attributes:
+        rows: displacements over the velocity coordinates; (g, n).
+        dampers: index of the damper whose friction limit the limits are shares of; (g,).
+        stiffness: k [N/m], padded with zeros; (g, e). limit: limits as shares [-]; (g, e).
+        steepness: largest slope of the other nonlinear force of each damper [N s/m], infinite for a friction line;
+            (d,).
+    """
+
+    rows: Vector
+    dampers: npt.NDArray[np.int64]
+    stiffness: Vector
+    limit: Vector
+    steepness: Vector
+
+
+def no_sliders() -> SliderElements:
+    """Return no groups of Jenkins elements."""
+    none = np.zeros((0, 0))
+    return SliderElements(
+        rows=none, dampers=np.zeros(0, dtype=np.int64), stiffness=none, limit=none, steepness=np.zeros(0)
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarMatrices:
     """Linear car: a system with the plates as inputs and the dampers as sliding pairs, and data of its parts.
 
@@ -69,6 +96,7 @@ class CarMatrices:
         one_sided: wheels whose tyres cannot pull.
         spinning: bodies that rotate with a rolling wheel; their angle is not a state.
         carried_by: body to which each body is fixed; the body itself if it can move on its parent.
+        sliders: Jenkins elements of the dampers; their forces are not in the matrices.
         slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
@@ -89,6 +117,7 @@ class CarMatrices:
     body_centres: dict[str, Vector]
     carried_by: dict[str, str]
     modal: slice
+    sliders: SliderElements = field(default_factory=no_sliders)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
 
@@ -199,10 +228,34 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
         car={
             "viscous": viscous,
             "segments": _segments(rows, jacobian),
+            "sliders": _sliders(rows),
             "tyre_rows": vertical,
             **{f"tyre_{term}": values for term, values in tyres.items()},
             "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
         },
+    )
+
+
+def _sliders(rows: Rows) -> SliderElements:
+    """Return the Jenkins elements of the dampers with presliding friction."""
+    e, p = rows.layout.dampers, rows.layout.presliding
+    dampers, numbers = np.unique(p.dampers), np.bincount(p.dampers, minlength=1)
+    if not dampers.size:
+        return no_sliders()
+    stiffness, limit = np.zeros((2, len(dampers), int(numbers.max())))
+    for group, damper in enumerate(dampers):
+        elements = p.dampers == damper
+        stiffness[group, : numbers[damper]], limit[group, : numbers[damper]] = p.stiffness[elements], p.share[elements]
+    steepness = np.full(len(e.dofs), np.inf)
+    for damper in dampers:
+        steepness[damper] = 0.5 * np.max(e.pieces[e.valves[:, 1] == damper, 0], initial=0.0)
+    steepness[rows.layout.controls.dampers] = np.inf
+    return SliderElements(
+        rows=np.eye(rows.model.nv)[e.dofs[dampers]],
+        dampers=dampers,
+        stiffness=stiffness,
+        limit=limit,
+        steepness=steepness,
     )
 
 

@@ -3,11 +3,11 @@
 The law of an element in the axes of its carrier is f = p - K r - B r' - f2, with r = J u - z and the preload p. The
 force of an ideal joint follows from the equation of motion,
 
-    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi,
+    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi - B e,
 
-with the nonlinear damper forces phi. K contains the rotation of the preloads, so this f is in world axes. In the axes
-of a carrier that rotates by theta it is f - theta x p. If joints constrain a motion twice, f is the least-norm
-solution.
+with the nonlinear damper forces phi, and the forces of rolling tyres on the slope of the road that Bc z' lacks. K
+contains the rotation of the preloads, so this f is in world axes. In the axes of a carrier that rotates by theta it is
+f - theta x p. If joints constrain a motion twice, f is the least-norm solution.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LoadRows:
-    """Loads w = static + rows times u, u', u'', the branch forces f_b, z, z' and the damper forces phi.
+    """Loads w = static + rows times u, u', u'', f_b, z, z', the damper forces phi and the slope velocities e.
 
     Attributes:
         names: names of the l load channels.
@@ -39,6 +39,7 @@ class LoadRows:
         branch: rows over f_b; (l, b).
         height, height_rate: rows over z and z'; (l, w).
         friction: rows over phi, with the sign of the equation of motion; (l, d).
+        slope: rows over e = F_z/F_0 V tan(beta) - z' of the plates, likewise; (l, w), (l, 0) for standing tyres.
     """
 
     names: tuple[str, ...]
@@ -50,6 +51,7 @@ class LoadRows:
     height: Vector
     height_rate: Vector
     friction: Vector
+    slope: Vector
 
     def only(self, names: Sequence[str]) -> LoadRows:
         """Select the loads among the given channels, in their order."""
@@ -75,8 +77,9 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     jacobian = data.efc_J.reshape(-1, model.nv).copy()
     load_places, bushings, preload = LoadPlaces(car, rows), rows.layout.bushings, car.static.preload
     joint_forces = _joint_forces(matrices)
-    widths = [model.nv] * 3 + [len(system.branch_time)] + [len(system.inputs)] * 2 + [len(matrices.dampers)]
-    fields = ("displacement", "velocity", "acceleration", "branch", "height", "height_rate", "friction")
+    widths = [model.nv] * 3 + [len(system.branch_time)] + [len(system.inputs)] * 2
+    widths += [len(matrices.dampers), matrices.slope.shape[1]]
+    fields = ("displacement", "velocity", "acceleration", "branch", "height", "height_rate", "friction", "slope")
     terms_of: dict[str, tuple[float, dict[str, Vector]]] = {}
     with_law = {int(row_indices[0]): index for index, row_indices in enumerate(bushings.rows)}
     branches = np.cumsum(bushings.branch_stiffness.ravel() > 0.0).reshape(bushings.rows.shape) - 1
@@ -126,7 +129,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         terms_of[name] = 0.0, {"displacement": (part_motion - body_motion)[2]}
     selected = [terms_of[name] for name in load_places.names]
     arrays = {
-        field: np.array([terms.get(field, np.zeros(width)) for _, terms in selected]).reshape(-1, width)
+        field: np.array([terms.get(field, np.zeros(width)) for _, terms in selected]).reshape(len(selected), width)
         for field, width in zip(fields, widths, strict=True)
     }
     return LoadRows(names=load_places.names, static=np.array([static for static, _ in selected]), **arrays)
@@ -144,6 +147,7 @@ def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
         "height": -split @ system.input_stiffness,
         "height_rate": -split @ system.input_damping,
         "friction": -split @ system.slide_rows.T,
+        "slope": -split @ matrices.slope,
     }
 
 

@@ -23,12 +23,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.body_attachments import body_attachments, body_coordinates
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.dynamic_stiffness import SteadyMotion, steady_motion
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.linear.motion_names import RIGID_WORDS, mode_words
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.row_layout import numeric
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 
@@ -131,8 +131,7 @@ def participation(
     driven = [float(name == wheel) for name in car.vehicle.wheels]
     steady = steady_motion(matrices.system, lines, driven, stuck=stuck)
     row, _ = matrices.system.output(channel)
-    first = int(car.model.joint("body").dofadr[0])
-    columns = [*range(first, first + 6), *range(matrices.modal.start, matrices.modal.stop)]
+    columns = body_coordinates(car, matrices)
     attachments, forces = _modal_forces(car, matrices, loads, steady, driven)
     return Participation(
         channel=channel,
@@ -153,31 +152,12 @@ def _modal_forces(
     values = loads.displacement @ u + loads.velocity @ (s * u) + loads.acceleration @ (s**2 * u)
     values += loads.branch @ steady.branch + loads.friction @ steady.friction
     values += (loads.height @ z)[:, None] + np.outer(loads.height_rate @ z, s)
-    index_of, names, forces = {name: index for index, name in enumerate(loads.names)}, list[str](), list[Complex]()
-    for connection in car.vehicle.composition.connections:
-        sign = float(connection.moving == "body") - float(connection.carrier == "body")
-        element_type = "ball" if connection.law is None else "bushing"
-        shape = _shape(car, f"{element_type}/{connection.name}")
-        if sign and shape is not None:
-            # In the design position the axes of every carrier are those of the car.
-            names.append(connection.name)
-            forces.append(sign * shape.T @ values[[index_of[f"{connection.name}_force_{axis}"] for axis in AXES]])
-    for spring in car.vehicle.composition.springs:
-        shape = _shape(car, spring.name)
-        if shape is not None:
-            low, high = (np.array(point) for point in spring.at)
-            direction = (high - low) / np.linalg.norm(high - low) * (1.0 if spring.parts[1] == "body" else -1.0)
-            names.append(spring.name)
-            forces.append(np.outer(shape.T @ direction, values[index_of[f"{spring.name}_force"]]))
+    index_of, attachments = {name: index for index, name in enumerate(loads.names)}, body_attachments(car, matrices)
+    forces = [each.rows[:, len(RIGID) :].T @ values[[index_of[name] for name in each.channels]] for each in attachments]
     dofs = np.arange(matrices.modal.start, matrices.modal.stop)
     joints = [int(car.model.dof_jntid[dof]) for dof in dofs]
     stiffness, damping = car.model.jnt_stiffness[joints].ravel(), np.ravel(car.model.dof_damping[dofs])
     needed = (s**2 + np.outer(damping, s) + stiffness[:, None]) * u[dofs]
     stacked = np.stack(forces, axis=1) if forces else np.zeros((len(dofs), 0, len(s)), dtype=complex)
+    names = [each.name for each in attachments]
     return names, np.concatenate([stacked, (needed - stacked.sum(axis=1))[:, None]], axis=1)
-
-
-def _shape(car: CarModel, name: str) -> Vector | None:
-    """Return the modal displacement of an element's node [kg^-1/2], (3, k); None if it is not on the body."""
-    shape = numeric(car.model, f"shape/{name}")
-    return None if shape is None else shape.reshape(3, -1)

@@ -77,8 +77,10 @@ def quarter_car(
     """
     if damper not in ("slip", "stick", "friction"):
         raise ConfigurationError(f"damper: found {damper!r}, must be slip, stick or friction")
-    if friction not in FRICTION:
-        raise ConfigurationError(f"friction: found {friction!r}, must be one of {', '.join(FRICTION)}")
+    # The force of a sliding pair depends on its velocity alone, that of presliding friction on the path.
+    laws = [name for name in FRICTION if name != "presliding"]
+    if friction not in laws:
+        raise ConfigurationError(f"friction: found {friction!r}, must be one of {', '.join(laws)}")
     if engine not in ("none", "linear", "elastomer"):
         raise ConfigurationError(f"engine: found {engine!r}, must be none, linear or elastomer")
     if degressive and damper != "friction":

@@ -24,6 +24,10 @@ Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[Any]
 
 
+CONSTANT = ("coulomb", "presliding")
+"""Friction laws whose limit does not depend on the velocity."""
+
+
 @lru_cache(maxsize=64)
 def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
     """Return the data of a damper.
@@ -32,8 +36,8 @@ def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
         damper: laws of the damper.
 
     Returns:
-        Its record, the velocity of full friction [m/s], and the nodes of its law without D v and F(0): x, half of the
-        curve, friction over its limit; (nodes, 3).
+        Its record, the velocity of full friction [m/s], 0 without a friction line, and the nodes of its law without
+        D v and F(0): x, half of the curve, friction over its limit; (nodes, 3).
     """
     curve, record = damper_curve(damper), pack(damper)
     full = 0.5 * np.pi / damper.smoothing
@@ -42,6 +46,9 @@ def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
     ends = [end for end, slope in end_segments if slope > base_slope or damper.controlled]
     nodes = np.unique(np.concatenate([curve.knots, ends, [-full, full]]))
     excess_force = curve.force(nodes) - curve.force(0.0) - base_slope * nodes
+    if damper.friction_law == "presliding":
+        # Jenkins elements have the friction; no velocity counts as stuck.
+        return record, 0.0, np.column_stack([nodes, 0.5 * excess_force, np.zeros_like(nodes)])
     return record, full, np.column_stack([nodes, 0.5 * excess_force, np.clip(nodes / full, -1.0, 1.0)])
 
 
@@ -80,18 +87,21 @@ class CarTable:
         self.lanes = [(min(lane, len(cars) - 1) if split == 1 else 0, slice(lane % split, None, split))
                       for lane in range(lanes)]  # fmt: skip
         self.cars = cars
-        d, m = len(dampers[0]), start.shape[1]
+        d, m, g = len(dampers[0]), start.shape[1], len(cars[0].strokes)
+        e = cars[0].sliders.stiffness.shape[1]
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
-        self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m)
+        self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         count = len(sensors[0].poles)
-        self.inputs, self.sums = cars[0].step.shape[1] - 1, d + count
+        self.inputs, self.sums = cars[0].step.shape[1] - 1, d + g + count
         damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
         node_count = max(len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car)
         sizes = {"pair": pairs * 2 * (1 + self.inputs + self.sums), "real": reals * (1 + self.inputs + self.sums)}
-        sizes |= {"slip": d * m, "gain": d * d, "ramp": d * d, "law": 3 * d * node_count, "inputs": self.inputs}
+        sizes |= {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
+        sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
-        sizes |= {"sensors": count, "past": count, "direct": count * 2 * (d + m)}
-        sizes |= {"work": d * (4 + 4 * node_count) + 2 * self.sums + TILE}
+        sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": g}
+        sizes |= dict.fromkeys(("spring", "give", "share", "slider"), g * e)
+        sizes |= {"work": d * (4 + 4 * node_count) + g * (2 + 4 * e) + 2 * self.sums + TILE}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         self.table, self.initial = (aligned_table(rows, element) for rows in (section_ends[-1], self.states - m))
@@ -111,6 +121,12 @@ class CarTable:
             car_sensors, columns = sensors[car], cars[car].columns
             values["direct"] = cars[car].weights_of(car_sensors)[:, cars[car].states :]
             values["sensors"] = car_sensors.height[:, columns] @ start[0] + car_sensors.velocity[:, columns] @ start[1]
+            sliders = cars[car].sliders
+            values |= {"level": cars[car].levels if part.start == 0 else 0.0 * cars[car].levels}
+            values |= {"spring": sliders.stiffness, "share": sliders.limit}
+            values["give"] = np.divide(
+                1.0, sliders.stiffness, out=np.zeros_like(sliders.stiffness), where=sliders.stiffness > 0.0
+            )
             values["full"] = np.array([full for _, full, _ in damper_data[car]])
             for name, array in values.items():
                 self.table[first_rows[name] :, lane][: array.size] = array.ravel()
@@ -118,11 +134,13 @@ class CarTable:
             self.initial[: 2 * len(pair_start), lane] = np.ascontiguousarray(pair_start).view(np.float64)
             self.initial[2 * pairs :, lane][: len(real_start)] = real_start
         for name in ("stuck", "stick"):
-            self.table[first_rows[name] :][:d] = 1.0
+            self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
         del first_rows["pair"]
         iterations = cars[0].iterations if element == DOUBLE else ITERATIONS[0]
-        self.rows = TableRows(pairs=pairs, reals=reals, iterations=iterations, pieces=node_count - 1, **first_rows)
-        varying = any(damper.friction_law != "coulomb" for data_of_car in dampers for damper in data_of_car)
+        self.rows = TableRows(
+            pairs=pairs, reals=reals, iterations=iterations, groups=g, elements=e, pieces=node_count - 1, **first_rows
+        )
+        varying = any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
 
     def tiles(self, weights: Sequence[Vector]) -> Table:
@@ -134,7 +152,10 @@ class CarTable:
         Returns:
             Table (..., columns) whose rows are (tiles, states and plate displacements, TILE).
         """
-        tile_count, poles = -(-len(weights[0]) // TILE), self.states - 2 * (len(self.cars[0].slip) + self.plates)
+        tile_count, poles = (
+            -(-len(weights[0]) // TILE),
+            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - self.rows.groups),
+        )
         table = aligned_table(tile_count * self.states * TILE, self.element)
         view = table.reshape(tile_count, self.states, TILE, table.shape[1])
         for lane, (car, part) in enumerate(self.lanes):

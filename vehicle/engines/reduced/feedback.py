@@ -1,12 +1,13 @@
 """Inputs of a step that depend on the motion at its beginning: loads of rolling tyres on slopes, controlled dampers.
 
-A rolling tyre pushes its wheel centre along x by F_z z'/V (`vehicle.engines.simulation.rolling_tyres`). The poles
-contain the effect of the static load F_0, as a force b z' of the velocity of the plate. The current load adds
+A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle.engines.simulation.rolling_tyres`). The poles
+contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
+load and a slope that is not z'/V add
 
-    b (max(0, F_z) / F_0 - 1) z',
+    b (max(0, F_z) / F_0 - 1) V tan(beta) + b (V tan(beta) - z')
 
-a product of two motions, as a force that is constant over a step: F_z is extrapolated to the middle of the step from
-the beginnings of this step and of the last one, z' is the mean over the step. Both are of second order.
+as a force that is constant over a step: F_z is extrapolated to the middle of the step from the beginnings of this step
+and of the last one, of second order; z' in the first term is the mean over the step.
 
 The poles contain the softest setting of a controlled damper. The excess e = c - cmin acts on the mean velocity of a
 step, f = -e (v + v+)/2: second order, and dissipative at any step. This is the damper curve F_c = e v.
@@ -42,6 +43,7 @@ class Feedback(NamedTuple):
         laws: their records of `vehicle.model.laws.control_laws`; (k,).
         memory: states of their laws, with delayed settings; (k, ...).
         step: index of the next step; (1,).
+        owners: index of the damper of each group of Jenkins elements; (g,).
     """
 
     tyres: int
@@ -50,6 +52,7 @@ class Feedback(NamedTuple):
     laws: npt.NDArray[Any]
     memory: Vector
     step: npt.NDArray[np.int64]
+    owners: npt.NDArray[np.int64]
 
 
 def sensor_outputs(
@@ -86,12 +89,14 @@ def sensor_outputs(
     )
 
 
-def feedback_at_rest(dampers: Sequence[Damper], tyres: int, plate_inputs: int, timestep: float) -> Feedback:
+def feedback_at_rest(
+    dampers: Sequence[Damper], owners: npt.NDArray[np.int64], tyres: int, plate_inputs: int, timestep: float
+) -> Feedback:
     """Return the feedback of a car at rest.
 
     Args:
         dampers: laws of all dampers.
-        tyres, plate_inputs: see `Feedback`.
+        owners, tyres, plate_inputs: see `Feedback`.
         timestep: time step [s].
     """
     controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
@@ -105,6 +110,7 @@ def feedback_at_rest(dampers: Sequence[Damper], tyres: int, plate_inputs: int, t
         laws=laws,
         memory=memory,
         step=np.zeros(1, dtype=np.int64),
+        owners=owners,
     )
 
 

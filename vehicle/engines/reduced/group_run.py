@@ -80,14 +80,16 @@ class GroupRun:
         self.driven, self.element = signal.wheels, element
         steps = int(np.floor(signal.duration / interval + 1e-6)) * every
         self.plates = plate_samples(signal, self.timestep, steps, AHEAD * every)
-        start = self.plates[:1].reshape(-1, 2).T
+        start = self.plates[:1].reshape(-1, 3).T[:2]
         columns = factors[0].columns
         sensors = [
             sensor_outputs(model, laws, columns, static if present_load else None)
             for model, laws, static in zip(models, dampers, tyre_load, strict=True)
         ]
         tyres = len(columns) if present_load else 0
-        self.feedback = feedback_at_rest(dampers[0], tyres, factors[0].plate_inputs, self.timestep)
+        self.feedback = feedback_at_rest(
+            dampers[0], factors[0].sliders.dampers, tyres, factors[0].plate_inputs, self.timestep
+        )
         self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
@@ -182,7 +184,7 @@ class GroupRun:
         """Return the displacement of a plate at the samples [m]."""
         for column, wheel in enumerate(self.driven):
             if channel == f"plate_{wheel}_displacement":
-                return self.plates[: samples * self.every : self.every][:, 2 * column]
+                return self.plates[: samples * self.every : self.every][:, 3 * column]
         return 0.0
 
     def _step_blocks(
@@ -202,10 +204,10 @@ class GroupRun:
         while sample < end:
             size, first = min(BLOCK, end - sample), (sample - 1) * every
             plates = self.plates[first : first + size * every + 1]
-            rates = np.zeros((len(plates), 3 * m), dtype=self.element)
-            rates[:, :m], rates[:, 2 * m :] = plates[:, 1::2], plates[:, 0::2]
-            rates[:-1, m : 2 * m] = np.diff(plates[:, 0::2], axis=0) / self.timestep
-            displacements = plates[::every, 0::2]
+            rates = np.zeros((len(plates), 4 * m), dtype=self.element)
+            rates[:, :m], rates[:, 2 * m : 3 * m], rates[:, 3 * m :] = plates[:, 1::3], plates[:, 0::3], plates[:, 2::3]
+            rates[:-1, m : 2 * m] = np.diff(plates[:, 0::3], axis=0) / self.timestep
+            displacements = plates[::every, 0::3]
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(self.element)
             stepping(*constant, rates, plate_z, every, reading, x, changes, y, peaks, table, sample, indices, *lengths)
             sample += size

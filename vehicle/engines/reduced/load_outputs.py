@@ -2,17 +2,20 @@
 
 u = Re(modal xi), u' = Re(modal s xi), u'' = Re(modal s xi') with xi' of the poles.
 
-xi' = s xi + b_z z + b_c z' + e f: plates and damper forces act directly on xi' and hence on u'', and on no other part
-of a load.
+xi' = s xi + b_z z + b_c z' + e f: plates, damper forces and forces on slopes act directly on xi' and hence on u'', and
+on no other part of a load.
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
+from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
 
@@ -38,3 +41,38 @@ def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
 def direct_forces(model: PoleModel, loads: LoadRows) -> Vector:
     """Return the rows of loads over the nonlinear damper forces at the same instant; (loads, d)."""
     return np.asarray(loads.friction + (loads.acceleration @ (model.modal * model.poles @ model.force)).real)
+
+
+def direct_slopes(model: PoleModel, loads: LoadRows) -> Vector:
+    """Return the rows of loads over the slope velocities e of rolling tyres at the same instant; (loads, w)."""
+    return np.asarray(loads.slope + (loads.acceleration @ (model.modal * model.poles @ model.slope)).real)
+
+
+def slope_loads(
+    model: PoleModel,
+    loads: LoadRows,
+    signal: Signal,
+    time: Vector,
+    tyre_forces: Mapping[str, Vector],
+    tyre_load: Mapping[str, float],
+) -> Vector:
+    """Return what the forces of rolling tyres on slopes add to loads, beyond that of the static load and z'; (l, n).
+
+    Args:
+        model: pole model of the car.
+        loads: rows of the l loads.
+        signal: motion of the plates.
+        time: times of the n samples [s].
+        tyre_forces: vertical tyre forces by wheel [N], (n,) each.
+        tyre_load: static tyre loads by wheel [N].
+    """
+    rows = direct_slopes(model, loads)
+    total, inputs = np.zeros((len(rows), len(time))), model.matrices.system.inputs
+    for wheel in signal.wheels:
+        rate = signal.spline(wheel, float(time[0]), float(time[-1]))(time, 1)
+        slope = rate
+        if signal.slope_velocity:
+            slope = signal.slope_spline(wheel, float(time[0]), float(time[-1]))(time)
+        share = np.maximum(tyre_forces[wheel], 0.0) / tyre_load[wheel]
+        total += rows[:, [inputs.index(wheel)]] * (share * slope - rate)
+    return total

@@ -13,7 +13,7 @@ every channel into a sum over the poles plus direct terms of z, z' and f. Only o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -61,6 +61,8 @@ class PoleModel:
         slope: effect of the velocity of each plate due to the static load on the slope, a part of b_c; (p, w), (p, 0)
             for standing tyres.
         matrices: matrices of the car.
+        slider_rows, slider_force: displacements of the groups of Jenkins elements, real part taken, (g, p), and the
+            effect of their forces, (p, g).
     """
 
     poles: Complex
@@ -73,6 +75,8 @@ class PoleModel:
     branch: Complex
     slope: Complex
     matrices: CarMatrices
+    slider_rows: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
+    slider_force: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
         """Return the rows of acceleration channels, as displacements, and of dynamic tyre force channels.
@@ -115,26 +119,32 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     """
     form = first_order(matrices.system)
     w = len(form.system.inputs)
-    slope = np.zeros((len(form.state), matrices.slope.shape[1]))
-    if slope.size:
+    sliders = matrices.sliders.rows.reshape(-1, len(matrices.system.mass))
+    further = np.zeros((len(form.state), matrices.slope.shape[1] + len(sliders)))
+    if further.size:
         mass = form.basis.T @ form.system.mass @ form.basis
-        slope[form.velocities] = np.linalg.solve(mass, form.basis.T @ matrices.slope)
-    inputs = np.hstack([form.input, form.input_rate, form.friction, slope])
+        slope = matrices.slope.reshape(len(form.basis), -1)
+        further[form.velocities] = np.linalg.solve(mass, form.basis.T @ np.hstack([slope, sliders.T]))
+    inputs = np.hstack([form.input, form.input_rate, form.friction, further])
     poles, vectors = np.linalg.eig(form.state)
     selected = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
     pairs = int(np.count_nonzero(poles.imag > 0.0))
     residues = np.linalg.solve(vectors, inputs.astype(complex))[selected]
     # A stored pole of a pair represents its conjugate too.
     weighted = vectors[:, selected] * np.where(np.arange(len(selected)) < pairs, 2.0, 1.0)
+    modal = form.shapes(weighted, poles[selected])
+    forces, slopes = np.cumsum([2 * w + form.friction.shape[1], matrices.slope.shape[1]])
     return PoleModel(
         poles=poles[selected].astype(complex),
         pairs=pairs,
         height=residues[:, :w],
         velocity=residues[:, w : 2 * w],
-        force=residues[:, 2 * w : residues.shape[1] - slope.shape[1]],
+        force=residues[:, 2 * w : forces],
         slip=form.slide @ weighted,
-        modal=form.shapes(weighted, poles[selected]),
+        modal=modal,
         branch=weighted[form.branches],
-        slope=residues[:, residues.shape[1] - slope.shape[1] :],
+        slope=residues[:, forces:slopes],
         matrices=matrices,
+        slider_rows=sliders @ modal,
+        slider_force=residues[:, slopes:],
     )

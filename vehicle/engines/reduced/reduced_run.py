@@ -9,7 +9,7 @@ import numpy as np
 
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
-from vehicle.engines.reduced.load_outputs import direct_forces
+from vehicle.engines.reduced.load_outputs import direct_forces, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.step_factors import car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE
@@ -46,7 +46,7 @@ def simulate_reduced(
         tyre_load: static tyre loads [N] by wheel.
         channels: names of the recorded channels; all except the loads by default.
         loads: rows of the load channels; needed if `channels` contains load channels.
-        present_load: slope forces of rolling tyres by their current load; if False, by their static load.
+        present_load: slope forces of rolling tyres by their current load; if False, by their static load and z'.
         step: maximum time step [s]; `LONGEST_STEP` by default.
 
     Returns:
@@ -60,19 +60,26 @@ def simulate_reduced(
     loads = loads and loads.only(names)
     # The force of a load at an instant contains the mean forces of the dampers in both adjacent steps.
     forces = [f"friction_{index}" for index in range(len(dampers))] if loads else []
-    table = np.empty((len(names) + len(forces), 1, samples))
+    tyres = {f"tyre_{wheel}_force_z": wheel for wheel in signal.wheels} if loads and rolling else {}
+    table = np.empty((len(names) + len(forces) + len(tyres), 1, samples))
     columns = [inputs.index(wheel) for wheel in signal.wheels]
     factors = car_factors([model], interval / every, columns, exact=True, present_load=rolling)
     started = clock.perf_counter()
     group = GroupRun(
         [model], factors, [dampers], [tyre_load], signal, interval, every, DOUBLE, present_load=rolling, loads=loads
     )
-    (validity,) = group.fill(table, [0], [*names, *forces])
+    (validity,) = group.fill(table, [0], [*names, *forces, *tyres])
     for load, row in zip(loads.names, direct_forces(model, loads), strict=True) if loads else ():
-        for force, history in zip(row, table[len(names) :, 0], strict=True):
+        for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
             table[names.index(load), 0] += force * history
+    time = uniform_time(samples=samples, timestep=interval)
+    if loads and tyres:
+        tyre_forces = dict(zip(tyres.values(), table[len(names) + len(forces) :, 0], strict=True))
+        added = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)
+        for load, history in zip(loads.names, added, strict=True):
+            table[names.index(load), 0] += history
     return Recording(
-        time=uniform_time(samples=samples, timestep=interval),
+        time=time,
         channels=dict(zip(names, table[: len(names), 0], strict=True)),
         units=channel_units(names),
         excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),

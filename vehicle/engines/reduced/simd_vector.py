@@ -191,6 +191,20 @@ minimum, maximum, less = _choice("<"), _choice(">"), _elementwise(_where_below)
 """Elementwise minimum and maximum, and 1 where a < b, else 0."""
 
 
+def _select(typing_context: Any, first: Any, second: Any, third: Any, fourth: Any) -> Any:
+    """Return the third number if the first is below the second, else the fourth."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.select(builder.fcmp_ordered("<", *arguments[:2]), *arguments[2:])
+
+    equal = isinstance(first, Vector) and first == second == third == fourth
+    return (first(first, first, first, first), generate) if equal else None
+
+
+select_below = extending.intrinsic(_select)
+"""Elementwise c where a < b, else d, for four vectors."""
+
+
 def _operator(symbol: Any, name: str) -> None:
     """Implement an arithmetic operator for vectors."""
     implementation = _elementwise(lambda builder, a, b: getattr(builder, name)(a, b, flags=_FUSED))

@@ -20,12 +20,13 @@ of the band that the step resolves. The criterion uses the total, because poles 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import factorial
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.car_matrices import SliderElements, no_sliders
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 Vector = npt.NDArray[np.float64]
@@ -76,11 +77,17 @@ class CarFactors:
         integrated: indices of the integrated poles, p pairs and q real poles; (p + q,).
         pairs: p.
         plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
-        step: E - 1 and factors of mean forces, slopes, z', mean z', slope forces and z for the integrated poles;
-            (p + q, 1 + 2 d + 2 m + ...).
-        direct: contributions of mean forces, their slopes, z' and z to eta of all poles; (n, 2 d + 2 m).
+        step: E - 1 and factors of mean damper forces, their slopes, mean forces of Jenkins elements, z', mean z', slope
+            forces and z for the integrated poles; (p + q, 1 + 2 d + g + 2 m + ...).
+        direct: contributions of mean forces, their slopes, forces of Jenkins elements, z' and z to eta of all poles;
+            (n, 2 d + g + 2 m).
         slip: rows of the damper velocities; (d, n).
-        gains: contributions of z', mean forces and slopes to the damper velocities; (d, m), (d, d), (d, d).
+        gains: contributions of z', mean forces and slopes to the damper velocities and to the displacements of the
+            Jenkins elements; (d + g, m), (d + g, d + g), (d + g, d).
+        strokes: rows of these displacements; (g, n). levels: contributions of z to them; (g, m).
+        steepness: largest slope of the force on each, over velocity for a damper, over displacement for Jenkins
+            elements, by the mean force of a step; (d + g,).
+        sliders: numbers of the Jenkins elements.
     """
 
     columns: list[int]
@@ -91,6 +98,10 @@ class CarFactors:
     direct: Complex
     slip: Complex
     gains: tuple[Vector, Vector, Vector]
+    strokes: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
+    levels: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+    steepness: Vector = field(default_factory=lambda: np.full(1, np.inf))
+    sliders: SliderElements = field(default_factory=no_sliders)
 
     @property
     def reals(self) -> int:
@@ -104,19 +115,29 @@ class CarFactors:
 
     @property
     def coupling(self) -> float:
-        """Return the largest total effect of other dampers on a damper, over its effect on itself."""
-        gain = np.abs(self.gains[1])
-        return float(np.max(gain.sum(axis=1) / np.diag(gain))) - 1.0
+        """Return the largest total effect of other forces on a force, over the effect of the force on itself."""
+        return float(np.max(self._effects.sum(axis=1) - 1.0))
+
+    @property
+    def _effects(self) -> Vector:
+        """Return the largest change of each force over the change of another; 1 on the diagonal."""
+        gain, stiff = np.abs(self.gains[1]), np.isinf(self.steepness)
+        diagonal, steepness = np.diag(gain), np.where(stiff, 0.0, self.steepness)
+        effects = np.where(stiff, 1.0 / diagonal, steepness / (1.0 + diagonal * steepness))[:, None] * gain
+        # A force that is zero at every velocity does not change.
+        effects = np.where(stiff | (steepness > 0.0), effects, 0.0)
+        np.fill_diagonal(effects, 1.0)
+        return np.asarray(effects)
 
     @property
     def iterations(self) -> int:
-        """Return the number of Gauss-Seidel iterations over the dampers that leaves `ACCURACY`.
+        """Return the number of Gauss-Seidel iterations over the forces that leaves `ACCURACY`.
 
-        The change of a force is at most that of its input over the gain, whatever its law, so the iteration of the
-        linear equations with the absolute values of the gains is a bound.
+        The change of a force is at most that of its input over the gain, whatever its law, and less if its law has no
+        steep part, so the iteration of the linear equations with the absolute values of the gains is a bound.
         """
-        gain, count = np.abs(self.gains[1]), 0
-        error, iteration = np.ones(len(gain)), np.linalg.solve(np.tril(gain), np.triu(gain, 1))
+        effects, count = self._effects, 0
+        error, iteration = np.ones(len(effects)), np.linalg.solve(np.tril(effects), np.triu(effects, 1))
         while count < ITERATIONS[0] or (np.max(error) > ACCURACY and count < ITERATIONS[1]):
             error, count = iteration @ error, count + 1
         return count
@@ -137,21 +158,23 @@ class CarFactors:
             sensors: rows of sensors over the poles; (s, n).
 
         Returns:
-            E - 1, inputs, damper velocities and sensors: (pairs, ...) with real and imaginary parts, (reals, ...).
+            E - 1, inputs, damper velocities, displacements of Jenkins elements and sensors: (pairs, ...) with real
+            and imaginary parts, (reals, ...).
         """
-        sums, p = np.concatenate([self.slip, sensors])[:, self.integrated].T, self.pairs
+        strokes = self.strokes.reshape(-1, self.slip.shape[1])
+        sums, p = np.concatenate([self.slip, strokes, sensors])[:, self.integrated].T, self.pairs
         change, inputs = self.step[:p, :1], self.step[:p, 1:]
         pairs = [change.real, change.imag, inputs.real, inputs.imag, sums[:p].real, -sums[:p].imag]
         return np.hstack(pairs), np.hstack([self.step[p:].real, sums[p:].real])
 
     def weights(self, rows: Complex) -> Vector:
-        """Return the weights of states (pairs, real poles), mean forces, slopes, z' and z in sums Re(rows xi).
+        """Return the weights of states and direct terms, in the order of `direct`, in sums Re(rows xi).
 
         Args:
             rows: rows over the poles; (k, n).
 
         Returns:
-            Weights; (k, 2 p + q + 2 d + 2 m).
+            Weights; (k, 2 p + q + 2 d + g + 2 m).
         """
         integrated_rows, p = rows[:, self.integrated].conj(), self.pairs
         pairs = np.ascontiguousarray(integrated_rows[:, :p]).view(np.float64)
@@ -199,7 +222,7 @@ def car_factors(
     if not models:
         return []
     h, driven = timestep, list(columns)
-    m, d = len(driven), models[0].force.shape[1]
+    m, d, g = len(driven), models[0].force.shape[1], models[0].slider_force.shape[1]
     inputs_of_cars = [_Inputs(model, driven, None if exact else h) for model in models]
     # Compute the integrated poles of all cars at once.
     s, inputs, held, slope = (
@@ -217,19 +240,21 @@ def car_factors(
         ahead = ahead + held * h * (m3 - m2)
         plate, mean = plate + held * h * (m1 - 2.0 * m2 + m3), mean + held * h * (3.0 * m2 - 2.0 * m3)
         extra.append(held * m0)
-    direct = np.hstack([force * m0, force * (m1 - 0.5 * m0), ahead])
-    step = np.hstack([np.expm1(s * h), decay * direct[:, : 2 * d], plate + decay * ahead, mean, *extra])
+    direct = np.hstack([force[:, :d] * m0, force[:, :d] * (m1 - 0.5 * m0), force[:, d:] * m0, ahead])
+    step = np.hstack([np.expm1(s * h), decay * direct[:, : 2 * d + g], plate + decay * ahead, mean, *extra])
     factors_of_cars, first = [], 0
     for model, car_inputs in zip(models, inputs_of_cars, strict=True):
         part = slice(first, first + len(car_inputs.integrated))
         first = part.stop
         # The other poles are quasi-static.
         quasi_static = car_inputs.both / -np.where(car_inputs.slow, 1.0, car_inputs.poles)[:, None]
-        direct_factors = np.hstack(
-            [quasi_static[:, m:], 0.5 * quasi_static[:, m:], quasi_static[:, :m], car_inputs.static]
-        )
+        plates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
+        direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, plates, car_inputs.static])
         direct_factors[car_inputs.integrated, :-m] = direct[part]
-        velocity_gains = (model.slip @ direct_factors).real
+        rows = np.concatenate([model.slip, model.slider_rows.reshape(g, len(model.poles))])
+        mean_force, ramp, mean_slider, rate, level = np.split(
+            (rows @ direct_factors).real, np.cumsum([d, d, g, m]), axis=1
+        )
         factors_of_cars.append(
             CarFactors(
                 columns=driven,
@@ -239,10 +264,22 @@ def car_factors(
                 step=step[part],
                 direct=direct_factors,
                 slip=model.slip,
-                gains=(velocity_gains[:, 2 * d : -m], velocity_gains[:, :d], velocity_gains[:, d : 2 * d]),
+                gains=(rate, np.hstack([mean_force, mean_slider]), ramp),
+                strokes=rows[d:],
+                levels=level[d:],
+                steepness=_steepness(model),
+                sliders=model.matrices.sliders if g else no_sliders(),
             )
         )
     return factors_of_cars
+
+
+def _steepness(model: PoleModel) -> Vector:
+    """Return the largest slopes of the mean forces of a step of dampers and Jenkins elements; (d + g,)."""
+    if not model.slider_force.size:
+        return np.full(model.force.shape[1], np.inf)
+    sliders = model.matrices.sliders
+    return np.concatenate([sliders.steepness, 0.5 * sliders.stiffness.sum(axis=1)])
 
 
 class _Inputs:
@@ -258,7 +295,7 @@ class _Inputs:
         slow: mask of the poles without a static value; (n,).
         static: kappa; (n, m).
         held: b_z of the slow poles; (n, m).
-        both: residues r of z' of the driven plates, and e of the forces; (n, m + d).
+        both: residues r of z' of the driven plates, and e of the forces; (n, m + d + g).
         slope: residues of the slope forces of rolling tyres; (n, m) or (n, 0).
         integrated: indices of the integrated poles.
     """
@@ -269,7 +306,8 @@ class _Inputs:
         slow = self.slow[:, None]
         self.static = np.where(slow, 0.0, -height / np.where(slow, 1.0, model.poles[:, None]))
         self.held = np.where(slow, height, 0.0)
-        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force])
+        sliders = model.slider_force.reshape(len(model.poles), -1)
+        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force, sliders])
         self.slope = model.slope[:, columns] if model.slope.shape[1] else model.slope
         self.integrated = np.arange(len(self.poles))
         if timestep is not None:
@@ -281,7 +319,7 @@ def _integrated(model: PoleModel, inputs: Complex, timestep: float) -> npt.NDArr
 
     Args:
         model: pole model of the car.
-        inputs: residues of z' of the driven plates and of the forces; (n, m + d).
+        inputs: residues of z' of the driven plates and of the forces; (n, m + d + g).
         timestep: time step [s].
     """
     system, s, n = model.matrices.system, model.poles, len(model.poles)

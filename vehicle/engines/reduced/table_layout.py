@@ -38,28 +38,37 @@ class TableRows(NamedTuple):
     Attributes:
         pairs, reals: numbers of pole pairs and real poles in a column; the table begins with the factors of the
             pairs.
-        iterations: Gauss-Seidel iterations over the dampers.
+        iterations: Gauss-Seidel iterations over the forces.
         real: first row of the factors of the real poles.
-        slip: contribution of z' at the end of a step to the damper velocities, dampers by plates.
-        gain, ramp: contributions of mean forces and of their slopes, dampers by dampers each.
+        groups, elements: number of groups of Jenkins elements, and of the elements of each.
+        slip: contribution of z' at the end of a step to the damper velocities and to the displacements of the groups,
+            by plates. level: contribution of z to the latter.
+        gain, ramp: contributions of the mean forces of dampers and groups, and of the slopes of the damper forces.
         law: `pieces` + 1 breakpoints (x, F_c/2, friction over its limit) of each damper.
         pieces: number of segments of the laws.
         limit, full: friction limits; velocities of full friction.
-        inputs: forces, slopes, z' and mean z' of a step, and the inputs by `vehicle.engines.reduced.feedback`.
+        inputs: damper forces, their slopes, forces of the groups, z' and mean z' of a step, and the inputs by
+            `vehicle.engines.reduced.feedback`.
         viscous: damping constants in the poles.
         velocity, earlier: current velocities and those of the last step.
         hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
             during the whole step.
         sensors, past: sensors of `vehicle.engines.reduced.feedback` at the beginning of a step and of the last step.
-        direct: contributions of mean forces, slopes, z' and z to each sensor.
+        direct: contributions of the inputs up to z', and of z, to each sensor.
+        spring, give, share: stiffness k of the Jenkins elements, 1/k (0 without), and their shares of the limit.
+        slider: forces of the elements at the beginning of the step.
+        place: displacements of the groups there.
         work: work space for the solution of a step.
     """
 
     pairs: int
     reals: int
     iterations: int
+    groups: int
+    elements: int
     real: int
     slip: int
+    level: int
     gain: int
     ramp: int
     law: int
@@ -76,6 +85,11 @@ class TableRows(NamedTuple):
     sensors: int
     past: int
     direct: int
+    spring: int
+    give: int
+    share: int
+    slider: int
+    place: int
     work: int
 
 

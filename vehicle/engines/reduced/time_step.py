@@ -12,6 +12,11 @@ the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. I
 damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
 are solved by Gauss-Seidel iterations over the dampers, each by its inverse law (`vehicle.engines.reduced.car_table`).
 
+The Jenkins elements of a group act with the mean of their forces at both ends, t = clamp(t + k u, L) with the change u
+of the displacement over the step: second order, and no work is added at any step and stiffness, because u is exact. The
+equation u + G f(u) = r of a group is monotone and piecewise linear. Its solution lies between the corners with the
+nearest values of the left side, in whatever order the corners are.
+
 This module imports numba at the top, so only runs that compile import it.
 """
 
@@ -32,6 +37,7 @@ from vehicle.engines.reduced.simd_vector import (
     maximum,
     minimum,
     of_cars,
+    select_below,
     store,
     weighted_sum,
 )
@@ -54,21 +60,105 @@ def compiled_once(function: Callable[..., Any]) -> Any:
     return numba.njit(no_cpython_wrapper=True, _nrt=False, **EXACT)(function)
 
 
+FAR = 1e30
+"""Value of the left side of the equation of a group at an infinite displacement: the force is constant there."""
+
+
 @inlined
-def solve_dampers(t: Any, r: TableRows, dampers: Any) -> None:
-    """Solve for damper velocities and forces of a step; the work space begins with the velocities without forces."""
+def prepare_groups(t: Any, r: TableRows, owners: Any, count: int, work: int) -> None:
+    """Set the corners of the equation u + G f(u) = r of each group of Jenkins elements.
+
+    Args:
+        t, r: table and sections.
+        owners: index of the damper of each group.
+        count: number of dampers.
+        work: first row of the corners: for each group the smallest and the largest mean force, then left side and mean
+            force at each corner.
+    """
+    half, size, width = filled(t, 0.5), 2 + 4 * r.elements, count + r.groups
+    for group in range(r.groups):
+        at, first, limit = work + size * group, r.elements * group, load(t, r.limit + owners[group])
+        gain = load(t, r.gain + (count + group) * (width + 1))
+        low, high = filled(t, 0.0), filled(t, 0.0)
+        for i in range(r.elements):
+            slider, end = load(t, r.slider + first + i), limit * load(t, r.share + first + i)
+            low, high = low + half * (slider - end), high + half * (slider + end)
+        store(t, at, low)
+        store(t, at + 1, high)
+        for corner in range(2 * r.elements):
+            i = first + corner // 2
+            end = limit * load(t, r.share + i)
+            if corner % 2 == 0:
+                end = filled(t, 0.0) - end
+            u, force = (end - load(t, r.slider + i)) * load(t, r.give + i), filled(t, 0.0)
+            for j in range(r.elements):
+                slider, bound = load(t, r.slider + first + j), limit * load(t, r.share + first + j)
+                moved = slider + load(t, r.spring + first + j) * u
+                force = force + half * (slider + minimum(maximum(moved, filled(t, 0.0) - bound), bound))
+            store(t, at + 2 + 2 * corner, u + gain * force)
+            store(t, at + 3 + 2 * corner, force)
+
+
+@inlined
+def group_force(t: Any, at: int, corners: int, value: Any) -> Any:
+    """Return the mean force of a group from the left side of its equation; see `prepare_groups`."""
+    low, high = load(t, at), load(t, at + 1)
+    below, above, lower, upper = filled(t, -FAR), filled(t, FAR), low, high
+    for corner in range(corners):
+        left, force = load(t, at + 2 + 2 * corner), load(t, at + 3 + 2 * corner)
+        below = maximum(below, select_below(value, left, below, left))
+        lower = maximum(lower, select_below(value, left, low, force))
+        above = minimum(above, select_below(value, left, left, above))
+        upper = minimum(upper, select_below(value, left, force, high))
+    return lower + (upper - lower) * ((value - below) / (above - below))
+
+
+@inlined
+def advance_groups(t: Any, r: TableRows, owners: Any, moved: int) -> None:
+    """Advance the Jenkins elements over a step.
+
+    Args:
+        t, r, owners: see `prepare_groups`.
+        moved: first row of the changes of the displacements over the step.
+    """
+    for group in range(r.groups):
+        u, limit = load(t, moved + group), load(t, r.limit + owners[group])
+        store(t, r.place + group, load(t, r.place + group) + u)
+        for i in range(r.elements * group, r.elements * (group + 1)):
+            end = limit * load(t, r.share + i)
+            force = load(t, r.slider + i) + load(t, r.spring + i) * u
+            store(t, r.slider + i, minimum(maximum(force, filled(t, 0.0) - end), end))
+
+
+@inlined
+def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
+    """Solve for the forces of a step, damper velocities and displacements of the groups of Jenkins elements.
+
+    The work space begins with the velocities and displacements without forces.
+    """
     count = len(dampers)
-    step, old = r.work + count, r.inputs
+    sums = count + r.groups
+    step, old = r.work + sums, r.inputs
     nodes = r.pieces + 1
     width = 3 * nodes
     kept = step + count  # forces of the last step
     work = kept + count  # nodes of each inverse law: velocity without forces, 1/length, force, rise of force
+    corners, slider = work + 4 * nodes * count, old + 2 * count
     zeros, ones = filled(t, 0.0), filled(t, 1.0)
+    prepare_groups(t, r, owners, count, corners)
+    for group in range(r.groups):
+        row = r.work + count + group
+        arriving = load(t, row) - load(t, r.place + group)
+        for j in range(count):
+            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + (count + group) * count + j) * load(
+                t, old + j
+            )
+        store(t, row, arriving)
     for i in range(count):
         force = load(t, old + i)
         store(t, kept + i, force)
         stick = load(t, r.stick + i)
-        diagonal = load(t, r.gain + i * count + i) + stick * load(t, r.ramp + i * count + i)
+        diagonal = load(t, r.gain + i * sums + i) + stick * load(t, r.ramp + i * count + i)
         store(t, step + i, diagonal)
         arriving = load(t, r.work + i) - diagonal * load(t, r.hold + i)
         limit = load(t, r.limit + i)
@@ -88,9 +178,10 @@ def solve_dampers(t: Any, r: TableRows, dampers: Any) -> None:
             arriving = load(t, r.work + i)
             for j in range(count):
                 if j != i:
-                    row = i * count + j
-                    other = load(t, r.gain + row) + load(t, r.stick + j) * load(t, r.ramp + row)
+                    other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
                     arriving = arriving + other * load(t, old + j)
+            for j in range(r.groups):
+                arriving = arriving + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
             at, law = work + 4 * nodes * i, r.law + width * i
             force, hold = load(t, at + 2), load(t, law + 1)
             for j in range(r.pieces):
@@ -102,6 +193,19 @@ def solve_dampers(t: Any, r: TableRows, dampers: Any) -> None:
             store(t, old + i, zeros - force - load(t, r.hold + i))
             if iteration == r.iterations - 1:
                 store(t, step + i, hold)
+        for group in range(r.groups):
+            i, value = count + group, load(t, r.work + count + group)
+            for j in range(count):
+                other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
+                value = value + other * load(t, old + j)
+            for j in range(r.groups):
+                if j != group:
+                    value = value + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
+            force = group_force(t, corners + (2 + 4 * r.elements) * group, 2 * r.elements, value)
+            store(t, slider + group, zeros - force)
+            if iteration == r.iterations - 1:
+                store(t, r.work + i, value - load(t, r.gain + i * (sums + 1)) * force)
+    advance_groups(t, r, owners, r.work + count)
     for i in range(count):
         stick = load(t, r.stick + i)
         store(t, old + count + i, stick * (load(t, old + i) - load(t, kept + i)))
@@ -120,8 +224,8 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         t, r, feedback, rates, laws, dampers: see `vehicle.engines.reduced.time_stepping.step_cars`.
         step: index of the step.
     """
-    count, plates = len(dampers), rates.shape[1] // 3
-    row = r.inputs + 2 * count
+    count, plates = len(dampers), rates.shape[1] // 4
+    row = r.inputs + 2 * count + r.groups
     for k in range(2 * plates):
         store(t, row + k, broadcast(rates[step, k]))
     row += 2 * plates
@@ -129,7 +233,9 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         load_now = load(t, r.sensors + i)
         middle = load_now + filled(t, 0.5) * (load_now - load(t, r.past + i))
         store(t, r.past + i, load_now)
-        store(t, row + i, maximum(middle, filled(t, -1.0)) * broadcast(rates[step, plates + i]))
+        excess = broadcast(rates[step, 3 * plates + i])
+        change = maximum(middle, filled(t, -1.0))
+        store(t, row + i, change * (broadcast(rates[step, plates + i]) + excess) + excess)
     for i in range(feedback.plate_inputs):
         store(t, row + feedback.tyres + i, broadcast(rates[step, 2 * plates + i]))
     for k in range(feedback.dampers.shape[0]):
@@ -159,17 +265,17 @@ def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors
         end: row of the end of the step in `rates`.
         count, sensors: numbers of dampers and of sensors.
     """
-    plates = rates.shape[1] // 3
-    row = r.direct
+    plates = rates.shape[1] // 4
+    row, forces = r.direct, 2 * count + r.groups
     for i in range(sensors):
         value = load(t, r.sensors + i)
-        for k in range(2 * count):
+        for k in range(forces):
             value = value + load(t, row + k) * load(t, r.inputs + k)
         for k in range(plates):
-            value = value + load(t, row + 2 * count + k) * broadcast(rates[end, k])
-            value = value + load(t, row + 2 * count + plates + k) * broadcast(rates[end, 2 * plates + k])
+            value = value + load(t, row + forces + k) * broadcast(rates[end, k])
+            value = value + load(t, row + forces + plates + k) * broadcast(rates[end, 2 * plates + k])
         store(t, r.sensors + i, value)
-        row += 2 * (count + plates)
+        row += forces + 2 * plates
 
 
 @inlined
@@ -199,15 +305,19 @@ def advance(
         last, now: first rows of the changes up to the beginning and up to the end of the step.
         step: index of the step.
     """
-    count, plates = len(dampers), rates.shape[1] // 3
-    size, width, kept = len(inputs), len(sums), changes.shape[0] > 0
+    count, plates = len(dampers), rates.shape[1] // 4
+    size, width, kept, solved = len(inputs), len(sums), changes.shape[0] > 0, count + r.groups
     pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
     set_inputs(t, r, feedback, rates, laws, step, dampers)
     for i in range(width):
         arriving = filled(t, 0.0)
-        if i < count:
+        if i < solved:
             for k in range(plates):
                 arriving = arriving + load(t, r.slip + i * plates + k) * broadcast(rates[step + 1, k])
+        if count <= i < solved:
+            for k in range(plates):
+                level = load(t, r.level + (i - count) * plates + k)
+                arriving = arriving + level * broadcast(rates[step + 1, 2 * plates + k])
         store(t, r.work + i, arriving)
         store(t, r.work + width + i, filled(t, 0.0))
     u = load_tuple(t, r.inputs, inputs)
@@ -235,7 +345,7 @@ def advance(
             store(changes, now + pole_row, load(changes, last + pole_row) + real_change)
         w = add_scaled(t, row + 1 + size, real, w)
     for i in range(width):
-        store(t, r.work + i if i < count else r.sensors + i - count, of_cars(w[i] + imaginary_sums[i]))
-    solve_dampers(t, r, dampers)
-    read_sensors(t, r, rates, step + 1, count, width - count)
+        store(t, r.work + i if i < solved else r.sensors + i - solved, of_cars(w[i] + imaginary_sums[i]))
+    solve_forces(t, r, feedback.owners, dampers)
+    read_sensors(t, r, rates, step + 1, count, width - solved)
     feedback.step[0] += 1

@@ -41,6 +41,10 @@ def add_damper_outputs(t: Any, r: TableRows, feedback: Feedback, y: Any, row: in
         force = half * load(t, r.inputs + i)
         store(y, row + count + i, load(y, row + count + i) - force)
         store(y, row + 2 * count + i, load(y, row + 2 * count + i) + force)
+    for group in range(r.groups):
+        i, force = feedback.owners[group], half * load(t, r.inputs + 2 * count + group)
+        store(y, row + count + i, load(y, row + count + i) - force)
+        store(y, row + 2 * count + i, load(y, row + 2 * count + i) + force)
     for k in range(feedback.dampers.shape[0]):
         i, c = feedback.dampers[k], feedback.memory[k, PRESENT]
         excess, coefficient = c - feedback.laws[k]["softest"], row + 3 * count + k
@@ -99,12 +103,13 @@ def step_cars(
         r: sections of the table.
         laws: records of the dampers if a friction limit depends on the velocity, (dampers, cars); otherwise empty.
         feedback: sensors and what acts by them; changed in place.
-        rates: (z' at the beginning, mean z', z at the beginning) of the steps; (steps + 1, 3 plates).
+        rates: (z' at the beginning, mean z', z at the beginning, V tan(beta) - z') of the steps;
+            (steps + 1, 4 plates).
         plate_z: plate displacements at the samples and their differences; (samples, 2 plates).
         every: steps between two samples.
         reading: output tiles.
-        x: states of the previous sample and of INNER_BLOCK samples: poles, mean forces, their slopes, z'; changed in
-            place.
+        x: states of the previous sample and of INNER_BLOCK samples: poles, forces in the order of the inputs, z';
+            changed in place.
         changes: zeros, then changes of the poles from the previous sample to each of INNER_BLOCK samples; changed in
             place. Empty if differences of the states are exact enough.
         y: outputs of PAST previous samples and of INNER_BLOCK samples; changed in place.
@@ -115,9 +120,10 @@ def step_cars(
         inputs, sums, dampers: tuples with the lengths of the inputs of a step, of the damper velocities and sensors,
             and of the dampers.
     """
-    count, plates = len(dampers), rates.shape[1] // 3
+    count, plates = len(dampers), rates.shape[1] // 4
     poles = 2 * r.pairs + r.reals
-    states = poles + 2 * count + plates
+    forces = 2 * count + r.groups
+    states = poles + forces + plates
     weights = (states + plates) * TILE
     positions = TILE * (reading.positions.shape[0] // weights)
     # Rows of a sample: positions, levels, then of the dampers: velocities, forces, friction, coefficients.
@@ -142,10 +148,10 @@ def step_cars(
                 add_damper_outputs(t, r, feedback, y, row - width, count, -1.0)
             if phase < every - 1:
                 continue
-            for i in range(2 * count):
+            for i in range(forces):
                 store(x, at + poles + i, load(t, r.inputs + i))
             for i in range(plates):
-                store(x, at + poles + 2 * count + i, broadcast(rates[step, i]))
+                store(x, at + poles + forces + i, broadcast(rates[step, i]))
             begin_damper_outputs(t, r, feedback, y, row, count)
             add_damper_outputs(t, r, feedback, y, row, count, 1.0)
         first_check = (1 - first - done) % reading.every

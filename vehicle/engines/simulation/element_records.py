@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.compiler import jitable
+
 Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[np.float64]
 Tables3 = npt.NDArray[np.float64]
@@ -102,6 +104,20 @@ class Dampers(NamedTuple):
     places: Index
     valves: Indices
     pieces: Table
+
+
+class Presliding(NamedTuple):
+    """Jenkins elements of the dampers with presliding friction, m of them.
+
+    Attributes:
+        rows: friction row of each element; (m,). dampers: index of its damper; (m,).
+        stiffness: k [N/m]; (m,). share: share of the friction limit of the damper [-]; (m,).
+    """
+
+    rows: Index
+    dampers: Index
+    stiffness: Vector
+    share: Vector
 
 
 class Controls(NamedTuple):
@@ -246,7 +262,8 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, controls, tables, modes, space, rolling, round: records of the elements.
+        bushings, rotations, springs, dampers, presliding, controls, tables, modes, space, rolling, round: records of
+            the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -257,6 +274,7 @@ class Layout(NamedTuple):
     rotations: Rotations
     springs: Springs
     dampers: Dampers
+    presliding: Presliding
     controls: Controls
     tables: Tables
     modes: Modes
@@ -268,3 +286,10 @@ class Layout(NamedTuple):
     reach: Indices
     row_count: int
     velocity_count: int
+
+
+@jitable
+def copy_row(row: Vector, values: Vector) -> None:
+    """Copy values in a loop: an array assignment would double the compile time by its error messages."""
+    for entry in range(values.shape[0]):
+        row[entry] = values[entry]

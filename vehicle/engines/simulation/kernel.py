@@ -13,6 +13,9 @@ sticking is exact. With c = (2/pi) Fd eps it is a line through zero, clamped at 
 published Fd (2/pi) atan(eps v), without its tail (`vehicle.model.laws.friction`).
 Every steeper piece of the curve of a damper, clamp(e (v - m), e w), is a friction row too (`vehicle.model.laws.curve`).
 It has no jump, so that it is centred like the viscous one: D = e h/2, aref = -2 (v - m)/h, second order, at any slope.
+A Jenkins element of presliding friction, t = clamp(t + k dx, L), acts with the mean (t(-h) + 2 t + t(+h))/4: its last
+term is a friction row with D = k h2/4, aref = -v/h - t/(k h2) and the limit L/4. That is Newmark's average
+acceleration, which never adds energy: second order, stable at any stiffness.
 The two forces of a bushing are opposite and act at the points of their parts, in the axes of the carrier; the
 moment r x f of their distance r is neglected, which changes no frequency by more than 0.05 %.
 Rotations need no rows: their torques are given explicitly (`vehicle.engines.simulation.rotations`).
@@ -42,7 +45,7 @@ from vehicle.engines.simulation.round_tyres import round_rows
 from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.model.laws.curve import curve_force
 from vehicle.model.laws.damper import friction_limit
-from vehicle.model.laws.friction import slope_at_rest
+from vehicle.model.laws.friction import clamp, slope_at_rest
 
 EMPTY_ROW = 1e-9
 """Impedance [kg] of a row without damping and stiffness: nonzero, and small against every mass."""
@@ -263,7 +266,7 @@ def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         limit = friction_limit(damper_rows.laws[n], sliding)
         efc.D[row] = max(slope_at_rest(limit, damper_rows.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
         efc.aref[row] = -sliding / c.timestep
-        efc.frictionloss[row] = limit
+        efc.frictionloss[row] = s.limit[n] = limit
     for n in e.controls.dampers:
         efc.D[damper_rows.rows[n]] = max(0.5 * c.timestep * s.coefficient[n], EMPTY_ROW)
     for n in range(damper_rows.valves.shape[0]):
@@ -271,6 +274,36 @@ def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         efc.D[row] = c.valve_impedance[n]
         efc.aref[row] = -2.0 * (d.qvel[damper_rows.dofs[damper]] - damper_rows.pieces[n, 1]) / c.timestep
         efc.frictionloss[row] = damper_rows.pieces[n, 2]
+    p = e.presliding
+    for k in range(p.rows.shape[0]):
+        row, stiffness, sliding = p.rows[k], p.stiffness[k], d.qvel[damper_rows.dofs[p.dampers[k]]]
+        efc.D[row] = 0.25 * stiffness * c.timestep**2
+        efc.aref[row] = -(sliding + s.slider[0, k] / (stiffness * c.timestep)) / c.timestep
+        efc.frictionloss[row] = 0.25 * p.share[k] * s.limit[p.dampers[k]]
+        s.explicit[row] = -0.25 * (s.slider[1, k] + 2.0 * s.slider[0, k])
+
+
+@jitable
+def advance_sliders(time: float, d: Fields, e: Layout, s: State) -> None:
+    """Advance the Jenkins elements of the dampers over the completed step, with the limits of its rows."""
+    p, last = e.presliding, s.last_time[0]
+    if time == last or p.rows.shape[0] == 0:
+        return
+    for k in range(p.rows.shape[0]):
+        n = p.dampers[k]
+        moved = d.qpos[e.dampers.places[n]] - s.stroke[n]
+        s.slider[1, k] = s.slider[0, k]
+        if last >= 0.0:
+            s.slider[0, k] = clamp(s.slider[0, k] + p.stiffness[k] * moved, p.share[k] * s.limit[n])
+    for n in range(s.stroke.shape[0]):
+        s.stroke[n] = d.qpos[e.dampers.places[n]]
+
+
+@jitable
+def slider_forces(d: Fields, e: Layout, s: State) -> None:
+    """Add the known part of the forces of the Jenkins elements of the dampers; call this after `generalised_forces`."""
+    for k in range(e.presliding.rows.shape[0]):
+        d.qfrc_applied[e.dampers.dofs[e.presliding.dampers[k]]] += s.explicit[e.presliding.rows[k]]
 
 
 @jitable
@@ -307,6 +340,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     local_axes(d, efc, e, s)
     headings(time, d, e, s)
     control(time, d, e, s)
+    advance_sliders(time, d, e, s)
     advance_branches(time, c, s)
     elements(d, efc, e, c, s)
     springs(d, efc, e, c, s)
@@ -317,6 +351,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     rotations(d, e, c, s)
     rolling_forces(d, efc, e, c, s)
     stops(d, e, s)
+    slider_forces(d, e, s)
 
 
 @jitable

@@ -19,27 +19,39 @@ Numbers = Mapping[str, Vector]
 
 
 class LawNames(NamedTuple):
-    """Names of the elements of a model in the order of the records; bushings as "type/name"."""
+    """Names of the elements of a model in the order of the records; bushings as "type/name".
+
+    `presliding` has the damper of each Jenkins element, element by element.
+    """
 
     bushings: tuple[str, ...]
     springs: tuple[str, ...]
     dampers: tuple[str, ...]
     valves: tuple[str, ...]
+    presliding: tuple[str, ...]
 
 
 def law_names(model: mujoco.MjModel) -> LawNames:
     """Return the names of the elements of a compiled car."""
     kinds, user = mujoco.mjtEq, mujoco.mjtBias.mjBIAS_USER
     named = [(str(model.equality(index).name), model.eq_type[index]) for index in range(model.neq)]
-    fields = {str(model.numeric(index).name) for index in range(model.nnumeric)}
+    fields = {str(model.numeric(index).name): int(model.numeric_size[index]) for index in range(model.nnumeric)}
+    dampers = tuple(str(model.actuator(i).name) for i in range(model.nu) if model.actuator_biastype[i] == user)
     return LawNames(
         bushings=tuple(
             name for name, equality_type in named if equality_type == kinds.mjEQ_CONNECT and f"law/{name}" in fields
         ),
         springs=tuple(name for name, equality_type in named if equality_type == kinds.mjEQ_TENDON),
-        dampers=tuple(str(model.actuator(i).name) for i in range(model.nu) if model.actuator_biastype[i] == user),
-        valves=tuple(str(model.tendon(int(i)).name) for i in np.flatnonzero(model.tendon_frictionloss > 0.0)),
+        dampers=dampers,
+        valves=tuple(str(model.tendon(i).name) for i in friction_tendons(model, presliding=False)),
+        presliding=tuple(name for name in dampers for _ in range(fields.get(f"presliding/{name}", 0) // 2)),
     )
+
+
+def friction_tendons(model: mujoco.MjModel, *, presliding: bool) -> list[int]:
+    """Return the ids of the tendons with friction: of Jenkins elements, or of the segments of damper curves."""
+    tendons = [int(index) for index in np.flatnonzero(model.tendon_frictionloss > 0.0)]
+    return [index for index in tendons if str(model.tendon(index).name).startswith("presliding/") == presliding]
 
 
 def model_numbers(model: mujoco.MjModel) -> dict[str, Vector]:
@@ -103,6 +115,9 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             laws=unpack([numbers[f"actuator/{name}"] for name in names.dampers]),
             pieces=np.reshape([numbers[f"law/{name}"] for name in names.valves], (-1, 3)).astype(float),
         ),
+        presliding=layout.presliding._replace(
+            stiffness=_elements(names, numbers)[:, 0].copy(), share=_elements(names, numbers)[:, 1].copy()
+        ),
         controls=layout.controls._replace(
             dampers=_true_indices(f"control/{name}" in numbers for name in names.dampers),
             laws=in_steps(np.reshape(controls, (-1, 8)), timestep),
@@ -120,6 +135,12 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             ),
         ),
     )
+
+
+def _elements(names: LawNames, numbers: Numbers) -> Vector:
+    """Return stiffness and share of the limit of the Jenkins elements of all dampers; (m, 2)."""
+    fields = [numbers[f"presliding/{name}"] for name in dict.fromkeys(names.presliding)]
+    return np.concatenate([np.zeros(0), *fields]).reshape(-1, 2)
 
 
 def _tables(names: LawNames, numbers: Numbers) -> Tables:

@@ -24,12 +24,14 @@ class PlateArrays:
 
     `row_velocity` is (1 - delta2/12) velocity, for the tyre rows: averaged over three steps like the other parts of
     their force. The central difference would be lower by w2 h2/12, 3 % of the damping at 100 Hz and 1 ms.
+    `slope_velocity` is speed times slope of the road [m/s], averaged likewise: that of the signal, or `row_velocity`.
     """
 
     displacement: Vector
     velocity: Vector
     acceleration: Vector
     row_velocity: Vector
+    slope_velocity: Vector
 
     @classmethod
     def of(
@@ -80,12 +82,23 @@ class PlateArrays:
             acceleration = np.vstack([acceleration, np.tile(acceleration[-1], (further_rows, 1))])
         row_velocity = velocity.copy()
         row_velocity[1:-1] -= FOURTH_ORDER * np.diff(velocity, 2, axis=0)
+        slope_velocity = row_velocity
+        if signal.slope_velocity:
+            slope_velocity = np.zeros_like(velocity)
+            inside = step * index
+            for column, wheel in enumerate(wheels):
+                if wheel in signal.slope_velocity:
+                    values = signal.slope_spline(wheel, inside[0], inside[-1])(np.minimum(inside, signal.duration))
+                    slope_velocity[: len(index), column] = values
+            slope_velocity[len(index) :] = slope_velocity[len(index) - 1]
+            slope_velocity[1:-1] += FOURTH_ORDER * np.diff(slope_velocity, 2, axis=0)
         requested = slice(first - begin, last - begin)
         return cls(
             displacement=displacement[requested],
             velocity=velocity[requested],
             acceleration=acceleration[requested],
             row_velocity=row_velocity[requested],
+            slope_velocity=slope_velocity[requested],
         )
 
 
@@ -102,14 +115,15 @@ class PlateBlock:
     Attributes:
         motion: rows of the block.
         offset: index of the first row of the block.
-        height, velocity, acceleration: values for the plates and for the tyre rows; (block, w).
+        height, velocity, acceleration, slope: values for the plates and for the tyre rows; (block, w).
     """
 
     def __init__(
         self, of: Callable[[slice], PlateArrays], rows: int, level: Vector, *, unit: int, minimum: int
     ) -> None:
         self.of, self.rows, self.level, self.unit = of, rows, level, unit
-        self.height, self.velocity, self.acceleration = np.zeros((3, min(max(BLOCK, minimum), rows), len(level)))
+        shape = min(max(BLOCK, minimum), rows), len(level)
+        self.height, self.velocity, self.acceleration, self.slope = np.zeros((4, *shape))
         self._load(0)
 
     def _load(self, offset: int) -> None:
@@ -119,6 +133,7 @@ class PlateBlock:
         size = self.end - offset
         self.height[:size] = self.level + self.motion.displacement
         self.velocity[:size], self.acceleration[:size] = self.motion.row_velocity, self.motion.acceleration
+        self.slope[:size] = self.motion.slope_velocity
 
     def reach(self, first: int, last: int) -> int:
         """Make the block contain the rows first to last, at most `minimum` - `unit` rows, and return its offset."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.compiler import jitable
-from vehicle.engines.simulation.element_records import Layout, Table, Vector
+from vehicle.engines.simulation.element_records import Layout, Table, Vector, copy_row
 from vehicle.engines.simulation.kernel import damper_force
 from vehicle.engines.simulation.step_records import Efc, Fields, Solution, State
 
@@ -197,7 +197,8 @@ def predict_acceleration(d: Fields, efc: Efc, e: Layout, c: State, s: Solution) 
     h, a, weight = s.matrix, s.acceleration, s.weight
     right_side(d, efc, e, c, s)
     for _ in range(ATTEMPTS):
-        a[:], weight[:] = s.right, efc.D
+        copy_row(a, s.right)
+        copy_row(weight, efc.D)
         for k in range(s.frictions.shape[0]):
             row, dof = s.frictions[k, 0], s.frictions[k, 1]
             if s.limited[k] == 0.0:

@@ -228,6 +228,9 @@ class Recorder:
         damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
         for row, damper in e.dampers.valves:
             damper_force[:, damper] -= total[:, row]
+        for row, damper in zip(e.presliding.rows, e.presliding.dampers, strict=True):
+            if row != e.dampers.frictions[damper]:
+                damper_force[:, damper] -= total[:, row]
         velocity = motion.velocity[steps]
         tyre = total[:, bushings.rows[e.tyres][:, 2]]
         for column, damper in enumerate(self.dampers):

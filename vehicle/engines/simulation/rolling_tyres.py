@@ -10,7 +10,8 @@ hub about e leaves it at rest. The rows of a tyre at the point of the hub become
 and their branches along x and y represent the slip (`docs/theory/rolling-tyre.md`). The input of the branch
 along y is v_y + V psi, psi being the heading of the axle, in the middle of the past step. The known part of
 
-- the slope of the road, F_z w'/V along x at the wheel centre, with the present load;
+- the slope of the road, F_z tan(beta) along x at the wheel centre, with the present load; tan(beta) is that of the
+  cams of the tyre, or w'/V;
 - the aligning moment, trail times side force, on the hub;
 - the gyroscopic moment -omega x (H e) on the hub, H = -I V/R, carried to the present by the last two velocities;
 - the course control on the body: along x, along y at the front axle, where a driver steers, and in yaw,
@@ -106,7 +107,7 @@ def rolling_forces(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None
         tyre, frame, t = rolling.tyres[n], d.xmat[rolling.hubs[n]], s.turning[n]
         row, spin = e.bushings.rows[tyre, 0], rolling.spins[n]
         push[spin] = -c.preload[row] * efc.J[row, spin] - c.preload[row + 1] * efc.J[row + 1, spin]
-        s.slope[n, 0] = max(0.0, s.force[tyre, 2]) * s.plate_velocity[rolling.plates[n], 2] / rolling.speeds[n]
+        s.slope[n, 0] = max(0.0, s.force[tyre, 2]) * s.slope_velocity[rolling.plates[n]] / rolling.speeds[n]
         # -omega x (H e) = H e x omega
         momentum = -rolling.inertias[n] * rolling.speeds[n] / rolling.arms[n, 2]
         x, y, z = 1.5 * t[0] - 0.5 * t[3], 1.5 * t[1] - 0.5 * t[4], 1.5 * t[2] - 0.5 * t[5]

@@ -9,10 +9,10 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, whole_numbers
 from vehicle.engines.simulation.element_records import (
     Bushings,
     Controls,
-    Dampers,
     Index,
     Indices,
     Layout,
@@ -26,10 +26,14 @@ from vehicle.engines.simulation.element_records import (
     Vector,
 )
 from vehicle.engines.simulation.force_curves import tables_through
-from vehicle.engines.simulation.law_arrays import law_names, laws_of, model_numbers, with_numbers
+from vehicle.engines.simulation.law_arrays import (
+    law_names,
+    laws_of,
+    model_numbers,
+    with_numbers,
+)
 from vehicle.model.assembly.element_numbers import TURNING
 from vehicle.model.laws.control_laws import in_steps
-from vehicle.model.laws.damper import unpack
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
@@ -78,14 +82,14 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     ]
 
     def rows_of(chosen: Sequence[str]) -> Index:
-        return _whole([first_rows[equalities[name]] for name in chosen])
+        return whole_numbers([first_rows[equalities[name]] for name in chosen])
 
     balls = [name for name in ends if name not in springs]
-    carriers = _whole([model.site_bodyid[ends[name][1]] for name in names])
+    carriers = whole_numbers([model.site_bodyid[ends[name][1]] for name in names])
     rotational = [name for name, law_numbers in zip(names, laws, strict=True) if law_numbers[TURNING] > 0.0]
     none = np.zeros(0)
     plates = {index: model.body_mocapid[carrier] for index, carrier in enumerate(carriers)}
-    empty = np.zeros((0, 3))
+    empty, dampers = np.zeros((0, 3)), damper_rows(model, rows_of, int(first_rows[-1]))
     layout = Layout(
         bushings=Bushings(
             rows=_triples(rows_of(names)),
@@ -95,13 +99,13 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             branch_stiffness=empty,
             branch_time=empty,
             further=empty,
-            averaged=_whole([]),
-            one_sided=_whole([]),
-            oblique=_whole([]),
+            averaged=whole_numbers([]),
+            one_sided=whole_numbers([]),
+            oblique=whole_numbers([]),
             directions=np.zeros((0, 9)),
         ),
         rotations=Rotations(
-            sites=_whole([ends[name] for name in rotational], 2),
+            sites=whole_numbers([ends[name] for name in rotational], 2),
             stiffness=np.zeros(0),
             turning=_turning(model, [ends[name] for name in rotational]),
             **_node_rotations(model, rotational, ends, modes),
@@ -110,11 +114,12 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             rows=rows_of(springs),
             stiffness=np.zeros(0),
             lengths=np.array([model.tendon_length0[model.eq_obj1id[equalities[name]]] for name in springs]),
-            sites=_whole([ends[name] for name in springs], 2),
+            sites=whole_numbers([ends[name] for name in springs], 2),
             shapes=_shapes(model, springs, modes),
             dofs=_spring_dofs(model, [ends[name] for name in springs]),
         ),
-        dampers=_dampers(model, rows_of, int(first_rows[-1])),
+        dampers=dampers,
+        presliding=presliding_rows(model, law, dampers, int(first_rows[-1])),
         controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
         tables=tables_through([]),
         modes=_modes(
@@ -124,9 +129,9 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
         round=_round_tyres(model, [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]),
         joints=_triples(rows_of([name for name in balls if name not in names])),
-        tyres=_whole(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
-        reach=_whole(nonzero, 4),
-        row_count=int(first_rows[-1]) + int(np.count_nonzero(model.dof_frictionloss > 0.0)) + len(law.valves),
+        tyres=whole_numbers(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
+        reach=whole_numbers(nonzero, 4),
+        row_count=int(first_rows[-1]) + len(law.dampers) + int(np.count_nonzero(model.tendon_frictionloss > 0.0)),
         velocity_count=int(model.nv),
     )
     return with_numbers(layout, law, numbers, float(model.opt.timestep))
@@ -141,12 +146,6 @@ def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
 def places_of(model: mujoco.MjModel) -> tuple[str, ...]:
     """Return the names of the output points of a car, in the order of their sensors."""
     return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in range(model.nsensor))
-
-
-def _whole(values: Any, columns: int = 0) -> Index:
-    """Convert values to 64-bit integers, (n,) or (n, columns)."""
-    array = np.array(values, dtype=np.int64, order="C")
-    return array.reshape(-1, columns) if columns else array.reshape(-1)
 
 
 def _triples(first: Index) -> Indices:
@@ -198,39 +197,14 @@ def _modes(
     )
 
 
-def _dampers(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:
-    """Return the record of the dampers: user actuators on joints, with equality rows of the same names."""
-    actuators = _damper_actuators(model)
-    joints = [int(model.actuator_trnid[index, 0]) for index in actuators]
-    dofs = _whole([model.jnt_dofadr[joint] for joint in joints])
-    tendons = np.flatnonzero(model.tendon_frictionloss > 0.0)
-    wrapped = [joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])) for tendon in tendons]
-    # Friction rows follow the equality rows: those of joints in their order, then those of tendons.
-    valves = [(first + len(actuators) + index, damper) for index, damper in enumerate(wrapped)]
-    return Dampers(
-        laws=unpack([]),
-        rows=rows_of([str(model.actuator(index).name) for index in actuators]),
-        frictions=first + np.argsort(np.argsort(dofs)),
-        dofs=dofs,
-        places=_whole([model.jnt_qposadr[joint] for joint in joints]),
-        valves=_whole(valves, 2),
-        pieces=np.zeros((0, 3)),
-    )
-
-
-def _damper_actuators(model: mujoco.MjModel) -> list[int]:
-    """Return the ids of the actuators of dampers."""
-    return [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]
-
-
 def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Controls:
     """Return the record of the controlled dampers with the sites of their sensors."""
     site_names = [(f"sensor/{name}/lower", f"sensor/{name}/upper") for name in chosen]
     sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in site_names]
     return Controls(
-        dampers=_whole([]),
+        dampers=whole_numbers([]),
         laws=in_steps(np.zeros((0, 8)), 1.0),
-        sites=_whole(sites, 2),
+        sites=whole_numbers(sites, 2),
         shapes=_shapes(model, [site for both in site_names for site in both], modes),
         dofs=_spring_dofs(model, sites),
     )
@@ -244,7 +218,7 @@ def _turning(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Indices
         row[_moved_by(model, carrier)] -= 1
     signs[:, ~_turns(model)] = 0
     pairs = np.argwhere(signs)
-    return _whole(np.column_stack([pairs, signs[tuple(pairs.T)]]), 3)
+    return whole_numbers(np.column_stack([pairs, signs[tuple(pairs.T)]]), 3)
 
 
 def _node_rotations(
@@ -256,7 +230,7 @@ def _node_rotations(
     with_shapes = [(n, psi) for n, psi in enumerate(read) if psi is not None]
     sides = [int(model.site_bodyid[ends[names[n]][0]] != body) for n, _ in with_shapes]
     return {
-        "nodes": _whole([(n, side) for (n, _), side in zip(with_shapes, sides, strict=True)], 2),
+        "nodes": whole_numbers([(n, side) for (n, _), side in zip(with_shapes, sides, strict=True)], 2),
         "shapes": np.reshape([psi for _, psi in with_shapes], (len(with_shapes), 3 * modes)).astype(float),
     }
 
@@ -279,7 +253,7 @@ def _spring_dofs(model: mujoco.MjModel, sites: Sequence[tuple[int, int]]) -> Ind
         for end, site in enumerate(ends)
         for dof in _moved_by(model, site)
     ]
-    return _whole(entries, 4)
+    return whole_numbers(entries, 4)
 
 
 def _moved_by(model: mujoco.MjModel, site: int) -> list[int]:
@@ -331,19 +305,19 @@ def _rolling(
             model.qpos0[position : position + 2].copy(),
         )
     return Rolling(
-        tyres=_whole([index for index, _, _ in wheels]),
-        plates=_whole([order.index(int(plates[index])) for index, _, _ in wheels]),
-        sites=_whole([sites[0] for _, sites, _ in wheels]),
-        hubs=_whole(hubs),
-        spins=_whole([spin for _, _, spin in wheels]),
+        tyres=whole_numbers([index for index, _, _ in wheels]),
+        plates=whole_numbers([order.index(int(plates[index])) for index, _, _ in wheels]),
+        sites=whole_numbers([sites[0] for _, sites, _ in wheels]),
+        hubs=whole_numbers(hubs),
+        spins=whole_numbers([spin for _, _, spin in wheels]),
         arms=np.zeros((count, 3)),
         speeds=np.zeros(count),
         trails=np.zeros(count),
         inertias=np.array(inertias),
-        dofs=_whole(
+        dofs=whole_numbers(
             [(n, dof, int(model.body_rootid[hub])) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 3
         ),
-        course=_whole(course),
+        course=whole_numbers(course),
         rest=start,
         hold=np.zeros(0),
     )
@@ -358,10 +332,10 @@ def _round_tyres(model: mujoco.MjModel, tyres: Sequence[tuple[int, tuple[int, in
     """
     hubs = [int(model.site_bodyid[sites[0]]) for _, sites in tyres]
     return RoundTyres(
-        tyres=_whole([index for index, _ in tyres]),
-        hubs=_whole(hubs),
+        tyres=whole_numbers([index for index, _ in tyres]),
+        hubs=whole_numbers(hubs),
         radii=np.zeros(len(tyres)),
-        dofs=_whole([(n, dof) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 2),
+        dofs=whole_numbers([(n, dof) for n, hub in enumerate(hubs) for dof in _above(model, hub)], 2),
     )
 
 

@@ -247,12 +247,13 @@ def _at_rest(layout: Layout) -> State:
     elements, tyres, springs = layout.bushings.rows.shape, len(layout.tyres), len(layout.springs.rows)
     shapes: dict[str, tuple[int, ...]] = dict.fromkeys(State._fields, elements)
     shapes |= dict.fromkeys(("plate_velocity", "plate_acceleration"), (tyres, 3))
-    shapes |= {"last_time": (1,), "explicit": (layout.row_count,)}
+    shapes |= {"slope_velocity": (tyres,), "last_time": (1,), "explicit": (layout.row_count,)}
     shapes |= {"torque": (len(layout.rotations.sites), 3), "ends": (2 * springs, 3), "line": (springs, 3)}
     shapes |= {"frame": (len(layout.rotations.nodes), 9)}
     longest = RING + 1 + int(np.max(layout.controls.laws["lag"], initial=0.0))
     controls, dampers = len(layout.controls.dampers), len(layout.dampers.dofs)
     shapes |= {"coefficient": (dampers,), "sensed": (2 * controls, 2), "past": (controls, longest), "steps": (1,)}
+    shapes |= {"slider": (2, len(layout.presliding.rows)), "stroke": (dampers,), "limit": (dampers,)}
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
     rolling = len(layout.rolling.tyres)
     shapes |= {"heading": (2, rolling), "turning": (rolling, 6), "slope": (rolling, 4)}

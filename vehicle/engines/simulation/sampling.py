@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vehicle.compiler import jitable
-from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector
+from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector, copy_row
 from vehicle.engines.simulation.modal_space import modal_acceleration
 
 
@@ -17,10 +17,12 @@ class Plates(NamedTuple):
     height: Table
     velocity: Table
     acceleration: Table
+    slope: Table
     mocap: Index
     mocap_position: Table
     row_velocity: Table
     row_acceleration: Table
+    row_slope: Vector
 
 
 class Sources(NamedTuple):
@@ -143,19 +145,13 @@ class Loop(NamedTuple):
 
 
 @jitable
-def copy_row(row: Vector, values: Vector) -> None:
-    """Copy values in a loop: an array assignment would double the compile time by its error messages."""
-    for entry in range(values.shape[0]):
-        row[entry] = values[entry]
-
-
-@jitable
 def move_plates(index: int, p: Plates) -> None:
     """Set the plate heights of a step, and the plate motion of the tyre rows."""
     for plate in range(p.mocap.shape[0]):
         p.mocap_position[p.mocap[plate], 2] = p.height[index, plate]
         p.row_velocity[plate, 2] = p.velocity[index, plate]
         p.row_acceleration[plate, 2] = p.acceleration[index, plate]
+        p.row_slope[plate] = p.slope[index, plate]
 
 
 @jitable

@@ -64,6 +64,7 @@ class State(NamedTuple):
 
     Attributes:
         plate_velocity, plate_acceleration: motion of the plates, an input; (t, 3).
+        slope_velocity: speed times slope of the road at the tyres [m/s], an input; (t,).
         branch_past: part of the branch forces f2 that is independent of the acceleration of the step; (n, 3).
         branch_force: f2 at the last completed step; (n, 3).
         last_rate: r' at the last completed step; (n, 3). last_time: time of that step [s], -1 at rest; (1,).
@@ -82,6 +83,8 @@ class State(NamedTuple):
         slope: explicit force along x [N] and moment [N m] on the hubs; (w, 4).
         push: generalised force of all explicit forces of a rolling car; (nv,), empty on a shaker.
         contact: elastic force of one-sided elements [N], and r' at the last evaluation [m/s]; (2, k).
+        slider: forces of the Jenkins elements of the dampers at the present and the previous time [N]; (2, m).
+        stroke, limit: displacement [m] and friction limit [N] of the dampers at the present time; (w,).
         coefficient: damping coefficient c of the dampers [N s/m]; (w,).
         sensed: velocities at the sensors in the middle of the last two steps [m/s], latest first; (2 k, 2).
         past: memory of the controlled dampers, see `vehicle.model.laws.control_laws`; (k, ...).
@@ -90,6 +93,7 @@ class State(NamedTuple):
 
     plate_velocity: Table
     plate_acceleration: Table
+    slope_velocity: Vector
     branch_past: Table
     branch_force: Table
     last_rate: Table
@@ -113,6 +117,9 @@ class State(NamedTuple):
     slope: Table
     push: Vector
     contact: Table
+    slider: Table
+    stroke: Vector
+    limit: Vector
     coefficient: Vector
     sensed: Table
     past: Table

@@ -75,10 +75,12 @@ def simulate(
         height=block.height,
         velocity=block.velocity,
         acceleration=block.acceleration,
+        slope=block.slope,
         mocap=np.array(mocap, dtype=np.int64),
         mocap_position=data.mocap_pos,
         row_velocity=rows.state.plate_velocity,
         row_acceleration=rows.state.plate_acceleration,
+        row_slope=rows.state.slope_velocity,
     )
     compiled = compiled_rows(rows)
     recorder = Recorder(

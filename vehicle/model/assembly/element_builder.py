@@ -210,6 +210,12 @@ class ElementBuilder:
                 tendon = self.spec.add_tendon(name=field.removeprefix("law/"))
                 tendon.wrap_joint(name, 1.0)
                 tendon.frictionloss = piece[2]
+        elements = numbers.get(f"presliding/{placed.name}", np.zeros(0)).reshape(-1, 2)
+        for number, (_, share) in enumerate(elements[1:].tolist(), start=1):
+            # The friction row of the joint is that of the first element.
+            tendon = self.spec.add_tendon(name=f"presliding/{placed.name}/{number}")
+            tendon.wrap_joint(name, 1.0)
+            tendon.frictionloss = max(share * damper.coulomb_friction, MIN_FRICTION)
         actuator = self.spec.add_actuator(name=placed.name, trntype=mujoco.mjtTrn.mjTRN_JOINT, target=name)
         actuator.gaintype = mujoco.mjtGain.mjGAIN_USER
         actuator.biastype = mujoco.mjtBias.mjBIAS_USER

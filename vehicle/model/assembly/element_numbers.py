@@ -19,6 +19,7 @@ from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws import control_laws
 from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
+from vehicle.model.laws.presliding import presliding_elements
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
 from vehicle.model.parameters.force_elements import Damper, ForceTable, Tyre
@@ -67,21 +68,23 @@ def spring_numbers(spring: PlacedSpring) -> Numbers:
 
 
 def damper_numbers(placed: PlacedDamper) -> Numbers:
-    """Return the numbers of a damper: stop, steeper segments of the curve, control, actuator."""
-    numbers, (segments, control, actuator) = _table(placed.name, placed.law.stop), _packed(placed.law)
+    """Return the numbers of a damper: stop, steeper segments of the curve, presliding, control, actuator."""
+    numbers, (segments, elements, control, actuator) = _table(placed.name, placed.law.stop), _packed(placed.law)
     for number, segment in enumerate(segments):
         numbers[f"law/valve/{placed.name}" + (f"/{number}" if number else "")] = segment
     if control is not None:
         numbers[f"control/{placed.name}"] = control
+    if elements.size:
+        numbers[f"presliding/{placed.name}"] = elements.ravel()
     numbers[f"actuator/{placed.name}"] = actuator
     return numbers
 
 
 @lru_cache(maxsize=16)
-def _packed(law: Damper) -> tuple[Vector, Vector | None, Vector]:
-    """Return steeper segments, control and record of a damper; cached, because dampers of an axle are equal."""
+def _packed(law: Damper) -> tuple[Vector, Vector, Vector | None, Vector]:
+    """Return steeper segments, presliding elements, control and record; cached, as an axle has equal dampers."""
     control = None if law.controlled is None else control_laws.pack(law.controlled)
-    return damper_curve(law).clamped(), control, actuator_parameters(pack(law))
+    return damper_curve(law).clamped(), presliding_elements(law), control, actuator_parameters(pack(law))
 
 
 def joint_numbers(spring: JointSpring) -> Numbers:

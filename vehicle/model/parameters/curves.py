@@ -1,16 +1,18 @@
-"""Force laws as tables of points: numbers in the vehicle file, or a measurement file that it names."""
+"""Force laws in files that a vehicle file names: measurement files, and property files of other programs."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from vehicle.errors import ConfigurationError, VehicleError
 
 if TYPE_CHECKING:
     from vehicle.signals.records.table import Header
+
+T = TypeVar("T")
 
 MAX_POINTS = 40
 """Maximum number of points: each segment is a row of the solver, and more would only cost time."""
@@ -52,32 +54,134 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
                                  "of 0: compression (bump) is negative, extension (rebound) positive")  # fmt: skip
 
 
-def with_curve_files(table: Mapping[str, Any], folder: Path, prefix: str = "") -> dict[str, Any]:
-    """Return a vehicle file with every `curve = FILE` replaced by the points of the file.
+def with_curve_files(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a vehicle file with every `curve = FILE` replaced by the numbers of the file.
 
     Args:
         table: vehicle file.
         folder: folder that the file names are relative to.
-        prefix: path of this table, for messages.
 
     Raises:
-        ConfigurationError: a file or one of its columns is missing, or the points are given twice; with the path.
+        ConfigurationError: a file or a part of it is missing or wrong, or numbers are given twice; with the path.
     """
+    return _filled(table, folder, "", {})
+
+
+def curve_sources(table: Mapping[str, Any], folder: Path) -> dict[str, str]:
+    """Return the file of each number that a vehicle file takes from another file, by the path of the number.
+
+    Args:
+        table: vehicle file.
+        folder: folder that the file names are relative to.
+
+    Raises:
+        ConfigurationError: see `with_curve_files`.
+    """
+    sources: dict[str, str] = {}
+    _filled(table, folder, "", sources)
+    return sources
+
+
+def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[str, str]) -> dict[str, Any]:
+    """Return a table with the numbers of its files; enter their sources by path."""
     filled: dict[str, Any] = {}
     for key, value in table.items():
         path = f"{prefix}.{key}" if prefix else key
-        if isinstance(value, Mapping):
-            filled[key] = with_curve_files(value, folder, path)
+        if isinstance(value, Mapping) and key == "stop" and {"bump", "rebound"} & set(value):
+            filled[key] = _stop(value, folder, path, sources)
+        elif isinstance(value, Mapping):
+            filled[key] = _filled(value, folder, path, sources)
         elif key != "curve":
             filled[key] = value
-        elif not isinstance(value, str) or "force" in table:
-            raise ConfigurationError(
-                f"{path}: found {value!r}; must be the name of a file, without force in the same table"
-            )
         else:
-            # Only dampers have a law of damping.
-            filled |= _points(folder / value, path, "velocity" if "viscous_law" in table else "displacement")
+            if not isinstance(value, str) or (twice := sorted({"force", "stiffness"} & set(table))):
+                raise ConfigurationError(
+                    f"{path}: found {value!r}; must be the name of a file, without "
+                    f"{' and '.join(twice) if isinstance(value, str) else 'force'} in the same table"
+                )
+            numbers, source = _numbers(table, folder / value, path)
+            filled |= {name: number for name, number in numbers.items() if name not in table}
+            sources |= {f"{prefix}.{name}": source for name in numbers if name not in table}
     return filled
+
+
+def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str, Any], str]:
+    """Return the numbers of a file for the table that names it, and their source.
+
+    Args:
+        table: table of a damper, spring or bushing, or table of points.
+        file: property file, or a file of a test with two columns.
+        path: path of `curve` in the vehicle file.
+    """
+    # Imported here: parameters are read without them, and only few cars name files.
+    from vehicle.model.parameters.property_files import (
+        bushing_numbers,
+        damper_numbers,
+        spring_numbers,
+        spring_of_points,
+    )
+    from vehicle.signals.records.teim_orbit import is_property_file, read_property_file
+
+    *above, name, _ = path.split(".")
+    of_points = name == "stop" or name.startswith("table")
+    bushing = "bushings" in above[-2:] or above[:1] == ["connection"]
+    # Only dampers have a law of damping; a table of one side may leave it out.
+    damper = "viscous_law" in table
+    if not is_property_file(file):
+        if bushing and not of_points:
+            raise ConfigurationError(f"{path}: {file} is no property file; name a file of one axis in a table "
+                                     f"{path.removesuffix('curve')}table_z")  # fmt: skip
+        points = _points(file, path, "velocity" if damper else "displacement")
+        if damper or of_points:
+            return points, file.name
+        rows = list(zip(points["displacement"], points["force"], strict=True))
+        return _within(path, lambda: spring_of_points(rows, "table", str(file))), file.name
+    if of_points:
+        raise ConfigurationError(f"{path}: {file} is a property file; name it in the table above: "
+                                 f"{'.'.join(above)}.{'stop.bump.curve' if name == 'stop' else 'curve'}")  # fmt: skip
+    properties = _within(path, lambda: read_property_file(file))
+    if damper or (properties.file_type == "dpr" and {"left", "right"} & set(above)):
+        numbers = _within(path, lambda: damper_numbers(properties))
+    elif bushing:
+        numbers = _within(path, lambda: bushing_numbers(properties, table))
+    else:
+        numbers = _within(path, lambda: spring_numbers(properties))
+    return numbers, properties.source
+
+
+def _stop(stop: Mapping[str, Any], folder: Path, path: str, sources: dict[str, str]) -> dict[str, Any]:
+    """Return the table of a stop whose ends are files of a bump stop and a rebound stop."""
+    from vehicle.model.parameters.property_files import stop_numbers, stop_points
+    from vehicle.signals.records.teim_orbit import is_property_file, read_property_file
+
+    ends: dict[str, list[tuple[float, float]]] = {}
+    files = []
+    for end, entry in stop.items():
+        keys = set(entry) if isinstance(entry, Mapping) else set()
+        if end not in ("bump", "rebound") or keys != {"curve", "clearance"} or not isinstance(entry["curve"], str):
+            raise ConfigurationError(
+                f"{path}.{end}: found {entry!r}; a stop from files has bump and rebound alone, each with curve (a "
+                "file) and clearance [m]"
+            )
+        file, where = folder / entry["curve"], f"{path}.{end}.curve"
+        if is_property_file(file):
+            properties = _within(where, lambda file=file: read_property_file(file))  # type: ignore[misc]
+            ends[end] = _within(where, lambda properties=properties, end=end: stop_points(properties, end))  # type: ignore[misc]
+            files.append(properties.source)
+        else:
+            points = _points(file, where, "displacement")
+            ends[end] = list(zip(points["displacement"], points["force"], strict=True))
+            files.append(file.name)
+    sources |= {f"{path}.{name}": "; ".join(files) for name in ("displacement", "force")}
+    return stop_numbers(stop, ends, path)
+
+
+def _within(path: str, read: Callable[[], T]) -> T:
+    """Call a function that reads a file; its error names the path in the vehicle file."""
+    try:
+        return read()
+    except VehicleError as error:
+        raise ConfigurationError(f"{path}: {error}") from None
 
 
 def _points(file: Path, path: str, key: str) -> dict[str, Any]:

@@ -19,7 +19,6 @@ from vehicle.model.parameters.force_elements import (
     NUMBERS,
     Bushing,
     Damper,
-    ForceTable,
     Hydromount,
     MainSpring,
     SlideSpring,
@@ -28,6 +27,7 @@ from vehicle.model.parameters.force_elements import (
 )
 from vehicle.model.parameters.hardpoints import LARGEST_M
 from vehicle.model.parameters.load_mass import Load
+from vehicle.model.parameters.optional_keys import WITH_FILES
 from vehicle.model.parameters.placed_elements import spring_kind
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.rigid_part import Part
@@ -45,6 +45,16 @@ KINDS = (Part, Bushing, Tyre, Hydromount, MainSpring, SlideSpring, Stabilizer, D
 
 TEXT: Schema = {"type": "string"}
 PART: Schema = {**TEXT, "description": "name of a part"}
+END: Schema = {
+    "type": "object",
+    "description": "end of the travel of a damper: file of its stop, and travel from the design position to it",
+    "properties": {
+        "curve": {"type": "string", "description": "property file, or file with penetration and force"},
+        "clearance": {"type": "number", "minimum": 0.0, "description": "[m] travel to the contact"},
+    },
+    "required": ["curve", "clearance"],
+    "additionalProperties": False,
+}
 PLACE: Schema = {"anyOf": [{"$ref": "#/definitions/point"}, {**TEXT, "description": "name of a point"}]}
 
 
@@ -131,7 +141,7 @@ def template_schema() -> Schema:
 
 def _vehicle(*, complete: bool) -> Schema:
     """Return the schema of a whole vehicle file, or of a file that changes its base."""
-    laws = _table(Tyre)["properties"] | _table(Hydromount)["properties"]
+    laws = _table(Tyre)["properties"] | _table(Hydromount)["properties"] | _table(Bushing)["properties"]
     at = {"at": PLACE}
     connection = {
         "moving": PART,
@@ -221,13 +231,15 @@ def _table(parameters: type[Any], complete: bool = True) -> Schema:
         for entry in fields
         if entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
     ]
-    if parameters not in (Damper, ForceTable):
+    if parameters not in WITH_FILES:
         return _object(properties, needed if complete else [])
-    # The points of a curve may be in a file.
-    schema = _object({**properties, "curve": {**TEXT, "description": "file with the points of the curve"}})
+    # Numbers may be in a file.
+    schema = _object({**properties, "curve": {**TEXT, "description": "file with the curve, or property file"}})
+    if parameters is Damper:
+        schema["properties"]["stop"] = {"anyOf": [properties["stop"], _object({"bump": END, "rebound": END})]}
     if not complete:
         return schema
-    if parameters is ForceTable:
+    if parameters is not Damper:
         return {**schema, "anyOf": [{"required": ["curve"]}, {"required": needed}]}
     by_law = [
         {"if": {"properties": {key: {"const": law}}}, "then": {"required": [*NUMBERS[law]]}}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,15 +18,20 @@ MOVING: dict[str, Any] = {"at_least": 1e-6, "at_most": 10.0, "why": "dampers on 
 RUBBED: dict[str, Any] = {"at_most": 1e6, "why": "a seal rubs with 50 to 500 N, and 1e5 N lock a damper for good"}
 TWISTED: dict[str, Any] = {"at_most": 1e6, "why": "a stabilizer bar has 1e4 N m/rad"}
 
-FRICTION_LAWS = ("coulomb", "stribeck")
+FRICTION_LAWS = ("coulomb", "stribeck", "presliding")
 """Names of the friction laws; each is a module of `vehicle.model.laws`."""
 
 NUMBERS = {
     "linear": {"viscous": "N s/m"},
     "degressive": {"viscous": "N s/m", "degressive_viscous": "N s/m", "degressive_velocity": "m/s"},
     "stribeck": {"stribeck_friction": "N", "stribeck_velocity": "m/s", "stribeck_exponent": "-"},
+    "presliding": {"presliding_stiffness": "N/m"},
 }
 """Parameters of a damper that only one law requires, with their units."""
+
+
+MAX_SLIDERS = 8
+"""Maximum number of segments of a presliding curve: each is a friction row of the solver."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -165,6 +171,9 @@ class Damper:
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
+    Presliding friction has the limit Fd, and below it springs with sliders over the stroke in place of the line: on
+    first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
+    that curve (`vehicle.model.laws.presliding`); the smoothing has no effect.
     Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law.
     """
 
@@ -206,6 +215,16 @@ class Damper:
     stribeck_exponent: float | None = quantity(
         "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual", default=None
     )
+    presliding_stiffness: float | None = quantity(
+        "N/m", "K, stiffness of presliding friction after a reversal", above=0.0, default=None, **STIFFEST
+    )
+    presliding_force: tuple[float, ...] = quantity(
+        "-", "ends of the segments of the presliding curve, shares of Fd", above=0.0, at_most=1.0,
+        default=(0.25, 0.5, 0.75, 1.0),
+    )  # fmt: skip
+    presliding_slope: tuple[float, ...] = quantity(
+        "-", "slopes of these segments over K", above=0.0, at_most=1.0, default=(1.0, 0.75, 0.5, 0.25)
+    )
     slip_velocity: float = quantity("m/s", "velocity above which the damper counts as slipping", above=0.0, **MOVING)
 
     def __post_init__(self) -> None:
@@ -214,6 +233,7 @@ class Damper:
             for name, unit in NUMBERS.get(law, {}).items():
                 if getattr(self, name) is None:
                     raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
+        self._check_presliding()
         if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
@@ -227,6 +247,25 @@ class Damper:
                 f"viscous ({self.viscous!r} N s/m)"
             )
 
+    def _check_presliding(self) -> None:
+        """Check that the presliding curve rises to the limit, with falling slopes that begin with K.
+
+        Raises:
+            ConfigurationError: a wrong number or order of the values.
+        """
+        ends, slopes = self.presliding_force, self.presliding_slope
+        if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
+            raise ConfigurationError(
+                f"Damper.presliding_slope: found {len(slopes)} numbers for {len(ends)} of presliding_force; set a "
+                f"slope for each, 1 to {MAX_SLIDERS} in all"
+            )
+        for name, values, falling, shape in (
+            ("force", ends, ends[::-1], "rise to 1"),
+            ("slope", slopes, slopes, "fall from 1"),
+        ):
+            if falling[0] != 1.0 or any(after >= value for value, after in itertools.pairwise(falling)):
+                raise ConfigurationError(f"Damper.presliding_{name}: found {list(values)}, must {shape}")
+
     @property
     def controlled(self) -> SemiActiveDamper | None:
         """Control of a semi-active damper; None for a passive damper."""
@@ -234,7 +273,7 @@ class Damper:
 
     @property
     def static_friction(self) -> float:
-        """Friction limit at rest [N]: Fs for the Stribeck law, Fd for the Coulomb law."""
-        if self.friction_law == "coulomb" or self.stribeck_friction is None:
+        """Friction limit at rest [N]: Fs for the Stribeck law, Fd for the Coulomb law and presliding."""
+        if self.friction_law in ("coulomb", "presliding") or self.stribeck_friction is None:
             return self.coulomb_friction
         return self.stribeck_friction

@@ -22,7 +22,10 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
     off = {f"body.{name}": (rigid, "body.flexible = true") for name in ("frequency_scale", "model_mass")}
     for damper in vehicle.composition.dampers:
         law, path = damper.law, damper.path
-        off[f"{path}.stribeck_"] = (law.friction_law == "coulomb", f"{path}.friction_law = stribeck")
+        off[f"{path}.stribeck_"] = (law.friction_law in ("coulomb", "presliding"), f"{path}.friction_law = stribeck")
+        presliding = law.friction_law == "presliding"
+        off[f"{path}.presliding_"] = (not presliding, f"{path}.friction_law = presliding")
+        off[f"{path}.smoothing"] = (presliding, f"{path}.friction_law = coulomb or stribeck")
         passive = law.controlled is None
         off[f"{path}.viscous"] = (not passive, f"{path}.control.law = passive")
         if passive and law.viscous_law == "table":

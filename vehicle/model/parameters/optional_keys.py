@@ -11,9 +11,12 @@ from typing import Any
 from vehicle.model.parameters.body import MAX_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
-from vehicle.model.parameters.force_elements import Bushing, Damper, ForceTable, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Damper, ForceTable, Hydromount, MainSpring, Tyre
 from vehicle.model.parameters.instance import instances
 from vehicle.names import SIDE_SIGN
+
+WITH_FILES = (Damper, ForceTable, MainSpring, Bushing)
+"""Parameter classes whose numbers may be in a file that `curve` names."""
 
 
 def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
@@ -62,7 +65,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
 def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
     """Yield the keys of a parameter class that have a default, or all keys; tables of points key by key."""
     hints = typing.get_type_hints(parameters)
-    if parameters in (Damper, ForceTable):
+    if parameters in WITH_FILES:
         yield "curve"
     for entry in dataclasses.fields(parameters):
         needed = entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING

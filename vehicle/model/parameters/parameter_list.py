@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.model.parameters.base_car import vehicle_table
+from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.value_sources import value_sources
@@ -74,7 +75,10 @@ def parameter_list(vehicle: Vehicle, file: Path | None, folder: Path | None = No
     Raises:
         ConfigurationError: the file cannot be read.
     """
-    original, sources = ({}, {}) if file is None else (vehicle_table(file), value_sources(file))
+    original: Mapping[str, Any] = {}
+    sources: Mapping[str, str] = {}
+    if file is not None:
+        original, sources = with_curve_files(vehicle_table(file), file.parent), value_sources(file)
     parameters = []
     for path, value in flattened(vehicle.table):
         same = file is None or value_at(original, path) == value

@@ -21,14 +21,14 @@ def shipped_cars() -> tuple[str, ...]:
 
 
 def vehicle_file(path: Path | str) -> Path:
-    """Return the vehicle file of a car: the given path, or the file of the shipped car of this name.
+    """Return the vehicle file of a car: a path, the file in a folder, or the file of the shipped car of this name.
 
     Raises:
-        ConfigurationError: neither a file nor a shipped car, or the folder of a car.
+        ConfigurationError: neither a file, nor the folder of a car, nor a shipped car.
     """
     path = Path(path)
     if path.is_dir() and (path / "vehicle.toml").is_file():
-        raise ConfigurationError(f"{path}: is a folder; give the file in it: {path / 'vehicle.toml'}")
+        return path / "vehicle.toml"
     if path.suffix or path.exists() or path.name != str(path):
         return path
     if path.name not in CARS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from vehicle.model.parameters.curves import curve_sources
 from vehicle.model.parameters.shipped import CARS, vehicle_file
 from vehicle.model.parameters.toml_file import read_table
 
@@ -17,6 +18,8 @@ _UNIT = re.compile(r"\[[^\]]*\]\s*")
 def value_sources(file: Path) -> dict[str, str]:
     """Read the comment behind each value of a vehicle file, without the unit at its beginning.
 
+    A number from a file that the vehicle file names has that file as its source.
+
     Args:
         file: vehicle file; sources of values that it takes from its base come from the file of the base.
 
@@ -24,7 +27,7 @@ def value_sources(file: Path) -> dict[str, str]:
         Path of a parameter to the text of its comment; a value without a comment is left out.
 
     Raises:
-        ConfigurationError: the file, or its base, cannot be read.
+        ConfigurationError: the file, its base, or a file that it names cannot be read.
     """
     table = read_table(file)
     sources: dict[str, str] = {}
@@ -33,6 +36,7 @@ def value_sources(file: Path) -> dict[str, str]:
         if beside.is_file() or base in CARS:
             sources = value_sources(beside if beside.is_file() else vehicle_file(base))
     sources.update(comments(file.read_text(encoding="utf-8")))
+    sources.update(curve_sources(table, file.parent))
     return sources
 
 

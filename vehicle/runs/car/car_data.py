@@ -15,6 +15,7 @@ import numpy.typing as npt
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.parameter_list import Parameter, parameter_list
 from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.threads import one_blas_thread
@@ -246,7 +247,7 @@ def _largest(modes: Sequence[Mode], shares: Sequence[float], motion: str, state:
 def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:
     """Yield sentences about quantities that are not defined for a car."""
     if len(axles) != 2:
-        supports = ", ".join(car.static.support_load)
+        supports = ", ".join(point_words(name) for name in car.static.support_load)
         yield (
             f"wheelbase, anti-dive in per cent and distribution of roll stiffness: not defined, since {len(axles)} "
             f"axle has wheels on plates{f'; the rest of the car stands on {supports}' if supports else ''}"

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from vehicle.model.parameters.parameter_list import Parameter, value_text
+from vehicle.names import point_words
 from vehicle.runs.car.axle_data import AxleData
 from vehicle.runs.car.car_data import STATES, CarData
 
@@ -125,7 +126,7 @@ def _whole_car(data: CarData) -> TextTable:
         rows.append(("wheelbase", f"{1e3 * data.wheelbase_m:.0f} mm"))
     if loads:
         parts = [f"{axle.name} {sum(axle.load_n.values()):.0f} N" for axle in data.axles]
-        parts += [f"{name} {load:.0f} N" for name, load in data.support_n.items()]
+        parts += [f"{point_words(name)} {load:.0f} N" for name, load in data.support_n.items()]
         rows.append(("static loads", f"{', '.join(parts)}; {100 * data.front_share:.1f} % on {data.axles[0].name}"))
     return TextTable(title="Car", heads=(), rows=tuple(rows))
 

@@ -258,7 +258,8 @@ class Run:
         if not self.recording.poses.size:
             raise ConfigurationError(f"{file}: the reduced engine stores no poses; run the car with engine='mujoco'")
         speed = (self.road or {}).get("speed_kmh")
-        driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None)
+        profile = (self.signal.time, self.signal.profile) if self.signal.profile else None
+        driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None, profile=profile)
         film(self, Path(file), take or driven, progress=progress)
         return Path(file)
 

@@ -16,6 +16,7 @@ from vehicle.model.flexbody.mass_difference import mass_difference
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.parameters.body_notices import body_notices
 from vehicle.model.parameters.idle import idle_parameters
+from vehicle.names import wheel_words
 from vehicle.runs.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
@@ -379,7 +380,9 @@ def _peaks(response: FrequencyResponse | None, channels: Sequence[str]) -> Peaks
 def _caption(run: Run, response: FrequencyResponse) -> str:
     """Return the caption of the FRF plot: input, levels, estimator."""
     moving = [wheel for wheel in run.signal.wheels if run.signal.rms(wheel) > 0.0] or [run.wheel]
-    levels = ", ".join(f"{1e3 * run.signal.rms(wheel):.3g} mm at wheel {wheel}" for wheel in moving)
+    levels = ", ".join(
+        f"{1e3 * run.signal.rms(wheel):.3g} mm at the {wheel_words(wheel, run.car.vehicle.wheels)}" for wheel in moving
+    )
     return (
         f"{Path(run.signal.source).name}, RMS {levels}, {run.signal.duration:g} s; estimator: {response.estimator}, "
         f"resolution {response.resolution_hz:.2g} Hz; tyres {run.car.vehicle.driving.words}; engine: "

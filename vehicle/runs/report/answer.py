@@ -10,17 +10,18 @@ import numpy as np
 
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.engines.linear.mode_shares import mode_shares
 from vehicle.names import point_words, side_of
+from vehicle.runs.report.band_causes import main_path, paths, strongest
+from vehicle.runs.report.base_run import OF_THE_RUN
 from vehicle.runs.report.comfort_class import reactions
-from vehicle.runs.report.differences import changed_parameters, difference
+from vehicle.runs.report.differences import changed_parameters, difference, parameter_words
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.main_band import POINT, MainBand, main_band, weighted_bands
+from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
 from vehicle.runs.report.markup import Markup, joined, number, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.modal_assurance import mac
-from vehicle.signals.records.record_spectra import evaluated_from
+from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 from vehicle.signals.records.run_summary import slip_shares
 
 Modes = Mapping[str, Sequence[Mode]]
@@ -31,8 +32,16 @@ MOST_CHANGES = 2
 SMALL = 0.05
 """Change [%] below which comfort counts as unchanged."""
 
-LINES = 400
-"""Spectral lines of a band that determine the shares of the modes."""
+SLIP = 0.1
+"""Change of the time in slip [percentage points] from which it is named."""
+
+EXPLANATION = (
+    "Mode and path: of the linear car whose dampers stick or slide as during most of the run, with the plates of the "
+    "run; shares in phase with the sum of all modes, or of the forces of all elements on the body."
+)
+"""Explanation of the statements."""
+
+DIRECTIONS = {"x": "fore-aft", "y": "lateral", "z": "vertical"}
 
 
 def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
@@ -69,12 +78,11 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
     band = main_band(spectra)
     marked: dict[str, float] = {}
     if band is not None:
-        mode = strongest(run, band, modes.get(damper_state(run), ()))
-        there = "" if mode is None else f"; the largest part there is the mode of {mode_words(mode)}"
-        texts.append(
-            f"{100.0 * band.share:.0f} % of it (mean square) are along {band.axis} between {band.low:.3g} and "
-            f"{band.high:.3g} Hz{there}. {_damper_words(run)}"
-        )
+        mode, shares = strongest(run, band, modes.get(damper_state(run), ())), paths(run, band)
+        parts = [f"{100.0 * band.share:.0f} % of it (mean square) {_is_within(band)}"]
+        parts += [f"mainly by the mode of {mode_words(mode)}"] if mode is not None else []
+        parts += [f"carried into the body by {main_path(shares)}"] if shares else []
+        texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
         marked = {} if mode is None else {f"{mode.frequency:.1f} Hz\n{_motion(mode)}": mode.frequency}
     bands = next(iter(spectra.values())).third_octaves
     powers = {axis: np.nan_to_num(spectrum.third_octaves.rms) ** 2 for axis, spectrum in spectra.items()}
@@ -96,14 +104,21 @@ def _input_words(run: FinishedRun) -> str:
     return f"{Path(excitation['file']).name} (RMS {1e3 * excitation['rms_m']:.3g} mm)"
 
 
+def _is_within(band: MainBand) -> str:
+    """Return direction and frequencies of a band as the end of a sentence."""
+    return f"is {DIRECTIONS[band.axis]} between {band.low:.2g} and {band.high:.2g} Hz"
+
+
 def _damper_words(run: FinishedRun) -> str:
+    """Return the end of a sentence on the dampers; empty without dampers."""
     shares = slip_shares(run.summary)
     if not shares:
         return ""
     low, high = (100.0 * limit(shares.values()) for limit in (min, max))
     if high < 1.0:
-        return "The dampers stick throughout: they dissipate almost no energy."
-    return f"The dampers slip for {low:.2g} to {high:.2g} % of the time."
+        return "; the dampers stick, so they dissipate almost no energy"
+    same = f"{low:.2g}" == f"{high:.2g}"
+    return f"; the dampers slip for {f'{high:.2g}' if same else f'{low:.2g} to {high:.2g}'} % of the time"
 
 
 def mode_words(mode: Mode) -> str:
@@ -112,42 +127,8 @@ def mode_words(mode: Mode) -> str:
 
 
 def _motion(mode: Mode) -> str:
-    """Return the motion with the largest kinetic energy of a mode."""
-    return next(iter(mode.motions), mode.description)
-
-
-def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode | None:
-    """Return the mode of the linear car with the largest share in a band of the seat rail.
-
-    The plates move as in the run, at the lines of its periodogram; the state of the dampers is that of most of the run.
-
-    Args:
-        run: the run.
-        band: axis and frequencies.
-        modes: modes of the car in this state of the dampers.
-
-    Returns:
-        The mode; None if no plate is recorded or no mode has a positive share.
-    """
-    recording, wheels = run.recording, run.car.matrices.system.inputs
-    names = [f"plate_{wheel}_displacement" for wheel in wheels]
-    if not all(name in recording.channels for name in names):
-        return None
-    first = round(evaluated_from(run.summary) / recording.timestep)
-    plates = [recording.channels[name][first:] for name in names]
-    frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
-    inside = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
-    inside = inside[:: max(inside.size // LINES, 1)]
-    spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
-    stuck = damper_state(run) == "stuck"
-    result = mode_shares(run.car.matrices.system, f"{POINT}_acc_{band.axis}", frequency[inside], spectra, stuck=stuck)
-    at = int(np.argmax(result.shares))
-    if result.shares[at] <= 0.0:
-        return None
-    natural = abs(result.poles[at]) / (2.0 * np.pi)
-    mode = min(modes, key=lambda other: abs(other.frequency - natural), default=None)
-    same = mode is not None and abs(mode.frequency - natural) < 1e-6 * natural
-    return mode if same else None
+    """Return the motion with the largest kinetic energy of a mode, without its axis in brackets."""
+    return next(iter(mode.motions), mode.description).partition(" (")[0]
 
 
 def _effect(first: FinishedRun, run: FinishedRun) -> str:
@@ -169,52 +150,89 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
     """Return what differs between two runs: car, parameters, input, engine."""
     parts = []
     vehicles = [first.car.vehicle, run.car.vehicle]
-    changed = [row for row in changed_parameters(vehicles) if row[0] != "name"]
+    changed = [row for row in changed_parameters(vehicles) if not row[0].startswith(OF_THE_RUN)]
     if len(changed) > MOST_CHANGES and vehicles[0].name != vehicles[1].name:
         parts.append(f"car {vehicles[1].name} instead of {vehicles[0].name}")
     elif len(changed) > MOST_CHANGES:
-        parts.append(f"{len(changed)} parameters, among them {changed[0][0]}")
+        parts.append(f"{len(changed)} other parameters, among them {parameter_words(changed[0][0])}")
     else:
-        parts += [f"{path} from {old} to {new} {unit}".rstrip() for path, unit, (old, new) in changed]
+        parts += [
+            f"{parameter_words(path)} {new} instead of {old} {unit}".rstrip() for path, unit, (old, new) in changed
+        ]
     inputs = [_input_words(each) for each in (first, run)]
     if inputs[0] != inputs[1]:
         parts.append(f"{inputs[1]} instead of {inputs[0]}")
     engines = [each.summary["solver"]["engine"] for each in (first, run)]
     if engines[0] != engines[1]:
         parts.append(f"engine {engines[1]} instead of {engines[0]}")
-    text = ", ".join(parts) or "No difference of car, input or engine"
-    return f"{run.name} against {first.name}, {text}" if parts else text
+    text = ", ".join(parts) or "equal car, input and engine"
+    return f"{run.name} against {first.name} ({text})"
 
 
 def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes) -> str:
-    """Return a statement on band, mode and dampers of the change; empty without a change."""
+    """Return a statement on band, mode, path and dampers of the change; empty without a change."""
     spectra = [weighted_bands(each) for each in (first, run)]
     if not all(spectra):
         return ""
     band = main_band(spectra[1], spectra[0])
     if band is None:
         return ""
-    text = (
-        f"{100.0 * band.share:.0f} % of the change (mean square) arise along {band.axis} between {band.low:.3g} and "
-        f"{band.high:.3g} Hz"
-    )
+    parts = [f"{100.0 * band.share:.0f} % of the change (mean square) {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
-        text += f", where the largest part was the mode of {mode_words(mode)}"
-        other = counterpart(mode, run_modes.get(damper_state(run), ()))
-        if other is not None and mode_words(other) != mode_words(mode):
-            text += (
-                f"; it is then at {other.frequency:.1f} Hz with a damping ratio of {100.0 * other.damping_ratio:.2g} %"
-            )
+        parts.append(f"mainly by the mode of {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")
+    if shares := changed_paths(first, run, band, spectra):
+        parts.append(f"carried into the body by {main_path(shares)}")
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
-        if abs(after - before) >= 1.0:
-            text += (
-                f"; the {side_of(wheel, slips[0])} damper slips for {after:.3g} % of the time instead of {before:.3g} %"
+        if abs(after - before) >= SLIP:
+            return (
+                f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper slips for {after:.2g} % of the time "
+                f"instead of {before:.2g} %."
             )
-    return f"{text}."
+    return f"{', '.join(parts)}."
+
+
+def _moved(mode: Mode, other: Mode | None) -> str:
+    """Return a mode in words, with what changed in the mode of the other car: frequency, damping ratio."""
+    if other is None or mode_words(other) == mode_words(mode):
+        return mode_words(mode)
+    frequencies, ratios = (
+        " to ".join(dict.fromkeys(texts))
+        for texts in (
+            [f"{each.frequency:.2f}" for each in (mode, other)],
+            [f"{100.0 * each.damping_ratio:.2g}" for each in (mode, other)],
+        )
+    )
+    word = "from " if " to " in frequencies else ""
+    return f"{word}{frequencies} Hz ({_motion(mode)}, damping ratio {ratios} %)"
+
+
+def changed_paths(
+    first: FinishedRun, run: FinishedRun, band: MainBand, spectra: Sequence[Mapping[str, ChannelSpectrum]]
+) -> dict[str, float]:
+    """Return attachments of the body to their shares in the change of the mean square in a band.
+
+    Path k has the share s_k in the mean square p of each run, so its share in the change is
+    (s_k' p' - s_k p) / (p' - p).
+
+    Args:
+        first, run: the runs.
+        band: axis and frequencies.
+        spectra: weighted spectra of the seat rail of both runs, by axis.
+    """
+    shares = [paths(each, band) for each in (first, run)]
+    powers = []
+    for of_run in spectra:
+        octaves = of_run[band.axis].third_octaves
+        inside = (octaves.edges[:-1] >= 0.999 * band.low) & (octaves.edges[1:] <= 1.001 * band.high)
+        powers.append(float(np.sum(np.nan_to_num(octaves.rms[inside]) ** 2)))
+    change = powers[1] - powers[0]
+    if not all(shares) or change == 0.0 or set(shares[0]) != set(shares[1]):
+        return {}
+    return {name: (shares[1][name] * powers[1] - share * powers[0]) / change for name, share in shares[0].items()}
 
 
 def counterpart(mode: Mode, modes: Sequence[Mode]) -> Mode | None:
@@ -241,9 +259,7 @@ def _changes(first: FinishedRun, run: FinishedRun) -> list[Change]:
 def _numbers(run: FinishedRun) -> dict[str, tuple[float, str, bool]]:
     """Return label to value, unit, and whether a smaller value is better."""
     numbers: dict[str, tuple[float, str, bool]] = {}
-    for point, value in run.summary["comfort"].items():
-        if point == "seat" and run.summary.get("seat_value") is None:
-            continue  # a point of the body, see the notices
+    for point, value in run.comfort.items():
         iso, label = value["iso2631"], point_words(point)
         numbers[f"{label}, weighted"] = iso["vector_sum"]["weighted_rms"], "m/s²", True
         numbers |= {f"{label}, weighted, {axis}": (iso[axis]["weighted_rms"], "m/s²", True) for axis in "xyz"}

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from vehicle.drawing.rendering.car_drawing import plot_car
+from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.runs.car.car_text import TextTable, car_tables, parameter_table
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, folded, joined, table, tag
 from vehicle.runs.report.svg_figure import drawing
+
+SIZE = (PAGE_WIDTH, 5.4)
+"""Width and height of the drawing [inch]."""
 
 
 def car_section(run: FinishedRun) -> Markup:
@@ -18,14 +22,21 @@ def car_section(run: FinishedRun) -> Markup:
     parameters = parameter_table(data.parameters, shortened=False)
     return joined(
         [
-            drawing(lambda path: plot_car(path, wire, data), f"Drawing of {data.name} with dimensions"),
+            drawing(lambda path: plot_car(path, wire, data, SIZE), f"Drawing of {data.name} with dimensions"),
             _table(whole),
-            _table(axles),
+            _halves(axles),
             _table(modes),
             *(tag("p", note) for note in data.notes),
             folded(f"All {len(parameters.rows)} parameters", table(parameters.heads, parameters.rows, text_columns=5)),
         ]
     )
+
+
+def _halves(text: TextTable) -> Markup:
+    """Return a long table in two halves beside each other, with its notes below."""
+    middle = -(-len(text.rows) // 2)
+    halves = [table(text.heads, rows) for rows in (text.rows[:middle], text.rows[middle:])]
+    return joined([tag("div", *halves, class_="pair"), *(tag("p", note) for note in text.notes)])
 
 
 def _table(text: TextTable) -> Markup:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
+from vehicle.names import point_words
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
 from vehicle.signals.records.run_summary import unweighted_rms
-
-PLACES = {"seat_rail": "seat rail", "seat": "seat"}
-
 
 NO_ERROR = (
     "MTVV, VDV, crest factor and SEAT value have no error estimate: they belong to this record, and another road of "
@@ -20,9 +18,9 @@ NO_ERROR = (
 def comfort(run: FinishedRun) -> Markup:
     """Return tables of weighted and unweighted accelerations, and of reactions with the values of this run."""
     parts, totals = [], {}
-    for point, value in run.summary["comfort"].items():
+    for point, value in run.comfort.items():
         iso, (raw, (low, high)) = value["iso2631"], unweighted_rms(value)
-        totals[PLACES.get(point, point)] = iso["vector_sum"]["weighted_rms"]
+        totals[point_words(point)] = iso["vector_sum"]["weighted_rms"]
         heads = (
             "axis",
             "weighting",
@@ -55,7 +53,7 @@ def comfort(run: FinishedRun) -> Markup:
             )
         )
         span = f", {run.span} of the run" if run.span else ""
-        caption = f"{PLACES.get(point, point).capitalize()}, {iso['standard']}{span}"
+        caption = f"{point_words(point).capitalize()}, {iso['standard']}{span}"
         parts.append(table(heads, rows, caption=caption, text_columns=2))
         parts += [tag("p", text) for text in iso["reasons"]]
     matches = {word: [point for point, total in totals.items() if word in reactions(total)] for word, _, _ in REACTIONS}

@@ -1,21 +1,27 @@
-"""Comparison section of the report: inputs, key figures, parameters and FRFs of several runs."""
+"""Comparison sections of the report: inputs, key figures, parameters, notices, FRFs and spectra of several runs."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
+from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.several_runs import plot_responses, shared_channels
 from vehicle.names import wheel_words
 from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.general_notices import notices_of
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
 
+SIZE = (PAGE_WIDTH, 5.6)
+"""Width and height of the figure of FRFs [inch]."""
 
-def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
-    """Return tables of inputs, key figures and parameters, and the FRFs of several runs."""
+
+def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
+    """Return tables of inputs, key figures and parameters of several runs, and their notices."""
     figures = [key_figures(run) for run in runs]
     heads = ["", "unit", runs[0].name]
     for run in runs[1:]:
@@ -53,10 +59,23 @@ def beside_each_other(runs: Sequence[FinishedRun]) -> Markup:
         parts.append(tag("p", "None: the cars have equal parameters."))
     if len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1:
         parts.append(tag("p", "The signals differ: differences of level are also due to the input."))
-    return joined([*parts, _overlay(runs)])
+    return joined([*parts, _notices(runs)])
 
 
-def _overlay(runs: Sequence[FinishedRun]) -> Markup:
+def _notices(runs: Sequence[FinishedRun]) -> Markup:
+    """Return the notices of all runs; those that are not of all runs name theirs."""
+    of_runs = {run.name: notices_of(run) for run in runs}
+    texts = dict.fromkeys(text for notices in of_runs.values() for text in notices)
+    if not texts:
+        return Markup()
+    items = []
+    for text in texts:
+        names = [name for name, notices in of_runs.items() if text in notices]
+        items.append(tag("li", text if len(names) == len(runs) else f"{', '.join(names)}: {text}"))
+    return joined([tag("h3", "Notices"), tag("ul", *items, class_="notices")])
+
+
+def curves_over_each_other(runs: Sequence[FinishedRun]) -> Markup:
     """Return the plot of all FRFs, and the spectra of all runs."""
     parts = []
     with_response = {run.name: (run, run.response) for run in runs if run.response is not None}
@@ -69,6 +88,8 @@ def _overlay(runs: Sequence[FinishedRun]) -> Markup:
     if len(with_response) > 1:
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
         title = "Vertical frequency responses of all runs"
-        parts.append(drawing(lambda path: plot_responses(path, with_response, channels, title), title))
+        parts.append(
+            drawing(partial(plot_responses, runs=with_response, channels=channels, title=title, size=SIZE), title)
+        )
     parts.append(spectra(runs))
     return joined(parts)

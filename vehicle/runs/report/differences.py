@@ -83,8 +83,8 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     """
     summary = run.summary
     figures: dict[tuple[str, str], float | None] = {}
-    for point, value in summary["comfort"].items():
-        label = point.replace("_", " ")
+    for point, value in run.comfort.items():
+        label = point_words(point)
         figures[f"{label}: weighted RMS (ISO 2631-1), all axes", "m/s²"] = value["iso2631"]["vector_sum"][
             "weighted_rms"
         ]
@@ -103,6 +103,21 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
             figures[f"{point}, z: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
             figures[f"{point}, z: its height", "m/s² per m"] = top["magnitude"]
     return figures
+
+
+GENERAL = ("parts", "bushings", "points")
+"""Tables whose names say nothing in a sentence."""
+
+
+def parameter_words(path: str) -> str:
+    """Return the path of a parameter in words: "front damper Coulomb friction" for front.damper.coulomb_friction.
+
+    Args:
+        path: path of a parameter in the vehicle file.
+    """
+    names = [point_words(name) for name in path.split(".") if name not in GENERAL]
+    names = [name for name, following in zip(names, [*names[1:], ""], strict=True) if name not in following]
+    return " ".join(names).replace("coulomb", "Coulomb")
 
 
 DIFFERENCES = {"s": "s", "%": "percentage points"}

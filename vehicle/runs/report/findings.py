@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.names import side_of
+from vehicle.names import point_words, side_of
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions
 from vehicle.runs.report.finished_run import FinishedRun
@@ -45,7 +45,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     sentences = [Finding("Dampers", text) for text in _dampers(summary)]
     sentences += [Finding("Resonances", text) for text in _resonances(run, modes)]
     sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
-    sentences += [Finding("Comfort", text) for text in _comfort(summary)]
+    sentences += [Finding("Comfort", text) for text in _comfort(run)]
     sentences += [Finding("Linearity", text) for text in _linearity(run)]
     return [*sentences, *(Finding("Computation", text) for text in _computation(summary))]
 
@@ -122,12 +122,10 @@ def damper_state(run: FinishedRun) -> str:
     return "sliding" if max(slip_shares(run.summary).values(), default=0.0) > WORKS else "stuck"
 
 
-def _comfort(summary: RunSummary) -> list[str]:
+def _comfort(run: FinishedRun) -> list[str]:
     sentences = []
-    for point, label in (("seat_rail", "seat rail"), ("seat", "seat")):
-        value = summary["comfort"].get(point)
-        if value is None:
-            continue
+    for point, value in run.comfort.items():
+        label = point_words(point)
         iso, (rms, (low, high)) = value["iso2631"], unweighted_rms(value)
         total = iso["vector_sum"]["weighted_rms"]
         axis = max("xyz", key=lambda direction: iso[direction]["multiplying_factor"] * iso[direction]["weighted_rms"])

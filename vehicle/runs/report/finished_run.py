@@ -12,12 +12,13 @@ import numpy as np
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.errors import DataError
 from vehicle.model.parameters.vehicle import load_vehicle
+from vehicle.names import wheel_words
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.records.frf_file import read_frf
 from vehicle.signals.records.reader import read_columns
-from vehicle.signals.records.run_summary import SUMMARY_FILE, FrfSummary, RunSummary, read_summary
+from vehicle.signals.records.run_summary import SUMMARY_FILE, ComfortSummary, FrfSummary, RunSummary, read_summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,6 +66,12 @@ class FinishedRun:
         return self.responses[0].response if self.responses else None
 
     @property
+    def comfort(self) -> dict[str, ComfortSummary]:
+        """Comfort by point; "seat" only if the car has a seat, otherwise it is a point of the body."""
+        seated = self.car.vehicle.seated
+        return {point: value for point, value in self.summary["comfort"].items() if point != "seat" or seated}
+
+    @property
     def wheel(self) -> str:
         """The excited wheel."""
         return self.summary["input"]["wheel"]
@@ -86,7 +93,8 @@ class FinishedRun:
         excitation, solver = self.summary["input"], self.summary["solver"]
         estimator = f"; estimator: {self.response.estimator}" if self.response is not None else ""
         return (
-            f"{Path(excitation['file']).name}, RMS {1e3 * excitation['rms_m']:.3g} mm at wheel {excitation['wheel']}, "
+            f"{Path(excitation['file']).name}, RMS {1e3 * excitation['rms_m']:.3g} mm at the "
+            f"{wheel_words(excitation['wheel'], self.car.vehicle.wheels)}, "
             f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
             f"{solver['engine']}"
         )

@@ -72,7 +72,7 @@ def table(
 
 
 def folded(title: str, *content: object) -> Markup:
-    """Return content folded under a title; print shows it unfolded."""
+    """Return content folded under a title; print shows it only if it is unfolded."""
     return tag("details", tag("summary", title), *content)
 
 
@@ -84,9 +84,9 @@ def shortened(
     return whole if len(rows) <= MANY else folded(title, whole)
 
 
-def section(title: str, anchor: str, *content: object, class_: str | None = None) -> Markup:
+def section(title: str, anchor: str, *content: object) -> Markup:
     """Return a section of the page with its heading."""
-    return tag("section", tag("h2", title), *content, id=anchor, class_=class_)
+    return tag("section", tag("h2", title), *content, id=anchor)
 
 
 def number(value: float | None, digits: int = 3) -> str:

@@ -18,6 +18,11 @@ HIGHEST_MODE = 60.0
 VIEWS = {"corner": "Corner", "side": "Side", "front": "Front", "top": "Top"}
 
 
+def modes_of(run: FinishedRun) -> Modes:
+    """Return the modes of the car of a run for each of `STATES`."""
+    return {state: run.car.modes(state, HIGHEST_MODE) for state in STATES}
+
+
 def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[dict[str, object]]:
     """Return the modes of each car; equal cars appear once."""
     sets: list[dict[str, object]] = []

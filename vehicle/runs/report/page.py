@@ -11,18 +11,22 @@ from importlib import resources
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
-from vehicle.runs.report.answer import answer
+from vehicle.runs.report.answer import EXPLANATION, answer
+from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
-from vehicle.runs.report.comparison_section import beside_each_other
+from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, escaped, joined, section, tag
+from vehicle.runs.report.markup import Markup, escaped, folded, joined, section, tag
 from vehicle.runs.report.measured_section import measured
-from vehicle.runs.report.modes_section import HIGHEST_MODE, STATES, Modes, car_modes_of, moving_modes
+from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, moving_modes
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.version import package_version
+
+Part = tuple[str, str, Markup]
+"""Title, anchor and content of a section."""
 
 
 def report_page(
@@ -49,24 +53,14 @@ def report_page(
         raise ConfigurationError("report: no run; give at least one folder, as runs/low")
     runs = _told_apart(runs)
     done = progress or (lambda fraction: None)
-    modes = [{state: run.car.modes(state, HIGHEST_MODE) for state in STATES} for run in runs]
-    parts: list[tuple[str, str, Markup]] = [("Result", "result", answer(runs, modes))]
-    if len(runs) > 1:
-        parts += [("Comparison of the runs", "comparison", beside_each_other(runs))]
+    modes = [modes_of(run) for run in runs]
     done(0.1)
-    for index, (run, car_modes) in enumerate(zip(runs, modes, strict=True)):
-        # Runs of one car show the car once.
-        with_car = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
-        run_parts = _of_run(run, car_modes, with_car=with_car)
-        if len(runs) == 1:
-            parts += run_parts
-        else:
-            inner = joined(part for title, _, content in run_parts for part in (tag("h3", title), content))
-            parts.append((run.name, f"run-{index + 1}", inner))
-        done(0.1 + 0.8 * (index + 1) / len(runs))
-    before = next((i for i, (_, anchor, _) in enumerate(parts) if anchor == "tables"), len(parts))
-    parts.insert(before, ("Modes", "modes", moving_modes(runs, modes)))
-    names = " and ".join(run.name for run in runs) if len(runs) < 4 else f"{len(runs)} runs"
+    if len(runs) == 1:
+        parts = _of_one(runs[0], modes[0])
+    else:
+        parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share))
+    first, others = runs[0].name, [run.name for run in runs[1:]]
+    names = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} against {first}" if others else first
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
     data = as_json(car_modes_of(runs, modes))
@@ -85,26 +79,66 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     return [dataclasses.replace(run, name=name) for run, name in zip(runs, unique, strict=True)]
 
 
-def _of_run(run: FinishedRun, modes: Modes, *, with_car: bool) -> list[tuple[str, str, Markup]]:
-    """Return title, anchor and content of each section of a run; with_car: add the section of the car."""
+def _explained() -> Markup:
+    """Return the explanation of the statements of the first screen."""
+    return tag("p", EXPLANATION, class_="about")
+
+
+def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
+    """Return the sections of the report of a single run."""
+    base = base_run(run)
+    single = joined([answer([run], [modes]), sections.tiles(run)])
+    changed = None if base is None else answer([base, run], [modes_of(base), modes])
     parts = [
-        ("Findings", "findings", joined([sections.tiles(run), sections.what_was_found(run, modes)])),
+        ("Result", "result", joined([single if changed is None else changed, _explained()])),
+        ("This run", "alone", None if changed is None else single),
+        ("Film", "film", sections.film(run)),
+        ("Findings", "findings", sections.what_was_found(run, modes)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
-        *([("The car", "car", car_section(run))] if with_car else []),
-        *([("Frequency responses", "responses", responses(run, modes))] if run.responses else []),
+        ("The car", "car", car_section(run)),
+        ("Frequency responses", "responses", responses(run, modes) if run.responses else None),
         ("Time histories", "time", sections.time_figure(run)),
         ("Dampers", "dampers", sections.dampers(run)),
         ("Comfort", "comfort", comfort(run)),
         ("Spectra", "spectra", spectra([run])),
-    ]
-    for title, anchor, content in (("Measured", "measured", measured(run)), ("Film", "film", sections.film(run))):
-        if content is not None:
-            parts.append((title, anchor, content))
-    return [
-        *parts,
+        ("Measured", "measured", measured(run)),
+        ("Modes", "modes", moving_modes([run], [modes])),
         ("All values", "tables", sections.tables(run)),
         ("How to repeat the run", "repeat", sections.repeating(run)),
     ]
+    return [(title, anchor, content) for title, anchor, content in parts if content is not None]
+
+
+def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None]) -> list[Part]:
+    """Return the sections of a comparison; what belongs to a single run is folded under its name."""
+    parts = [
+        ("Result", "result", joined([answer(runs, modes), _explained()])),
+        ("Comparison of the runs", "comparison", numbers_beside(runs)),
+        ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
+        ("Time histories", "time", joined(sections.time_figure(run, runs) for run in runs)),
+        (f"The car of {runs[0].name}", "car", car_section(runs[0])),
+        ("Modes", "modes", moving_modes(runs, modes)),
+    ]
+    details = []
+    for index, (run, car_modes) in enumerate(zip(runs, modes, strict=True)):
+        # A car is shown once.
+        new = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
+        of_run = (
+            ("Film", sections.film(run)),
+            ("Findings", joined([sections.tiles(run), sections.what_was_found(run, car_modes)])),
+            ("Car, signal, engine", sections.what_was_run(run)),
+            ("The car", car_section(run) if new and index else None),
+            ("Frequency responses", responses(run, car_modes) if run.responses else None),
+            ("Dampers", sections.dampers(run)),
+            ("Comfort", comfort(run)),
+            ("Measured", measured(run)),
+            ("All values", sections.tables(run)),
+            ("How to repeat the run", sections.repeating(run)),
+        )
+        contents = [part for title, content in of_run if content is not None for part in (tag("h3", title), content)]
+        details.append(folded(run.name, *contents))
+        done((index + 1) / len(runs))
+    return [*parts, ("Each run", "runs", joined(details))]
 
 
 def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, str, Markup]], *, modes: str = "") -> str:
@@ -116,18 +150,14 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, st
         parts: title, anchor and content of each section.
         modes: moving modes as JSON; empty for a page without them.
     """
-    script = (_file("modes.js") if modes else "") + _file("print.js")
-    allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    policy = (
-        f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src 'sha256-{allowed}'"
-    )
+    script = _file("modes.js") if modes else ""
+    allowed = f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" if script else "'none'"
+    policy = f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src {allowed}"
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
     top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in subtitles))
-    pages = {"responses", "time", "modes", "comparison"}
-    body = joined(
-        section(name, anchor, content, class_="page" if anchor in pages else None) for name, anchor, content in parts
-    )
+    body = joined(section(name, anchor, content) for name, anchor, content in parts)
     data = f'<script type="application/json" id="mode-data">{modes}</script>\n' if modes else ""
+    run_script = f"<script>{script}</script>\n" if script else ""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{escaped(policy)}">\n'
@@ -136,7 +166,7 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, st
         '<link rel="icon" href="data:,">\n'
         f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
         f"{top}\n{links}\n<main>{body}</main>\n"
-        f"{data}<script>{script}</script>\n</body>\n</html>\n"
+        f"{data}{run_script}</body>\n</html>\n"
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.findings import main_points, nearest_mode, of_plate
@@ -11,17 +12,25 @@ from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
 from vehicle.runs.report.svg_figure import drawing
 
+SIZE = (PAGE_WIDTH, 5.8)
+"""Width and height of the figure [inch]."""
+
+STRONGEST = 6
+"""Maximum number of resonances of an output point in a table."""
+
 
 def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
     """Return FRFs and tables of resonances of a run with FRFs."""
     return joined(
         [
             drawing(
-                lambda path: plot_frfs(path, run, run.responses, run.caption), f"Frequency responses of {run.name}"
+                lambda path: plot_frfs(path, run, run.responses, run.caption, SIZE),
+                f"Frequency responses of {run.name}",
             ),
             tag(
                 "p",
-                "The band around a line is the 95 % region of the random error. Low coherence means a nonlinear "
+                "The band around a line is the 95 % region of the random error, drawn where the coherence is at least "
+                "0.5. Low coherence means a nonlinear "
                 "response, or too little excitation by the plate.",
             ),
             tag("div", *_resonances(run, modes), class_="columns"),
@@ -37,14 +46,11 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
         rows = []
         for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
             state, mode = nearest_mode(run, peak["frequency_hz"], modes)
-            near = "" if mode is None else f"{mode.frequency:.2f} Hz, {mode.description}; {state}"
+            near = "" if mode is None else f"{mode.frequency:.2f} Hz, {mode.description}"
             rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
         heads = ("nearest mode", "resonance [Hz]", "m/s² per m", "coherence")
         if rows:
             count = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
-            tables.append(table(heads, rows, caption=f"Vertical resonances at the {point}{plate}: {count}"))
+            caption = f"Vertical resonances at the {point}{plate}: {count}; modes with {state}"
+            tables.append(table(heads, rows, caption=caption))
     return tables
-
-
-STRONGEST = 6
-"""Maximum number of resonances of an output point in a table."""

@@ -17,6 +17,7 @@ from vehicle.runs.report.comfort_class import reactions
 from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.general_notices import notices_of
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
@@ -35,7 +36,7 @@ def tiles(run: FinishedRun) -> Markup:
     summary = run.summary
     shares = slip_shares(summary)
     values = []
-    for point, value in list(summary["comfort"].items())[:1]:
+    for point, value in list(run.comfort.items())[:1]:
         total = value["iso2631"]["vector_sum"]["weighted_rms"]
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
@@ -47,13 +48,14 @@ def tiles(run: FinishedRun) -> Markup:
     if peaks:
         top = max(peaks, key=lambda peak: peak["magnitude"])
         values.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
-    values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the plate {run.wheel}"))
+    plate = side_of(run.wheel, run.car.vehicle.wheels)
+    values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
     boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]
     return tag("div", *boxes, class_="tiles")
 
 
 def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
-    """Return findings by topic, and all notices."""
+    """Return findings by topic, and the notices on this run."""
     topics: dict[str, list[str]] = {}
     for finding in findings(run, modes):
         topics.setdefault(finding.topic, []).append(finding.text)
@@ -63,8 +65,8 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
         for part in (tag("dt", topic), tag("dd", *(tag("p", text) for text in texts)))
     ]
     parts = [tag("dl", *rows, class_="findings")]
-    if run.summary["notices"]:
-        said = [tag("li", text) for text in run.summary["notices"]]
+    if notices := notices_of(run):
+        said = [tag("li", text) for text in notices]
         parts += [tag("h3", "Notices"), tag("ul", *said, class_="notices")]
     return joined(parts)
 
@@ -74,11 +76,11 @@ def what_was_run(run: FinishedRun) -> Markup:
     excitation, solver, vehicle = run.summary["input"], run.summary["solver"], run.car.vehicle
     signal = [
         ("file", excitation["file"]),
-        ("SHA-256", excitation["sha256"] or "–"),
+        ("SHA-256", (excitation["sha256"] or "–")[:16]),
         ("length", f"{excitation['duration_s']:g} s"),
     ]
     signal += [
-        (f"plate {wheel}", f"RMS {1e3 * rms:.4g} mm" if rms else "at rest")
+        (f"plate {side_of(wheel, vehicle.wheels)}", f"RMS {1e3 * rms:.4g} mm" if rms else "at rest")
         for wheel, rms in excitation["plate_rms_m"].items()
     ]
     if run.span:
@@ -93,7 +95,7 @@ def what_was_run(run: FinishedRun) -> Markup:
     car = [
         ("name", vehicle.name),
         ("file", _origin(run)),
-        ("wheels on plates", ", ".join(vehicle.wheels)),
+        ("wheels on plates", ", ".join(side_of(wheel, vehicle.wheels) for wheel in vehicle.wheels)),
         ("tyres", vehicle.driving.words),
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
@@ -121,9 +123,16 @@ def _origin(run: FinishedRun) -> str:
     return str(file)
 
 
-def time_figure(run: FinishedRun) -> Markup:
-    """Return the plot of plate, seat rail and dampers over time, as in time.png."""
-    return drawing(lambda path: plot_time(path, run), f"Time histories of {run.name}")
+def time_figure(run: FinishedRun, runs: Sequence[FinishedRun] = ()) -> Markup:
+    """Return the plot of plate, seat rail and dampers over time, as in time.png.
+
+    Args:
+        run: the run.
+        runs: runs whose figures have equal scales, with this run among them; empty for a single run.
+    """
+    title = [tag("h3", run.name)] if runs else []
+    figure = drawing(lambda path: plot_time(path, run, page=True, others=runs), f"Time histories of {run.name}")
+    return tag("div", *title, figure, class_="whole")
 
 
 def dampers(run: FinishedRun) -> Markup:
@@ -188,7 +197,8 @@ def tables(run: FinishedRun) -> Markup:
         if resonances
     ]
     static = summary["static"]
-    loads = [(f"tyre {wheel}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
+    wheels = run.car.vehicle.wheels
+    loads = [(f"tyre {side_of(wheel, wheels)}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
     loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static["rear_support_load_n"].items()]
     heads = ("channel", "unit", "RMS", "minimum", "maximum")
     parts = [folded(f"Levels of all {len(levels)} channels", table(heads, levels, text_columns=2))]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 
+from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.spectra_plot import plot_spectra
 from vehicle.errors import DataError
 from vehicle.runs.output.spectra_files import picture_columns
@@ -29,7 +30,10 @@ def spectra(runs: Sequence[FinishedRun]) -> Markup:
     by_name = {name: run.channels for name, run in of_runs.items()}
     caption = "; ".join(dict.fromkeys(run.caption for run in of_runs.values()))
     parts = [
-        drawing(partial(plot_spectra, runs=by_name, channels=columns, title=title, caption=caption), title)
+        drawing(
+            partial(plot_spectra, runs=by_name, channels=columns, title=title, caption=caption, max_width=PAGE_WIDTH),
+            title,
+        )
         for title, columns in pictures.values()
     ]
     return joined([*parts, tag("p", EXPLANATION), *_roads(of_runs)])

@@ -30,7 +30,8 @@ from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
 from vehicle.signals.records.channel import uniform_axis
 
 COPIES = 8
-"""Number of arrays of the length of the record in memory, without the signals: lines, transform, its plan."""
+"""Number of arrays of the length of the record in memory, without height, slope and profile of each wheel: lines,
+transform, its plan."""
 
 LOWEST, HIGHEST = 0.011, 10.0
 """Minimum and maximum wavenumber [cycles/m]: lower end of ISO 8608 (waves of 91 m); waves of 0.1 m, a contact patch."""
@@ -39,6 +40,10 @@ RISE_S = 1.0
 """Time [s] of the rise of the road from the plane on which the car starts."""
 
 Side = Literal["right", "left"]
+
+
+Contact = tuple[NDArray[np.float64], NDArray[np.float64] | None]
+"""Heights of a track [m] and slopes tan(beta) [-]; None for slopes that are the derivatives of the heights."""
 
 
 class Road(Protocol):
@@ -52,8 +57,12 @@ class Road(Protocol):
     def words(self) -> str:
         """Description of the road, for messages and headers."""
 
-    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Return heights [m] at equally spaced positions; arguments see `IsoRoad.height`."""
+    @property
+    def bare(self) -> Road:
+        """The road itself, with contact at a point."""
+
+    def contact(self, start: float, step: float, steps: int, side: Side, highest: float) -> Contact:
+        """Return the road as a tyre takes it at equally spaced positions; arguments see `IsoRoad.height`."""
 
 
 def isotropic_coherence(wavenumber: NDArray[np.float64], track: float) -> NDArray[np.float64]:
@@ -126,6 +135,11 @@ class IsoRoad:
             f"tracks {self.track:g} m apart ({related}), {contact_words(self.patch, self.envelope)}, seed {self.seed}"
         )
 
+    @property
+    def bare(self) -> IsoRoad:
+        """The road itself, with contact at a point."""
+        return replace(self, envelope=None, patch=0.0)
+
     def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
         """Return the heights of a track at equally spaced positions.
 
@@ -143,12 +157,7 @@ class IsoRoad:
             ConfigurationError: the band contains no line of the length.
         """
         if self.envelope is not None:
-            parts = int(np.ceil(step / SAMPLES))
-            fine, margin = step / parts, int(np.ceil(self.envelope.reach * parts / step)) + 1
-            z = replace(self, envelope=None, patch=0.0).height(start, fine, steps * parts, side, highest)
-            x = uniform_axis(z.size + 2 * margin, fine, -margin * fine)
-            positions = uniform_axis(steps, step, 0.0)
-            return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), positions)[0]
+            return self.contact(start, step, steps, side, highest)[0]
         length = steps * step
         lines = np.arange(max(1, int(np.ceil(self.lowest * length))), int(min(self.highest, highest) * length) + 1)
         if lines.size == 0:
@@ -173,6 +182,16 @@ class IsoRoad:
         )
         return np.fft.irfft(spectrum, steps)
 
+    def contact(self, start: float, step: float, steps: int, side: Side, highest: float) -> Contact:
+        """Return heights and, with cams, effective slopes of a track; arguments see `height`."""
+        if self.envelope is None:
+            return self.height(start, step, steps, side, highest), None
+        parts = int(np.ceil(step / SAMPLES))
+        fine, margin = step / parts, int(np.ceil(self.envelope.reach * parts / step)) + 1
+        z = self.bare.height(start, fine, steps * parts, side, highest)
+        x = uniform_axis(z.size + 2 * margin, fine, -margin * fine)
+        return self.envelope.height_and_slope(x, np.pad(z, margin, mode="wrap"), uniform_axis(steps, step, 0.0))
+
 
 def contact_words(patch: float, envelope: TyreEnvelope | None) -> str:
     """Return the contact of the tyre in words: the contact patch that averages the road [m], or the cams."""
@@ -185,7 +204,8 @@ def drive(
     """Generate the plate displacements of a car that drives over a road: z(t) = w(V t - d) z(V t - d).
 
     A wheel at the distance d behind the foremost wheel has the same displacement d / V later, exactly (the phases of
-    the lines are shifted), including the rise w from the plane.
+    the lines are shifted), including the rise w from the plane. With cams the slope is that of their plane on the road
+    that rises, V tan(beta) w + w' z.
 
     Args:
         road: road to drive on.
@@ -202,7 +222,7 @@ def drive(
     """
     positive("speed", speed, "m/s")
     steps = samples_of(duration, rate)
-    needed, memory = 8.0 * steps * (len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed, memory = 8.0 * steps * (3 * len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > 0.5 * memory:
         raise ConfigurationError(
             f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "
@@ -214,19 +234,31 @@ def drive(
         raise ConfigurationError(f"distances of the wheels {behind} m; allowed: 0 for the foremost, above for others")
     # Longer than the record by the delay of the last wheel: no wheel reaches the repetition of the road.
     period = steps + 1 + (int(np.ceil(max(behind) / speed * rate)) if road.repeats else 0)
-    step, displacement = speed / rate, {}
+    step, displacement, slopes, profile = speed / rate, {}, {}, {}
     for wheel, (distance, side) in wheels.items():
         # 0.8 of the Nyquist frequency, as for every generated signal.
-        z = road.height(-distance, step, period, side, 0.4 / step)[: steps + 1]
-        delayed_time = np.arange(steps + 1) / rate - distance / speed
-        displacement[wheel] = z * half_cosine_at(delayed_time, RISE_S) + 0.0  # adding 0.0 avoids -0.0 in files
+        height, slope = road.contact(-distance, step, period, side, 0.4 / step)
+        z, delayed_time = height[: steps + 1], np.arange(steps + 1) / rate - distance / speed
+        rise, rise_rate = half_cosine_at(delayed_time, RISE_S), half_cosine_rate_at(delayed_time, RISE_S)
+        displacement[wheel] = z * rise + 0.0  # adding 0.0 avoids -0.0 in files
+        profile[wheel] = road.bare.contact(-distance, step, period, side, 0.4 / step)[0][: steps + 1] * rise + 0.0
+        if slope is not None:
+            slopes[wheel] = speed * slope[: steps + 1] * rise + rise_rate * z + 0.0
     return Signal(
         time=uniform_time(samples=steps + 1, timestep=1.0 / rate),
         displacement=displacement,
         source=f"{road.words}; {speed * 3.6:.6g} km/h, {RISE_S:g} s rise from rest",
+        slope_velocity=slopes,
+        profile=profile,
     )
 
 
 def half_cosine_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
     """Return the weights (1 - cos(pi t / length)) / 2 from 0 to `length` [s], 0 before and 1 after [-]."""
     return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.clip(time / length, 0.0, 1.0))))
+
+
+def half_cosine_rate_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
+    """Return the derivative of `half_cosine_at` [1/s]."""
+    inside = (time > 0.0) & (time < length)
+    return np.asarray(np.where(inside, 0.5 * np.pi / length * np.sin(np.pi * time / length), 0.0))

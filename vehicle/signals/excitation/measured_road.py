@@ -17,7 +17,7 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError, VehicleError
-from vehicle.signals.excitation.iso_road import Side, contact_words
+from vehicle.signals.excitation.iso_road import Contact, Side, contact_words
 from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
 from vehicle.signals.records.channel import uniform_axis
 from vehicle.signals.records.crg_format import read_surface, road_words
@@ -86,16 +86,21 @@ class MeasuredRoad:
         steps = np.diff(self.distance)
         return not self.corners and bool(np.max(steps) <= SAMPLED * np.min(steps))
 
-    def height(self, start: float, step: float, steps: int, side: Side, highest: float) -> NDArray[np.float64]:
-        """Return the heights of a track at equally spaced positions; see `height_at` and `IsoRoad.height`.
+    @property
+    def bare(self) -> MeasuredRoad:
+        """The road itself, with contact at a point."""
+        return replace(self, envelope=None, patch=0.0)
+
+    def contact(self, start: float, step: float, steps: int, side: Side, highest: float) -> Contact:
+        """Return heights and, with cams, slopes of a track at equally spaced positions; arguments see `IsoRoad.height`.
 
         Raises:
             DataError: a position beyond the end of the road.
         """
-        return self.height_at(uniform_axis(steps, step, start), side)
+        return self.contact_at(uniform_axis(steps, step, start), side)
 
-    def height_at(self, positions: NDArray[np.float64], side: Side) -> NDArray[np.float64]:
-        """Return heights above the first point [m], (m,), as the tyre takes them; 0 before the road.
+    def contact_at(self, positions: NDArray[np.float64], side: Side) -> Contact:
+        """Return heights above the first point, as the tyre takes them, and slopes, (m,); 0 before the road.
 
         For contact patch and cams, the road is level beyond its last point.
 
@@ -121,13 +126,13 @@ class MeasuredRoad:
             if self.sampled:
                 x = np.linspace(0.0, self.length, int(np.ceil(self.length / SAMPLES)) + 1)
                 z = spline(x)
-            return self.envelope.height_and_slope(x, z, positions)[0]
+            return self.envelope.height_and_slope(x, z, positions)
         if self.patch > 0.0:
             integral, ends = spline.antiderivative(), positions + 0.5 * self.patch * np.array([[-1.0], [1.0]])
             areas = integral(np.clip(ends, 0.0, self.length))
             areas += np.maximum(ends - self.length, 0.0) * (track_heights[-1] - track_heights[0])
-            return np.asarray((areas[1] - areas[0]) / self.patch)
-        return np.where(positions < 0.0, 0.0, spline(np.clip(positions, 0.0, self.length)))
+            return np.asarray((areas[1] - areas[0]) / self.patch), None
+        return np.where(positions < 0.0, 0.0, spline(np.clip(positions, 0.0, self.length))), None
 
 
 def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelope | None = None) -> MeasuredRoad:

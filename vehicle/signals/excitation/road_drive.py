@@ -7,6 +7,9 @@ import math
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
@@ -41,6 +44,9 @@ IN_NAMES = str.maketrans({":": "_", "@": "_at_"})
 BEFORE_S, AFTER_S = 0.5, 3.0
 """Default times [s] between the start of the evaluation and the obstacle, and between the last wheel leaving the
 obstacle and the end. In 3 s a motion of 1 Hz with a damping ratio of 0.2 decays to 2 %."""
+
+AROUND, SHOWN = 0.3, 10.0
+"""Lengths for a picture [m]: on both sides of an obstacle, and of another road."""
 
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
@@ -178,6 +184,24 @@ class RoadDrive:
         if isinstance(road, IsoRoad) or self.obstacle is not None:
             return signal
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
+
+    def slopes(self, signal: Signal) -> dict[str, NDArray[np.float64]]:
+        """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V.
+
+        Args:
+            signal: signal of the drive.
+        """
+        rates = signal.slope_velocity or signal.plate_motion(signal.time).velocity
+        return {wheel: rates[wheel] * 3.6 / self.speed for wheel in signal.wheels}
+
+    @property
+    def shown(self) -> tuple[float, float]:
+        """Range of distances of the foremost wheels for a picture [m]: the obstacle, or the first 10 m evaluated."""
+        if (obstacle := self.obstacle) is not None:
+            around = AROUND + (0.0 if self.envelope is None else self.envelope.reach)
+            return obstacle.begin - around, obstacle.begin + obstacle.length + around
+        begin = self.skip * self.speed / 3.6
+        return begin, begin + SHOWN
 
     def _times(self, obstacle: Obstacle) -> tuple[float, float]:
         """Return when the foremost wheels reach an obstacle and when the last wheels leave it [s]."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -50,6 +50,10 @@ class Signal:
         source: name of the file or description of the generator.
         sha256: hexadecimal digest of the file, None for a generated signal.
         highest: maximum usable frequency [Hz] if below 50 Hz; else None.
+        slope_velocity: wheel -> speed times effective slope of the road, V tan(beta) [m/s], shape (n,), for all wheels
+            or, by default, for none: then rolling tyres take z', the slope of the displacement.
+        profile: wheel -> height of the road itself below the wheel [m], shape (n,), of which the displacement is what
+            the tyre takes; for pictures only, by default for no wheel.
 
     Raises:
         DataError: shapes differ, a value is not finite, the grid is not uniform, a wheel is unknown.
@@ -61,6 +65,8 @@ class Signal:
     source: str = "array"
     sha256: str | None = None
     highest: float | None = None
+    slope_velocity: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    profile: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Return source, length and wheels in a line."""
@@ -71,22 +77,33 @@ class Signal:
         displacement = {wheel: _read_only(values) for wheel, values in self.displacement.items()}
         object.__setattr__(self, "time", time)
         object.__setattr__(self, "displacement", displacement)
+        slopes = {wheel: _read_only(values) for wheel, values in self.slope_velocity.items()}
+        object.__setattr__(self, "slope_velocity", slopes)
+        profile = {wheel: _read_only(values) for wheel, values in self.profile.items()}
+        object.__setattr__(self, "profile", profile)
         self._check_time()
         if not displacement:
             raise DataError(f"{self.source}: the signal drives no wheel; set a displacement for one of {_wheels()}")
-        for wheel, values in displacement.items():
+        for wheel in displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
-            if values.shape != time.shape:
+        for name, columns in (("displacement", displacement), ("slope velocity", slopes), ("profile", profile)):
+            if columns and columns.keys() != displacement.keys():
                 raise DataError(
-                    f"{self.source}: displacement of {wheel} has shape {values.shape}, time has {time.shape}; "
-                    "all columns must have the same length"
+                    f"{self.source}: {name} of {', '.join(columns)}; set it for the wheels of the displacements, "
+                    f"{', '.join(displacement)}, or for none"
                 )
-            if not np.isfinite(values).all():
-                bad = int(np.flatnonzero(~np.isfinite(values))[0])
-                raise DataError(
-                    f"{self.source}: displacement of {wheel} is {values[bad]} at sample {bad}; allowed: finite"
-                )
+            for wheel, values in columns.items():
+                if values.shape != time.shape:
+                    raise DataError(
+                        f"{self.source}: {name} of {wheel} has shape {values.shape}, time has {time.shape}; "
+                        "all columns must have the same length"
+                    )
+                if not np.isfinite(values).all():
+                    bad = int(np.flatnonzero(~np.isfinite(values))[0])
+                    raise DataError(
+                        f"{self.source}: {name} of {wheel} is {values[bad]} at sample {bad}; allowed: finite"
+                    )
 
     def _check_time(self) -> None:
         time = self.time
@@ -129,9 +146,9 @@ class Signal:
         return self
 
     def identity(self) -> dict[str, object]:
-        """Return the digest of times, wheels and displacements."""
+        """Return the digest of times, wheels, displacements and slope velocities."""
         content = hashlib.sha256(self.time.tobytes())
-        for wheel, values in self.displacement.items():
+        for wheel, values in (*self.displacement.items(), *self.slope_velocity.items()):
             content.update(wheel.encode() + values.tobytes())
         return {"sha256": content.hexdigest()}
 
@@ -147,9 +164,16 @@ class Signal:
 
     def spline(self, wheel: str, first: float, last: float) -> scipy.interpolate.CubicSpline:
         """Return the cubic spline of `plate_motion` for the times from first to last [s]."""
+        return self._spline(self.displacement[wheel], first, last)
+
+    def slope_spline(self, wheel: str, first: float, last: float) -> scipy.interpolate.CubicSpline:
+        """Return the cubic spline of the slope velocity of a signal that has it; see `spline`."""
+        return self._spline(self.slope_velocity[wheel], first, last)
+
+    def _spline(self, values: NDArray[np.float64], first: float, last: float) -> scipy.interpolate.CubicSpline:
         begin, end = (int(time / self.timestep) for time in (first, last))
         near = slice(max(begin - MARGIN, 0), end + 2 + MARGIN)
-        return scipy.interpolate.CubicSpline(self.time[near], self.displacement[wheel][near], bc_type="not-a-knot")
+        return scipy.interpolate.CubicSpline(self.time[near], values[near], bc_type="not-a-knot")
 
     def plate_motion(self, times: ArrayLike, wheels: Iterable[str] | None = None) -> PlateMotion:
         """Return displacement, velocity and acceleration of the plates at times within the record.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +36,8 @@ NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displace
 _LENGTH_UNITS = {"m": 1.0, "mm": 1e-3}
 _OTHER_QUANTITY = re.compile(r"(^|_)(acc|vel)|^[av](_|$)", re.IGNORECASE)
 _WHEEL_COLUMN = re.compile(r"displacement_(\w+)|plate_(\w+)_displacement")
+_OF_ROAD = re.compile(r"(?:road|slope)_(\w+)")
+"""Columns that `python -m vehicle road` writes beside those of the plates, which do not drive the car."""
 _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
 
 
@@ -152,6 +154,8 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
     if any(_is_number(cell) for cell in header.cells):
         raise DataError(f"{header.where}:1: no header line: found {header.found}; needed are the columns {NEEDED}")
     named = [(index, cell, *name_and_unit(cell)) for index, cell in enumerate(header.cells)]
+    of_road = [match is not None and is_wheel(match[1]) for match in (_OF_ROAD.fullmatch(row[2]) for row in named)]
+    named = [row for row, beside in zip(named, of_road, strict=True) if not beside]
     matches = [_WHEEL_COLUMN.fullmatch(name.lower()) for _, _, name, _ in named]
     wheels = in_order({name_of_wheel for match in matches if match and is_wheel(name_of_wheel := match[1] or match[2])})
     keys = {
@@ -255,7 +259,14 @@ def _uniform_columns(
     return 1.0 / current, columns, lowest, notices
 
 
-def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = (), *, plain: bool = False) -> None:
+def write_signal(
+    path: str | Path,
+    signal: Signal,
+    comments: Sequence[str] = (),
+    *,
+    plain: bool = False,
+    beside: Mapping[str, Vector] | None = None,
+) -> None:
     """Write a signal in the format of `read_signal`.
 
     Comments, header, times, displacements with 7 significant digits. Written under a temporary name and renamed when
@@ -266,6 +277,7 @@ def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = (),
         signal: plate displacements.
         comments: lines above the header.
         plain: name the column of the only plate `displacement [m]`; it then drives the shaker wheel of any car.
+        beside: further columns by their headers, (n,) each.
 
     Raises:
         OutputError: the file cannot be written, or a comment contains a line break.
@@ -276,14 +288,15 @@ def write_signal(path: str | Path, signal: Signal, comments: Sequence[str] = (),
     names = (
         ["displacement"] if plain and len(signal.wheels) == 1 else [f"displacement_{wheel}" for wheel in signal.wheels]
     )
-    columns = [signal.time, *(signal.displacement[wheel] for wheel in signal.wheels)]
+    further = beside or {}
+    columns = [signal.time, *(signal.displacement[wheel] for wheel in signal.wheels), *further.values()]
     # Minimum number of decimals for time stamps accurate to 1e-6 of a step.
     errors = {digits: np.max(np.abs(np.round(signal.time, digits) - signal.time)) for digits in range(3, 12)}
     digits = next((digits for digits, error in errors.items() if error < 1e-6 * signal.timestep), 12)
-    forms = ",".join([f"%.{digits}f", *(["%.6e"] * len(names))])
+    forms = ",".join([f"%.{digits}f", *(["%.6e"] * (len(names) + len(further)))])
     temporary = path.with_name(f".{path.name}.partial")
     try:
-        write_table(temporary, [TIME, *(f"{name} [m]" for name in names)], columns, comments, forms)
+        write_table(temporary, [TIME, *(f"{name} [m]" for name in names), *further], columns, comments, forms)
         temporary.replace(path)
     except OSError as error:
         temporary.unlink(missing_ok=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -14,6 +15,7 @@ from vehicle.names import channel_units
 from vehicle.signals.analysis.frf import frequency_responses
 from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.records.channel import Measurement
+from vehicle.signals.records.channel_words import map_options, suggested_channels
 from vehicle.signals.records.choice import Choice, choose, pick
 from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.integration import displacement, filtered
@@ -21,6 +23,9 @@ from vehicle.signals.records.measured_frf import is_response, measured_frfs
 from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.table import Record
 from vehicle.signals.records.units import find_unit
+
+EXAMPLES = re.compile(r"plate_\w+_displacement|knuckle_\w+_acc_z|seat_rail_acc_z")
+"""Names of model channels in a message: those that are measured most often."""
 
 FRF_BAND = (1.0, 50.0)
 """Frequency band of estimated responses [Hz], equal to that of simulated responses."""
@@ -97,9 +102,12 @@ def read_measured(
             ", ".join(f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(file.channels[:20], 1))
             or "none"
         )
+        suggested = map_options(suggested_channels(file.channels, model_channels))
+        examples = ", ".join(name for name in model_channels if EXAMPLES.fullmatch(name))
+        advice = f"their names suggest {suggested}" if suggested else f"channels of the model are such as {examples}"
         raise DataError(
-            f"{path}: no channel has the name of a model channel; set --map knuckle_fr_acc_z=NAME, "
-            f"with a number, exact name or pattern with *; the file has {listed}"
+            f"{path}: no channel has the name of a model channel; set --map CHANNEL=NAME, with a number, exact name or "
+            f"pattern with *; the file has {listed}; {advice}"
         )
     other = next((name for name in selection.units if name and name not in roles), None)
     if other is not None:
@@ -125,7 +133,10 @@ def read_measured(
     histories = {name: wanted for name, wanted in roles.items() if name not in spectra}
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
-        begins = [file.channels[pick(file, wanted, allowed=_is_data)].axis for wanted in histories.values()]
+        begins = [
+            file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)].axis
+            for name, wanted in histories.items()
+        ]
         start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
         record = _record(file, replace(selection, channels={**times, **histories}), inverted)
         notices += record.notices

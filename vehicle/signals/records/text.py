@@ -89,7 +89,7 @@ def read_text(path: Path, *, western: bool = False) -> Text:
         notices.append("byte order mark at the beginning of the file skipped")
         data = data[len(BOM) :]
     if b"\r" in data:
-        notices.append("line ends of another system (CR) read as line ends")
+        notices.append("line ends of Windows (CR LF) or old Mac (CR) read as line ends")
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
         text = Text(body=data.decode("utf-8"), notices=tuple(notices), sha256=digest)

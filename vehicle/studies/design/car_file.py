@@ -2,36 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from vehicle.model.parameters.base_car import base_file
 from vehicle.model.parameters.toml_file import write_text
 from vehicle.model.parameters.vehicle import Vehicle
-
-TABLE = re.compile(r"\s*\[([^\[\]]+)\]\s*(#.*)?$")
-VALUE = re.compile(r"\s*([A-Za-z0-9_-]+)\s*=\s*(?:\"[^\"]*\"|[^#\"]|\"[^\"]*\")*#\s*(?:\[[^\]]*\]\s*)?(.+?)\s*$")
-
-
-def sources_of(file: Path) -> dict[str, str]:
-    """Return the comment behind each value of a vehicle file, by the path of the value.
-
-    A file with a base has the comments of the base where it has none. Values over several lines have none.
-
-    Args:
-        file: path of a vehicle file.
-    """
-    base = base_file(file)
-    sources = {} if base is None else sources_of(base)
-    table = ""
-    for line in file.read_text(encoding="utf-8").splitlines():
-        if match := TABLE.match(line):
-            table = f"{match[1].strip()}."
-        elif match := VALUE.match(line):
-            sources[f"{table}{match[1]}"] = match[2]
-    return sources
 
 
 def vehicle_text(
@@ -44,7 +19,7 @@ def vehicle_text(
         header: first lines, without the comment sign.
         sources: source by path, of the values that are not the template's.
         template: name of the template car.
-        before: source by path in the file of the template, see `sources_of`.
+        before: source by path in the file of the template, see `value_sources`.
     """
 
     def describe(path: str) -> dict[str, Any]:

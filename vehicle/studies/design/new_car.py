@@ -14,9 +14,10 @@ from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.quantity import field_quantity
 from vehicle.model.parameters.template import own_templates
+from vehicle.model.parameters.value_sources import value_sources
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
-from vehicle.studies.design.car_file import sources_of, vehicle_text
+from vehicle.studies.design.car_file import vehicle_text
 from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
 from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_model
 from vehicle.studies.design.moved_points import Sources, moved_points
@@ -102,7 +103,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
         "Behind each value: [unit] where it comes from: given, estimated by ..., or the template with its own source.\n"
         "Frame: x to the rear, y to the driver's right, z up. SI units."
     )
-    text = vehicle_text(car.vehicle, header, sources, template.name, sources_of(template.file))
+    text = vehicle_text(car.vehicle, header, sources, template.name, value_sources(template.file))
     return NewCar(car=car, text=text, checks=checks, notes=_notes(car, template, stated))
 
 

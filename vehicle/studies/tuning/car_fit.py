@@ -13,6 +13,7 @@ from vehicle.runs.car import Car
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.least_squares import fit
+from vehicle.studies.tuning.level_target import LevelTarget
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
 
@@ -23,7 +24,7 @@ Bounds = Sequence[float]
 def tune(
     car: Car,
     parameters: Mapping[str, Bounds] | Sequence[Range],
-    measurements: Sequence[MeasuredTarget | FrfTarget | RecordTarget],
+    measurements: Sequence[MeasuredTarget | FrfTarget | LevelTarget | RecordTarget],
     *,
     progress: Callable[[int, float], None] | None = None,
 ) -> TuningResult:

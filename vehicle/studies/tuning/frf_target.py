@@ -98,7 +98,21 @@ class FrfTarget:
             return self.estimated(model)
         if self.signal is None:
             return model.matrix_frf(self.data.channels, self.data.frequency, wheel=self.wheel)
-        return self.estimated(model.run(self.signal, engine="reduced", channels=self.recorded))
+        return self.estimated(self.run(model))
+
+    def run(self, car: Car, engine: str = "reduced") -> Run:
+        """Return the run of a car on the signal.
+
+        Args:
+            car: variant of the car of the fit.
+            engine: engine of the run.
+
+        Raises:
+            ConfigurationError: stuck dampers have no signal.
+        """
+        if self.signal is None:
+            raise ConfigurationError(f"{self.name}: FRFs of stuck dampers come from the matrices, not from a run")
+        return car.run(self.signal, engine=engine, channels=self.recorded)
 
     def estimated(self, run: Run) -> Complex:
         """Estimate the FRFs of a run at the frequencies of the data, (channels, m), with the estimator of the data."""
@@ -126,7 +140,7 @@ class FrfTarget:
         return np.where(np.isfinite(rows), rows, 0.0)
 
 
-def log_deviation(coherence: npt.ArrayLike, averages: float) -> Vector:
+def log_deviation(coherence: npt.ArrayLike, averages: npt.ArrayLike) -> Vector:
     """Return the standard deviation of ln|H| and of the phase [rad] of an estimated FRF.
 
     sigma^2 = (1 - gamma^2) / (2 gamma^2 n) + floor^2
@@ -144,4 +158,4 @@ def log_deviation(coherence: npt.ArrayLike, averages: float) -> Vector:
     """
     gamma2 = np.asarray(coherence, dtype=float)
     gamma2 = np.where(gamma2 >= LEAST_COHERENCE, np.minimum(gamma2, 1.0), np.nan)
-    return np.sqrt((1.0 - gamma2) / (2.0 * gamma2 * averages) + FLOOR**2)
+    return np.asarray(np.sqrt((1.0 - gamma2) / (2.0 * gamma2 * np.asarray(averages)) + FLOOR**2))

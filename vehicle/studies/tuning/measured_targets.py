@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS
 from vehicle.runs.car import Car
+from vehicle.runs.car.road import Road
 from vehicle.signals.excitation.input_files import find_input
-from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records.channel import uniform_axis
 from vehicle.signals.records.choice import Choice
@@ -22,7 +24,9 @@ from vehicle.signals.records.resampled import at_times
 from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.record_target import KEPT, RecordTarget
+from vehicle.studies.tuning.road_car import RoadCar
 
 BAND = (3.0, 45.0)
 """Default band of a fit [Hz]: shaker signals excite the car well above 3 Hz, and the body model ends at 43 Hz."""
@@ -30,6 +34,13 @@ BAND = (3.0, 45.0)
 SPACING = 0.3
 """Default distance of the fitted frequencies [Hz]: a record of 60 s has 17 lines of 1/60 Hz in this distance, from
 which the FRF is estimated."""
+
+LEVEL_WINDOW = 4.0
+"""Default length of the windows of classes of the input level [s]: four periods at 1 Hz, and short enough for the level
+of a road to be nearly constant."""
+
+AFTER = 5.0
+"""Length of the run after the compared part, in periods of the low-pass frequency: the filter then forgets to 1e-5."""
 
 SETTLED = 2.0
 """Time after which a car that began at rest on a moving plate follows the measured one [s], as for runs on a road: four
@@ -43,7 +54,7 @@ class MeasuredTarget:
     Stuck dampers, whose FRFs are those of the linear car, need no signal.
     """
 
-    target: FrfTarget | RecordTarget
+    target: FrfTarget | RecordTarget | LevelTarget
     signal: Signal | None
     notices: tuple[str, ...] = ()
 
@@ -109,7 +120,7 @@ def measured_responses(
 def measured_histories(
     car: Car,
     file: Path | str,
-    signal: Signal | Path | str | None = None,
+    signal: Signal | Road | Path | str | None = None,
     channels: Mapping[str, str] | None = None,
     *,
     choice: Choice | None = None,
@@ -125,8 +136,8 @@ def measured_histories(
     Args:
         car: car at the start of the fit; a run of this car shows wrong clocks, signs and units of the file.
         file: measurement file of any format with time histories.
-        signal: plate displacement: a signal, a file, or the name of a shipped file; by default the plate in the
-            measurement file, at the times of the record.
+        signal: plate displacement: a signal, a file, or the name of a shipped file; or the road that was driven, with
+            its speed; by default the plate in the measurement file, at the times of the record.
         channels, choice, inverted: see `measured_responses`.
         fitted: channels to be fitted; by default all except plates.
         delay: start of the record after the start of the signal [s].
@@ -142,6 +153,89 @@ def measured_histories(
         DataError: bad data, no time history, no plate signal, no overlap with the signal, or a record that is too
             short.
     """
+    target, _, notices = _histories(
+        car, file, signal, channels, choice=choice, inverted=inverted, fitted=fitted, delay=delay, drift=drift,
+        stretch=stretch, lowpass=lowpass,
+    )  # fmt: skip
+    return MeasuredTarget(target=target, signal=target.signal, notices=notices)
+
+
+def measured_levels(
+    car: Car,
+    file: Path | str,
+    signal: Signal | Road | Path | str | None = None,
+    channels: Mapping[str, str] | None = None,
+    *,
+    levels: int,
+    reference: str | None = None,
+    window: float | None = None,
+    band: tuple[float, float] = BAND,
+    spacing: float = SPACING,
+    **reading: Any,
+) -> MeasuredTarget:
+    """Read measured time histories as FRFs in classes of the input level, see `LevelTarget`.
+
+    Args:
+        car, file, signal, channels: see `measured_histories`.
+        levels: number of classes.
+        reference: input of the FRFs: a plate, as "plate_fl_displacement", or a measured channel, as the acceleration
+            of a knuckle; the plate of the shaker wheel, or the first that moves, by default.
+        window: length of the Hann windows [s]; `LEVEL_WINDOW` by default.
+        band: lowest and highest frequency [Hz].
+        spacing: minimum distance of the frequencies [Hz].
+        reading: further arguments of `measured_histories`.
+
+    Raises:
+        ConfigurationError, DataError: see `measured_histories` and `level_target`; an unknown reference.
+    """
+    target, driven, notices = _histories(car, file, signal, channels, keep=reference, **reading)
+    wheels = target.signal.wheels
+    wheel = car.vehicle.shaker_wheel if car.vehicle.shaker_wheel in wheels else wheels[0]
+    reference = reference or f"plate_{wheel}_displacement"
+    plates = [f"plate_{name}_displacement" for name in wheels]
+    if reference not in (*plates, *target.record.channels):
+        raise ConfigurationError(
+            f"--reference {reference}: must be one of {', '.join([*plates, *target.record.channels])}"
+        )
+    # The plates are those of the input, without noise: the same in a run of any car.
+    front = [name for name in plates if name[len("plate_")] == wheel[0]]
+    run = target.run(driven, channels=list(dict.fromkeys([*front, *(name for name in plates if name == reference)])))
+    excitation = target.record.channels[reference] if reference in target.record.channels else run[reference]
+    classes = level_target(
+        target,
+        reference,
+        np.asarray(excitation),
+        np.array([run[name] for name in front]),
+        levels=levels,
+        window=window or LEVEL_WINDOW,
+        band=band,
+        spacing=spacing,
+    )
+    return MeasuredTarget(target=classes, signal=target.signal, notices=notices)
+
+
+def _histories(
+    car: Car,
+    file: Path | str,
+    signal: Signal | Road | Path | str | None,
+    channels: Mapping[str, str] | None,
+    *,
+    choice: Choice | None = None,
+    inverted: Collection[str] = (),
+    fitted: Sequence[str] = (),
+    delay: float = 0.0,
+    drift: float = 0.0,
+    stretch: tuple[float, float] | None = None,
+    lowpass: float = 100.0,
+    keep: str | None = None,
+) -> tuple[RecordTarget, Car, tuple[str, ...]]:
+    """Return the target of `measured_histories`, the car at the start, and the notices.
+
+    Args:
+        car, file, signal, channels, choice, inverted, fitted: see `measured_histories`.
+        delay, drift, stretch, lowpass: likewise.
+        keep: a channel that is read in addition to `fitted`.
+    """
     path, contained = Path(file), signal is None
     asked = _asked(choice, channels)
     measured = _read(car, path, asked, inverted, None, histories_only=True)
@@ -154,10 +248,19 @@ def measured_histories(
             f"{path}: --delay and --drift correct the clock against a signal of another file; this record contains "
             "its plate. Remove both, or add --signal FILE"
         )
-    signal = _signal(signal, car, path, measured, asked, inverted)
+    road: RoadCar | None = None
+    settled = 0.0
+    if isinstance(signal, Road):
+        drive = signal.under(car.vehicle, car.overrides)
+        road, settled = RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
+        signal = drive.signal()
+    else:
+        signal = _signal(signal, car, path, measured, asked, inverted)
+        if contained and any("half-cosine ramp" in text for text in signal.notices):
+            settled = SETTLED
     if fitted:
         there = ", ".join(names)
-        names = [channel for channel in names if channel in fitted]
+        names = [channel for channel in names if channel in (*fitted, keep)]
         if not names:
             raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {there}")
     step = 1.0 / car.vehicle.solver.record_rate
@@ -177,9 +280,12 @@ def measured_histories(
     more: list[str] = []
     if stretch is not None:
         window_s = (max(stretch[0], window_s[0]), min(stretch[1], window_s[1]))
-    elif contained and any("half-cosine ramp" in text for text in signal.notices):
-        window_s = (window_s[0] + SETTLED, window_s[1])
-        more = [f"begins in motion: the first {SETTLED:g} s are left out; --stretch FROM:TO sets other times"]
+    elif settled > window_s[0]:
+        window_s = (settled, window_s[1])
+        more = [f"begins in motion: the first {settled:g} s are left out; --stretch FROM:TO sets other times"]
+    signal = _until(signal, window_s[1] + AFTER / lowpass)
+    grid = grid[: int(signal.duration / step + 1e-6) + 1]
+    histories = {channel: values[: grid.size] for channel, values in histories.items()}
     shortest = LEAST_VALUES / (KEPT * lowpass)
     length = max(window_s[1] - window_s[0], 0.0)
     if length < shortest:
@@ -189,9 +295,9 @@ def measured_histories(
         )
     units = {channel: held.units[channel] for channel in names}
     record = Record(time=grid, channels=histories, units=units)
-    target = RecordTarget(name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass)
+    target = RecordTarget(name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass, road=road)
     # A run with the start values shows errors of clock, signs and units of the measurement.
-    run = car.run(signal, engine="reduced", channels=names)
+    run = target.run(car)
     parts = counterparts(
         Record(time=held.time, channels={channel: held.channels[channel] for channel in names}, units=units),
         Record(time=run.time, channels=run.recording.channels, units=run.recording.units),
@@ -200,7 +306,19 @@ def measured_histories(
     # The plate of the same file has the same clock.
     clock = [] if contained else clock_advice(parts, step, delay, drift)
     advice = [*clock, *sign_and_unit(parts)]
-    return MeasuredTarget(target=target, signal=signal, notices=_notices(path, measured, [*more, *advice]))
+    return target, car, _notices(path, measured, [*more, *advice])
+
+
+def _until(signal: Signal, end: float) -> Signal:
+    """Return the beginning of a signal up to a time [s]."""
+    count = int(np.ceil(end / signal.timestep - 1e-6)) + 1
+    if count >= signal.time.size or count < MINIMUM_SAMPLES:
+        return signal
+    return replace(
+        signal,
+        time=signal.time[:count],
+        displacement={wheel: values[:count] for wheel, values in signal.displacement.items()},
+    )
 
 
 def _asked(choice: Choice | None, channels: Mapping[str, str] | None) -> Choice:

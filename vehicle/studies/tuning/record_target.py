@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from vehicle.names import channel_units
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.table import Record
+from vehicle.studies.tuning.road_car import RoadCar
 
 Vector = npt.NDArray[np.float64]
 
@@ -31,11 +33,12 @@ class RecordTarget:
 
     Attributes:
         name: name of the record, for reports.
-        signal: plate displacement.
+        signal: plate displacement, of a rig or of the road.
         record: the measured channels, in the units and at the times of the recording of the car.
         window: begin and end of the included part [s].
         lowpass: -6 dB frequency of a Butterworth low-pass of order 4, forwards and backwards [Hz]; two samples are kept
             for each period, so that the noise of neighbouring samples stays nearly independent.
+        road: car on the road of the record; None for a signal of a rig.
     """
 
     name: str
@@ -43,6 +46,7 @@ class RecordTarget:
     record: Record
     window: tuple[float, float]
     lowpass: float = 100.0
+    road: RoadCar | None = None
 
     def __post_init__(self) -> None:
         count, step = self.record.time.size, self.record.step
@@ -83,6 +87,17 @@ class RecordTarget:
         """Return the filtered measured data in the window, (channels, samples)."""
         return self._filtered(np.array(list(self.record.channels.values())))
 
+    def run(self, car: Car, engine: str = "reduced", channels: Sequence[str] = ()) -> Run:
+        """Return the run of a car on the signal, on a road with turning wheels.
+
+        Args:
+            car: variant of the car of the fit.
+            engine: engine of the run.
+            channels: recorded channels; those of the record by default.
+        """
+        driven = car if self.road is None else self.road.variant(car)
+        return driven.run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
+
     def model_histories(self, model: Car | Run) -> Vector:
         """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, samples).
 
@@ -90,7 +105,7 @@ class RecordTarget:
             DataError: the run has other sampling times than the data.
         """
         names, time = self.recorded, self.record.time
-        run = model if isinstance(model, Run) else model.run(self.signal, engine="reduced", channels=names)
+        run = model if isinstance(model, Run) else self.run(model)
         if run.time.size != time.size or abs(run.time[-1] - time[-1]) > 1e-6:
             raise DataError(
                 f"{self.name}: {time.size} samples to {time[-1]:g} s, the model gives {run.time.size} to "

@@ -18,8 +18,10 @@ from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
+from vehicle.studies.tuning.level_target import LevelTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
+from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
@@ -79,7 +81,7 @@ class TunedCar:
         rows: list[Agreement] = []
         for measurement in self.measurements:
             target = measurement.target
-            if isinstance(target, FrfTarget):
+            if not isinstance(target, RecordTarget):
                 errors = [_response_errors(target, car) for car in (self.start, self.fitted)]
                 measures: tuple[tuple[str, str], ...] = (("magnitude", "dB"), ("phase", "deg"))
                 channels: Sequence[str] = target.data.channels
@@ -182,7 +184,7 @@ def tuned_car(
                 if each.signal is None:
                     listed.append(varied)
                     continue
-                listed.append(varied.run(each.signal, engine=engine, channels=each.target.recorded))
+                listed.append(each.target.run(varied, engine))
                 count += 1
                 if simulated is not None:
                     simulated(count)
@@ -199,7 +201,7 @@ def tuned_car(
     )
 
 
-def _response_errors(target: FrfTarget, car: Car) -> Vector:
+def _response_errors(target: FrfTarget | LevelTarget, car: Car) -> Vector:
     """Return the RMS over frequency of the magnitude [dB] and of the phase [deg], (channels, 2)."""
     logarithm = np.where(
         np.isfinite(target.deviation), log_ratio(target.data.response, target.model_response(car)), np.nan

@@ -15,6 +15,7 @@ from vehicle.names import channel_units
 from vehicle.runs.car import Car
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.level_target import LevelTarget
 from vehicle.studies.tuning.posterior import Posterior
 from vehicle.studies.tuning.record_target import RecordTarget
 
@@ -32,7 +33,7 @@ ACROSS = 4
 """Maximum number of channels in a row of a figure."""
 
 
-def plot_responses(path: Path, target: FrfTarget, start: Car, fitted: Car, source: str) -> None:
+def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitted: Car, source: str) -> None:
     """Draw measured FRFs, and those before and after the fit, four channels in a row.
 
     Args:
@@ -67,9 +68,11 @@ def plot_responses(path: Path, target: FrfTarget, start: Car, fitted: Car, sourc
                 fading(magnitude, frequency, np.abs(response[row]), weight, label, **LOOKS[label])
                 phase.plot(frequency, wrapped_phase(response[row].copy()), **LOOKS[label])
             coherence.plot(frequency, data.coherence[row], **LOOKS["measured"])
-            magnitude.set_title(channel)
+            magnitude.set_title(textwrap.fill(channel, 40))
             magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.5, 1))
+        if isinstance(target, LevelTarget):
+            axes[0, 0].set_ylabel(target.quantity)
         low, high = float(frequency[0]), float(frequency[-1])
         for axis in axes[2]:
             ticks = [tick for tick in FRF_TICKS if low <= tick <= high]

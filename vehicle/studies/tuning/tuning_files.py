@@ -8,8 +8,8 @@ from pathlib import Path
 
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
-from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_summary
+from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.studies.tuning.tuned_car import TunedCar
 from vehicle.studies.tuning.tuning_figures import plot_corner, plot_correlation, plot_histories, plot_responses
 from vehicle.studies.tuning.tuning_page import POSTERIOR, tuning_page
@@ -23,7 +23,7 @@ def figures_of(tuned: TunedCar, posteriors: Sequence[NamedPosterior] = ()) -> di
     figures: dict[str, Callable[[Path], None]] = {}
     for number, measurement in enumerate(tuned.measurements, 1):
         target = measurement.target
-        if isinstance(target, FrfTarget):
+        if not isinstance(target, RecordTarget):
             figures[f"frf_{number}_{target.name}"] = partial(
                 plot_responses, target=target, start=tuned.start, fitted=tuned.fitted, source=target.name
             )

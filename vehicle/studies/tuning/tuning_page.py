@@ -10,6 +10,7 @@ from vehicle.model.parameters.paths import unit_of
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
 from vehicle.runs.report.page import document
 from vehicle.runs.report.svg_figure import drawing
+from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
 from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_sentences
 from vehicle.studies.tuning.tuned_car import TunedCar
@@ -43,7 +44,16 @@ def tuning_page(
         ("Residuals", "residuals", _residuals(tuned)),
         ("How to repeat the fit", "repeat", joined([tag("pre", command), tag("pre", tuned.settings)])),
     ]
-    return document(f"{vehicle.name} fitted to {names}", (f"tyres {vehicle.driving.words}",), parts)
+    return document(f"{vehicle.name} fitted to {names}", (f"tyres {_driving(tuned)}",), parts)
+
+
+def _driving(tuned: TunedCar) -> str:
+    """Return how the tyres stand or roll in the measurements."""
+    words = []
+    for each in tuned.measurements:
+        road = None if isinstance(each.target, FrfTarget) else each.target.road
+        words.append((tuned.start if road is None else road.rolling).vehicle.driving.words)
+    return ", ".join(dict.fromkeys(words))
 
 
 def _values(tuned: TunedCar) -> Markup:

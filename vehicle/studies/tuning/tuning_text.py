@@ -51,10 +51,11 @@ def tuning_text(tuned: TunedCar) -> str:
 
 def agreement_lines(agreement: Sequence[Agreement]) -> list[str]:
     """Return the table of the errors against the measurements before and after the fit."""
-    lines = [f"{'error against the measurement':<48} {'before':>9} {'after':>9}"]
+    names = [f"{row.measurement}, {row.channel}, {row.measure} [{row.unit}]" for row in agreement]
+    width = max(48, *map(len, names)) if names else 48
+    lines = [f"{'error against the measurement':<{width}} {'before':>9} {'after':>9}"]
     lines += [
-        f"{f'{row.measurement}, {row.channel}, {row.measure} [{row.unit}]':<48} {row.before:>9.3g} {row.after:>9.3g}"
-        for row in agreement
+        f"{name:<{width}} {row.before:>9.3g} {row.after:>9.3g}" for name, row in zip(names, agreement, strict=True)
     ]
     return lines
 

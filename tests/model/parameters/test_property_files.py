@@ -1,0 +1,166 @@
+"""Property files of Adams Car in a vehicle file: numbers, units, signs, sources, and files that are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.property_file_set import BUMP, CURVES, DAMPER, DAMPING, FILES, FRONT_TABLES, property_file, write_car
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.parameter_list import parameter_list
+from vehicle.model.parameters.vehicle import load_vehicle
+
+INCH, POUND = 0.0254, 4.4482216152605
+
+
+def numbers(file, path):
+    table = load_vehicle(file).table
+    for key in path.split("."):
+        table = table[key]
+    return table
+
+
+def test_a_damper_file_has_the_signs_and_units_of_the_vehicle_file(tmp_path):
+    damper = numbers(write_car(tmp_path), "front.damper")
+    x = np.linspace(-0.999, 0.999, 401)
+    velocity, force = np.array(DAMPER, dtype=float).T
+    expected = np.interp(1e3 * x, velocity, force)
+    assert np.interp(x, damper["velocity"], damper["force"]) == pytest.approx(expected)
+
+
+def test_a_spring_file_is_positive_in_compression(tmp_path):
+    spring = numbers(write_car(tmp_path), "front.main_spring")
+    assert spring["stiffness"] == pytest.approx(30e3)
+    table = spring["table"]
+    # The vehicle file counts extension positive: 160 mm of compression are 4500 N + 10 mm * 70 N/mm.
+    assert np.interp(-0.16, table["displacement"], table["force"]) == pytest.approx(-5200.0)
+    assert np.interp(0.05, table["displacement"], table["force"]) == pytest.approx(1500.0)
+
+
+def test_a_linear_spring_file_is_a_number_without_rows_of_the_solver(tmp_path):
+    linear = property_file("spr", {"CURVE": [(x, 30 * x) for x in range(-100, 101, 10)]})
+    spring = numbers(write_car(tmp_path, files={**FILES, "front.spr": linear}), "front.main_spring")
+    assert set(spring) == {"stiffness"} and spring["stiffness"] == pytest.approx(30e3)
+
+
+def test_a_bushing_file_has_the_law_of_each_axis(tmp_path):
+    bushing = numbers(write_car(tmp_path), "front.bushings.arm_front")
+    assert bushing["stiffness"] == pytest.approx([1e6, 8e5, 5e5])
+    assert bushing["damping"] == pytest.approx([400.0, 300.0, 200.0])
+    # 1000 N mm/deg
+    assert bushing["rotational_stiffness"] == pytest.approx(np.rad2deg(1.0))
+    assert bushing["table_x"] == {"displacement": pytest.approx([-2e-3, -1e-3, 1e-3, 2e-3]),
+                                  "force": pytest.approx([-4e3, -1e3, 1e3, 4e3])}  # fmt: skip
+    assert "table_y" not in bushing
+
+
+def test_stops_act_from_their_clearances_on(tmp_path):
+    stop = numbers(write_car(tmp_path), "front.damper.stop")
+    at = np.array([-0.075, -0.06, -0.05, 0.0, 0.06, 0.065])
+    assert np.interp(at, stop["displacement"], stop["force"]) == pytest.approx([-4000, -500, 0, 0, 0, 1500])
+
+
+def test_a_bump_stop_alone_leaves_extension_free(tmp_path):
+    tables = {**FRONT_TABLES, "damper": FRONT_TABLES["damper"].partition("rebound =")[0]}
+    stop = numbers(write_car(tmp_path, tables), "front.damper.stop")
+    assert stop["force"][-2:] == [0.0, 0.0] and stop["displacement"][-2] == pytest.approx(-0.05)
+
+
+def test_units_are_those_of_the_file(tmp_path):
+    units = {"LENGTH": "inch", "ANGLE": "radians", "FORCE": "pound_force", "TIME": "millisecond"}
+    rows = {f"{name}_CURVE": [(-1, -2), (1, 2)] for name in CURVES}
+    files = {**FILES, "arm.bus": property_file("bus", rows, DAMPING, units)}
+    bushing = numbers(write_car(tmp_path, files=files), "front.bushings.arm_front")
+    assert bushing["stiffness"] == pytest.approx([2 * POUND / INCH] * 3)
+    assert bushing["damping"] == pytest.approx([c * POUND / INCH * 1e-3 for c in (0.4, 0.3, 0.2)])
+    assert bushing["rotational_stiffness"] == pytest.approx(2 * POUND * INCH)
+
+
+def test_the_source_of_each_number_is_the_file(tmp_path):
+    file = write_car(tmp_path)
+    sources = {entry.path: entry.source for entry in parameter_list(load_vehicle(file), file)}
+    units = "mm, newton, second, degrees"
+    assert sources["front.damper.force"] == f"front.dpr (dpr; {units})"
+    assert sources["front.main_spring.table.force"] == f"front.spr (spr; {units})"
+    assert sources["front.bushings.arm_front.damping"] == f"arm.bus (bus; {units})"
+    assert sources["front.damper.stop.force"] == f"front.bum (bum; {units}); front.reb (reb; {units})"
+    assert sources["front.damper.coulomb_friction"] != sources["front.damper.force"]
+
+
+def test_a_spring_of_a_test_bench_is_a_table(tmp_path):
+    (tmp_path / "bench.csv").write_text("displacement [m],force [N]\n-0.2,-9000\n-0.1,-3000\n0,0\n0.1,3000\n")
+    tables = {"main_spring": '[front.main_spring]\ncurve = "bench.csv"'}
+    spring = numbers(write_car(tmp_path, tables), "front.main_spring")
+    assert spring["stiffness"] == pytest.approx(3e4) and spring["table"]["force"][0] == -9000.0
+
+
+def test_a_number_beside_a_bushing_file_takes_precedence(tmp_path):
+    rows = {f"{name}_CURVE": rows for name, rows in CURVES.items()} | {"TZ_CURVE": [(-20, -5000), (20, 5000)]}
+    files = {**FILES, "arm.bus": property_file("bus", rows, DAMPING)}
+    with pytest.raises(ConfigurationError, match=r"57\.3, 57\.3, 14\.32 N m/rad.*set rotational_stiffness"):
+        load_vehicle(write_car(tmp_path, files=files))
+    table = FRONT_TABLES["bushings.arm_front"] + "\nrotational_stiffness = 40.0"
+    file = write_car(tmp_path, {**FRONT_TABLES, "bushings.arm_front": table}, files)
+    assert numbers(file, "front.bushings.arm_front.rotational_stiffness") == 40.0
+
+
+def dpr(rows=DAMPER, **more):
+    return property_file("dpr", {"CURVE": rows}, **more)
+
+
+BAD = {
+    "no units": ("front.dpr", dpr().replace("[UNITS]", "[MODEL]"), r"front\.dpr: no block \[UNITS\].*add it"),
+    "no length": ("front.dpr", dpr(units={"FORCE": "newton", "TIME": "s"}), r"\[UNITS\] has no LENGTH; add a line"),
+    "unit": ("front.dpr", dpr(units={"LENGTH": "furlong", "FORCE": "newton", "TIME": "s"}), "'furlong', must be one"),
+    "no curve": ("front.dpr", property_file("dpr", {}), r"no block \[CURVE\]; found \[MDI_HEADER\], \[UNITS\]"),
+    "twice": ("front.dpr", dpr() + "[CURVE]\n0 0\n", r"the block \[CURVE\] is there twice"),
+    "unsorted": ("front.dpr", dpr([(-1, -1), (-2, -2), (1, 1)]), "has -2 after -1, must be ascending"),
+    "NaN": ("front.dpr", dpr([(-1, -1), (0, float("nan")), (1, 1)]), "has 'nan', must be a finite number"),
+    "word": ("front.dpr", dpr().replace("-300", "fast"), "has 'fast', must be a finite number"),
+    "columns": ("front.dpr", dpr().replace("-300", "-300 0.0"), r"a row of 3 columns, must be 2"),
+    "a point": ("front.dpr", dpr([(0, 0)]), "has 1 points, must be at least 2"),
+    "falling": ("front.dpr", dpr([(-1, 1), (1, -1)]), "front.damper.force: found -1.0 N after 1.0 N, must not fall"),
+    "another": ("front.dpr", FILES["front.spr"], r"a spring \('spr'\), must be of a damper \('dpr'\)"),
+    "damper as spring": ("front.spr", dpr(), r"a damper \('dpr'\), must be of a spring \('spr'\)"),
+    "tyre": ("front.spr", dpr().replace("'dpr'", "'tir'"), r"of type 'tir', must be of a spring"),
+    "bracket": ("front.dpr", dpr().replace("[CURVE]", "[CURVE"), r"'\[CURVE' has no ']' at its end"),
+    "no damping": ("arm.bus", FILES["arm.bus"].replace("FZ_DAMPING", "FZ_D"), r"\[DAMPING\] has no FX_DAMPING.*set da"),
+    "no axis": ("arm.bus", FILES["arm.bus"].replace("[FZ_CURVE]", "[FW_CURVE]"), r"no block \[FZ_CURVE\]"),
+    "stop with force": ("front.bum", property_file("bum", {"CURVE": BUMP[1:]}), "a stop must have 0 N at its contact"),
+    "rebound as bump": ("front.bum", FILES["front.reb"], r"a rebound stop \('reb'\), must be of a bump stop"),
+    "one side": ("front.spr", property_file("spr", {"CURVE": [(10, 300), (100, 3000)]}), "must contain 0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_a_wrong_property_file_is_refused_by_name(case, tmp_path):
+    name, content, message = BAD[case]
+    with pytest.raises(ConfigurationError, match=message) as caught:
+        load_vehicle(write_car(tmp_path, files={**FILES, name: content}))
+    assert "front." in str(caught.value)
+
+
+TABLES = {
+    "both": ("main_spring", FRONT_TABLES["main_spring"] + "\nstiffness = 3e4", "without stiffness in the same table"),
+    "points": ("main_spring", '[front.main_spring]\nstiffness = 3e4\ntable = { curve = "front.spr" }',
+               "name it in the table above: front.main_spring.curve"),
+    "clearance": ("damper", FRONT_TABLES["damper"].replace(", clearance = 0.05", ""), "curve .a file. and clearance"),
+    "negative": ("damper", FRONT_TABLES["damper"].replace("0.05", "-0.05"), "bump.clearance: found -0.05; must be"),
+    "stop": ("damper", FRONT_TABLES["damper"].split("[front.damper.stop]")[0] + 'stop = { curve = "front.bum" }',
+             r"front\.damper\.stop\.bump\.curve"),
+    "missing": ("main_spring", '[front.main_spring]\ncurve = "none.spr"', "front.main_spring.curve: .*none.spr"),
+    "csv": ("bushings.arm_front", '[front.bushings.arm_front]\ncurve = "none.csv"', "is no property file"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", TABLES)
+def test_a_wrong_table_is_refused_by_its_path(case, tmp_path):
+    name, table, message = TABLES[case]
+    with pytest.raises(ConfigurationError, match=message):
+        load_vehicle(write_car(tmp_path, {**FRONT_TABLES, name: table}))
+
+
+def test_an_xml_property_file_is_refused_with_the_mend(tmp_path):
+    files = {**FILES, "front.dpr": "<?xml version='1.0'?>\n<!-- [MDI_HEADER] -->"}
+    with pytest.raises(ConfigurationError, match="XML property file; save it in TeimOrbit format"):
+        load_vehicle(write_car(tmp_path, files=files))

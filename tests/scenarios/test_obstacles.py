@@ -1,0 +1,119 @@
+"""`python -m scenarios.obstacles` as a user runs it: values of a run, table, picture, film."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+
+import numpy as np
+import pytest
+
+from scenarios.obstacles import Passage, dose_claims, film_passage, main, passage_table, passage_values
+from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
+from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.runs.output.run_obstacle import obstacle_values
+
+RIGID = """
+base = "focus_road_seated"
+name = "rigid"
+[body]
+flexible = false
+attachment_flexibility = false
+"""
+
+
+@pytest.fixture(scope="module")
+def car(tmp_path_factory):
+    """A car with an occupant on a rigid body, which is quick to build."""
+    path = tmp_path_factory.mktemp("car") / "rigid.toml"
+    path.write_text(RIGID, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def passage(car):
+    return Passage(vehicle=car, overrides=(), engine="mujoco", obstacle="cleat:20x50", speed=30.0)
+
+
+def test_a_short_study(car, tmp_path):
+    folder = tmp_path / "obstacles"
+    arguments = ["--output", str(folder), "--vehicle", str(car), "--speeds", "20,40", "--engine", "reduced"]
+    assert main([*arguments, "--obstacle", "cleat:10x50", "--obstacle", "speed_bump"]) == 0
+    content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    rows = {(row["obstacle"], row["speed_kmh"]): row for row in content["passages"]}
+    assert set(rows) == {(text, speed) for text in ("cleat:10x50", "speed_bump") for speed in (20.0, 40.0)}
+    for name in ("peak_to_peak_z", "peak_to_peak_x", "vdv"):
+        for point in ("seat_rail", "seat"):
+            assert rows["speed_bump", 40.0][f"{name} {point}"] > 1.5 * rows["speed_bump", 20.0][f"{name} {point}"] > 0.0
+    assert rows["speed_bump", 40.0]["lowest_load"] < rows["speed_bump", 20.0]["lowest_load"] < 100.0
+    assert (folder / "obstacles.png").stat().st_size > 20_000
+    text = (folder / "results.md").read_text(encoding="utf-8")
+    assert "| cleat:10x50 | 20 |" in text and "VDV seat rail" in text
+    assert content["rows"] == []  # other obstacles than those of the study, and two speeds
+
+
+def test_values_are_those_of_the_run(passage):
+    run, values = passage.run(), passage_values(passage)
+    found = obstacle_values(run)
+    assert found is not None
+    assert values["peak_to_peak_x seat"] == found["peak_to_peak"]["seat"]["x"]
+    assert values["vdv seat_rail"] == found["vdv"]["seat_rail"]["overall"]
+    assert values["knuckle_peak"] == max(found["knuckle_peak"].values())
+    # Its tyres lift off on this cleat, which those of the vehicle file cannot: they would pull.
+    assert all(connection.law.one_sided for connection in run.car.vehicle.composition.connections if connection.ground)
+    assert -5.0 < values["lowest_load"] < 1.0
+
+
+def test_the_checks_fail_where_they_do_not_hold():
+    def rows(text, doses):
+        passages = [
+            Passage(vehicle=vehicle_file("sedan"), overrides=(), engine="reduced", obstacle=text, speed=10.0 * n)
+            for n in range(1, 4)
+        ]
+        return dose_claims({each: {"vdv seat_rail": dose} for each, dose in zip(passages, doses, strict=True)})
+
+    for text, doses, holds in (
+        ("cleat:20x50", (1.0, 2.0, 1.5), True),
+        ("cleat:20x50", (1.0, 1.5, 2.0), False),
+        ("ramp:50x1000", (1.0, 1.5, 2.0), True),
+        ("ramp:50x1000", (1.0, 2.0, 1.5), False),
+    ):
+        (claim,) = rows(text, doses)
+        assert claim.within is holds
+    assert not rows("cobbles", (1.0, 2.0, 3.0))
+
+
+def test_a_passage_that_failed_is_a_gap(passage):
+    text = passage_table({passage: {}}, ("seat_rail",))
+    assert text.splitlines()[-1].startswith("| cleat:20x50 | 30 | - | - |")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--speeds", "20,x"], "--speeds 20,x: must be speeds above 0 to 400 km/h"),
+        (["--speeds", "-5"], "--speeds -5: must be"),
+        (["--obstacle", "kerb"], "'kerb' must be one of cleat"),
+        (["--video", "film.avi"], "a film is written as .mp4"),
+    ],
+)
+def test_refusals(arguments, message, tmp_path, capsys):
+    assert main(["--output", str(tmp_path / "out"), "--quick", *arguments]) == 2
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.render
+def test_the_wheel_turns_in_the_film(passage, tmp_path):
+    if (reason := film_available()) is not None:
+        pytest.skip(reason)
+    path = tmp_path / "film.mp4"
+    film_passage(path, passage.run())
+    command = [find_ffmpeg(), "-i", str(path), "-vf", "scale=640:-2", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    done = subprocess.run(command, capture_output=True, check=True)
+    frames = np.frombuffer(done.stdout, dtype=np.uint8).reshape(-1, 360, 640, 3).astype(int)
+    # 0.32 s of wheelbase at 30 km/h with 0.47 s around it, ten times slower.
+    assert len(frames) == pytest.approx(237, abs=3)
+    rim, body = (frames[:, *place].mean(axis=3) for place in (np.s_[180:225, 265:305], np.s_[130:160, 170:230]))
+    # Before the cleat nothing moves but rims and stripes.
+    assert np.mean(np.abs(rim[6] - rim[0])) > 8.0
+    assert np.mean(np.abs(body[6] - body[0])) < 0.5

@@ -1,0 +1,242 @@
+"""Measurement files of the command `tune`: their options, their roads, and the targets of the fit."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from vehicle.commands.compare import clock_of, mapping_options, measured_choice
+from vehicle.commands.input_options import record_options, speed_value
+from vehicle.commands.parser import Parser
+from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.runs.car import Car
+    from vehicle.runs.car.road import Road
+    from vehicle.signals.records.choice import Choice
+    from vehicle.studies.tuning.measured_targets import MeasuredTarget
+
+OF_FILE = ("signal", "stuck", "road", "speed", "contact", "levels", "reference")
+"""Names of the options that belong to the files of the preceding --frf or --record."""
+
+OF_RECORD = ("road", "speed", "contact", "levels", "reference")
+"""Names of those that belong to time histories."""
+
+ROAD_ROLES = ("left", "right", "height")
+"""Roles of --map and --unit that name the heights of a road over time; --unit speed=UNIT belongs to its speed."""
+
+
+class _Measurement(argparse.Action):
+    """Action that adds measurement files to the list of all, in the order of the command line."""
+
+    def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
+        listed = getattr(namespace, "measurements", None) or []
+        content = str(option).removeprefix("--")
+        added = [argparse.Namespace(content=content, file=file, **dict.fromkeys(OF_FILE)) for file in values]
+        namespace.measurements = [*listed, *added]
+        namespace.latest = added
+
+
+class _OfMeasurement(argparse.Action):
+    """Action that sets an option of the measurement files of the preceding --frf or --record."""
+
+    def __call__(self, parser: Any, namespace: argparse.Namespace, values: Any, option: str | None = None) -> None:
+        latest = getattr(namespace, "latest", None)
+        if not latest:
+            raise ConfigurationError(f"{option}: belongs to the --frf or --record before it; place it after one")
+        for each in latest:
+            if self.dest == "stuck" and each.content != "frf":
+                raise ConfigurationError(f"--stuck: belongs to --frf; {each.file} contains time histories")
+            if self.dest in OF_RECORD and each.content != "record":
+                raise ConfigurationError(f"{option}: belongs to --record; set --record {each.file}")
+            setattr(each, self.dest, values if self.nargs is None else True)
+
+
+def measurement_options(parser: Parser) -> None:
+    """Add the options that name measurement files, and those that belong to the files before them.
+
+    Args:
+        parser: parser of the command.
+    """
+    parser.set_defaults(measurements=[], latest=[])
+    files = parser.add_argument_group("measurements")
+    files.add_argument(
+        "--frf",
+        nargs="+",
+        type=Path,
+        action=_Measurement,
+        metavar="FILE",
+        help="measured FRFs, or accelerations and plate as time histories, in any format of `inspect`; repeatable",
+    )
+    files.add_argument(
+        "--record",
+        nargs="+",
+        type=Path,
+        action=_Measurement,
+        metavar="FILE",
+        help="measured time histories, of a bump or of another input, in any format of `inspect`; repeatable",
+    )
+    files.add_argument(
+        "--signal",
+        action=_OfMeasurement,
+        metavar="FILE",
+        help="plate displacement of the files of the preceding --frf or --record; the plate in each file by default",
+    )
+    files.add_argument(
+        "--stuck",
+        nargs=0,
+        action=_OfMeasurement,
+        help="the dampers stick at the level of the preceding --frf: linear car, no plate signal needed",
+    )
+    files.add_argument(
+        "--road",
+        action=_OfMeasurement,
+        metavar="C|FILE|OBSTACLE",
+        help="road that was driven at the preceding --record, as `shaker` takes it: a measured profile, heights over "
+        "time (--speed channel:NAME; may be the file of the record), a class of ISO 8608, or an obstacle; tyres roll",
+    )
+    files.add_argument(
+        "--speed",
+        type=speed_value,
+        action=_OfMeasurement,
+        metavar="KM/H|channel:NAME",
+        help="speed on the road of the preceding --road [km/h]; channel:NAME for a road over time",
+    )
+    files.add_argument(
+        "--contact",
+        choices=("patch", "cams"),
+        action=_OfMeasurement,
+        help="contact with the road of the preceding --road; patch by default, cams on an obstacle",
+    )
+    files.add_argument(
+        "--levels",
+        type=int,
+        action=_OfMeasurement,
+        metavar="N",
+        help="compare the preceding --record by FRFs in N classes of the input level in place of its time histories",
+    )
+    files.add_argument(
+        "--reference",
+        action=_OfMeasurement,
+        metavar="CHANNEL",
+        help="input of the FRFs of --levels: a plate, or a measured channel, as knuckle_fl_acc_z; the plate of the "
+        "shaker wheel by default",
+    )
+    mapping_options(files)
+    record_options(files, "", channel=False)
+    files.add_argument(
+        "--channels",
+        metavar="NAME,...",
+        help="fitted channels of the model; by default all in the files",
+    )
+
+
+def has_files(options: argparse.Namespace, content: str) -> bool:
+    """Return True if a file was named by --frf ("frf") or --record ("record")."""
+    return any(each.content == content for each in options.measurements)
+
+
+def _road_of(each: argparse.Namespace, choice: Choice) -> Road | None:
+    """Return the road of a measurement file, and None without --road.
+
+    Args:
+        each: file with its options.
+        choice: --map and --unit for the heights of a road over time.
+
+    Raises:
+        ConfigurationError: --speed or --contact without --road, --road beside --signal, or no speed.
+    """
+    from vehicle.commands.road import class_or_profile
+    from vehicle.runs.car.road import Road
+
+    if each.road is None:
+        for name in ("speed", "contact"):
+            if getattr(each, name) is not None:
+                raise ConfigurationError(f"--{name}: belongs to --road; add --road FILE after --record {each.file}")
+        return None
+    if each.signal is not None:
+        raise ConfigurationError(f"--road {each.road} and --signal {each.signal}: set only one of them")
+    if each.speed is None:
+        raise ConfigurationError(f"--road {each.road}: needs --speed KM/H, as --speed 80, or --speed channel:NAME")
+    return Road(class_or_profile(each.road), speed=each.speed, contact=each.contact, choice=choice)
+
+
+def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarget]:
+    """Return the targets of all measurement files.
+
+    Args:
+        options: parsed options.
+        car: car at the start of the fit.
+    """
+    from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels, measured_responses
+
+    choice = measured_choice(options)
+    road_choice = replace(
+        choice,
+        channels={role: name for role, name in choice.channels.items() if role in (*ROAD_ROLES, "time")},
+        units={role: unit for role, unit in choice.units.items() if role in (*ROAD_ROLES, "speed", "time")},
+        resample=None,
+    )
+    choice = replace(
+        choice,
+        channels={role: name for role, name in choice.channels.items() if role not in ROAD_ROLES},
+        units={role: unit for role, unit in choice.units.items() if role not in (*ROAD_ROLES, "speed")},
+    )
+    shared: dict[str, Any] = {
+        "choice": choice,
+        "inverted": options.turned,
+        "fitted": options.channels.split(",") if options.channels else (),
+    }
+    delay, drift = clock_of(options)
+    targets = []
+    for each in options.measurements:
+        if each.content == "frf":
+            target = measured_responses(
+                car,
+                each.file,
+                each.signal,
+                stuck=bool(each.stuck),
+                band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
+                spacing=options.spacing,
+                window=options.window,
+                averages=options.averages,
+                **shared,
+            )
+        else:
+            stretch = _pair("--stretch", options.stretch, "FROM:TO in s, as 4.9:6.5") if options.stretch else None
+            source = _road_of(each, road_choice) or each.signal
+            times: dict[str, Any] = {"delay": delay, "drift": drift, "stretch": stretch, "lowpass": options.lowpass}
+            if each.levels is None and each.reference is not None:
+                raise ConfigurationError(f"--reference {each.reference}: belongs to --levels N")
+            if each.levels is None:
+                target = measured_histories(car, each.file, source, **times, **shared)
+            else:
+                target = measured_levels(
+                    car,
+                    each.file,
+                    source,
+                    levels=each.levels,
+                    reference=each.reference,
+                    window=options.window,
+                    band=_pair("--band", options.band, "LOW:HIGH in Hz, as 3:45"),
+                    spacing=options.spacing,
+                    **times,
+                    **shared,
+                )
+        targets.append(target)
+    return targets
+
+
+def _pair(option: str, text: str, needed: str) -> tuple[float, float]:
+    """Return two ascending numbers of at least 0, separated by a colon."""
+    numbers: Sequence[float]
+    try:
+        numbers = [float(part) for part in text.split(":")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 2 or not 0.0 <= numbers[0] < numbers[1]:
+        raise ConfigurationError(f"{option} {text}: must be {needed}")
+    return numbers[0], numbers[1]

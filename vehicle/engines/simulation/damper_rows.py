@@ -1,0 +1,73 @@
+"""Constraint rows of the dampers of a compiled car: equality rows, friction rows of joints and of tendons.
+
+Friction rows follow the equality rows: those of joints in their order, then those of tendons.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from vehicle.engines.simulation.element_records import Dampers, Index, Presliding
+from vehicle.engines.simulation.law_arrays import LawNames, friction_tendons
+from vehicle.model.laws.damper import unpack
+
+
+def whole_numbers(values: Any, columns: int = 0) -> Index:
+    """Convert values to 64-bit integers, (n,) or (n, columns)."""
+    array = np.array(values, dtype=np.int64, order="C")
+    return array.reshape(-1, columns) if columns else array.reshape(-1)
+
+
+def damper_rows(model: mujoco.MjModel, rows_of: Callable[[Sequence[str]], Index], first: int) -> Dampers:
+    """Return the record of the dampers: user actuators on joints, with equality rows of the same names."""
+    actuators = _damper_actuators(model)
+    joints = [int(model.actuator_trnid[index, 0]) for index in actuators]
+    dofs = whole_numbers([model.jnt_dofadr[joint] for joint in joints])
+    rows = _tendon_rows(model, first + len(actuators))
+    valves = [
+        (rows[tendon], joints.index(int(model.wrap_objid[model.tendon_adr[tendon]])))
+        for tendon in friction_tendons(model, presliding=False)
+    ]
+    return Dampers(
+        laws=unpack([]),
+        rows=rows_of([str(model.actuator(index).name) for index in actuators]),
+        frictions=first + np.argsort(np.argsort(dofs)),
+        dofs=dofs,
+        places=whole_numbers([model.jnt_qposadr[joint] for joint in joints]),
+        valves=whole_numbers(valves, 2),
+        pieces=np.zeros((0, 3)),
+    )
+
+
+def _tendon_rows(model: mujoco.MjModel, first: int) -> dict[int, int]:
+    """Return the friction rows of tendons, which follow the equality rows and the friction rows of joints."""
+    return {int(tendon): first + n for n, tendon in enumerate(np.flatnonzero(model.tendon_frictionloss > 0.0))}
+
+
+def presliding_rows(model: mujoco.MjModel, law: LawNames, dampers: Dampers, first: int) -> Presliding:
+    """Return the record of the Jenkins elements.
+
+    The first element of a damper has the friction row of its joint, the others have those of tendons.
+    """
+    rows, indices = _tendon_rows(model, first + len(law.dampers)), list[tuple[int, int]]()
+    tendons = {str(model.tendon(index).name): rows[index] for index in friction_tendons(model, presliding=True)}
+    for name in law.presliding:
+        index = law.dampers.index(name)
+        number = sum(damper == index for _, damper in indices)
+        row = tendons[f"presliding/{name}/{number}"] if number else int(dampers.frictions[index])
+        indices.append((row, index))
+    return Presliding(
+        rows=whole_numbers([row for row, _ in indices]),
+        dampers=whole_numbers([index for _, index in indices]),
+        stiffness=np.zeros(0),
+        share=np.zeros(0),
+    )
+
+
+def _damper_actuators(model: mujoco.MjModel) -> list[int]:
+    """Return the ids of the actuators of dampers."""
+    return [index for index in range(model.nu) if model.actuator_biastype[index] == mujoco.mjtBias.mjBIAS_USER]

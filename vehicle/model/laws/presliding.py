@@ -1,0 +1,52 @@
+"""Presliding friction: below its limit a damper yields elastically, by Jenkins elements over its stroke.
+
+K is the stiffness after a reversal; the curve of first loading rises by the slopes K s_j up to the shares p_j of the
+limit L. Element i has the stiffness k_i = K (s_i - s_(i+1)) and the limit L (s_i - s_(i+1)) x_i, with
+x_i = sum over j <= i of (p_j - p_(j-1)) / s_j: the shares of the limit sum to one. With K to infinity the force is
+set-valued Coulomb friction.
+
+The default curve has s_j = 1 - p_(j-1) in four steps: a polygon of dF/dx = K (1 - F/L) (Dahl 1968).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.compiler import jitable
+from vehicle.model.laws.friction import Friction
+from vehicle.model.laws.jenkins import Jenkins
+from vehicle.model.parameters.force_elements import Damper
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Presliding(Friction):
+    """L = Fd in sliding.
+
+    Source: Bommer 2006, equation 2.4.
+    """
+
+    @staticmethod
+    @jitable
+    def limit_at(velocity: Any, numbers: Any) -> Any:
+        """Return Fd [N]."""
+        return numbers["friction_limit"]
+
+    @staticmethod
+    def fall_at(velocity: Any, numbers: Any) -> Any:
+        """Return v dL/dv = 0 [N]."""
+        return 0.0
+
+
+def presliding_elements(damper: Damper) -> Vector:
+    """Return stiffness [N/m] and share of the limit [-] of the Jenkins elements of a damper; (n, 2), (0, 2) without."""
+    if damper.friction_law != "presliding" or damper.presliding_stiffness is None:
+        return np.zeros((0, 2))
+    share, slope = np.array(damper.presliding_force), np.array(damper.presliding_slope)
+    unit = Jenkins.through(np.cumsum(np.diff(share, prepend=0.0) / slope), share)
+    return np.column_stack([damper.presliding_stiffness * unit.stiffness, unit.limit])

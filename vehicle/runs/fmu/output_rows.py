@@ -1,0 +1,209 @@
+"""Outputs of an FMU as rows over the poles of the car: channels, displacements, sensors, and what must stay in limits.
+
+Output = fixed + Re(rows xi) + direct terms of the plates, of damper forces and of slope forces at the same instant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes, load_outputs
+from vehicle.engines.reduced.pole_model import Outputs, PoleModel
+from vehicle.engines.reduced.validity import (
+    LARGEST_ANGLE,
+    rotating_bodies,
+    rotation_outputs,
+    segment_outputs,
+    tyre_outputs,
+)
+from vehicle.errors import ConfigurationError
+from vehicle.names import channel_units, point_words
+
+if TYPE_CHECKING:
+    from vehicle.runs.car import Car
+
+Vector = npt.NDArray[np.float64]
+
+LINEAR, VELOCITY, FORCE, COEFFICIENT = range(4)
+"""Kinds of outputs, as in runtime/car.h."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Output:
+    """Output of an FMU.
+
+    Attributes:
+        name, unit, meaning: name, unit and description.
+        kind: what it reads.
+        damper: index of its damper; 0 for a linear output.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    kind: int = LINEAR
+    damper: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class OutputRows:
+    """Linear outputs with their direct terms.
+
+    Attributes:
+        outputs: rows over the poles and the plates.
+        fixed: static values; (k,).
+        force, slope: rows over damper forces and slope forces at the same instant; (k, d), (k, m).
+    """
+
+    outputs: Outputs
+    fixed: Vector
+    force: Vector
+    slope: Vector
+
+
+def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], OutputRows]:
+    """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers."""
+    model, vehicle = car.poles, car.vehicle
+    system, d = model.matrices.system, len(vehicle.composition.dampers)
+    units, dampers = channel_units(channels), [damper.name for damper in vehicle.composition.dampers]
+    outputs: list[Output] = []
+    parts: list[OutputRows] = []
+
+    def add(output: Output, rows: OutputRows) -> None:
+        outputs.append(output)
+        parts.append(rows)
+
+    accelerations = [name for name in channels if name in system.outputs]
+    displacements = model.outputs(accelerations)
+    for name, rows in zip(accelerations, _each(_linear(model, displacements)), strict=True):
+        point, _, axis = name.rpartition("_acc_")
+        title = f"displacement of {point_words(point)} along {axis} from rest"
+        add(Output(name=f"{point}_displacement_{axis}", unit="m", meaning=title), rows)
+    for name, rows in zip(accelerations, _each(_second_derivative(model, displacements)), strict=True):
+        point, _, axis = name.rpartition("_acc_")
+        title = f"acceleration of {point_words(point)} along {axis}, at the instant and not filtered"
+        add(Output(name=name, unit="m/s2", meaning=title), rows)
+    tyres = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
+    for name in channels:
+        if name in tyres:
+            rows = _linear(model, model.outputs([name]), np.array([car.static.tyre_load[tyres[name]]]))
+            add(Output(name=name, unit="N", meaning="vertical force of the tyre on the wheel"), rows)
+    for index, damper in enumerate(dampers):
+        nothing = _linear(model, _no_outputs(model))
+        for ending, reading, title in (
+            ("velocity", VELOCITY, "velocity of the damper, extension positive"),
+            ("force", FORCE, "force of the damper at the instant, with friction, gas and force command"),
+            ("coefficient", COEFFICIENT, "damping coefficient in the last step"),
+        ):
+            name = f"{damper}_{ending}"
+            if name in channels:
+                add(Output(name=name, unit=units[name], meaning=title, kind=reading, damper=index), nothing)
+    loads = [name for name in channels if name in vehicle.load_channels]
+    if loads:
+        rows_of_loads = car.load_rows.only(loads)
+        rows = OutputRows(
+            outputs=load_outputs(model, rows_of_loads),
+            fixed=rows_of_loads.static,
+            force=direct_forces(model, rows_of_loads),
+            slope=_of_plates(model, direct_slopes(model, rows_of_loads)),
+        )
+        for name, row in zip(rows_of_loads.names, _each(rows), strict=True):
+            add(Output(name=name, unit=units[name], meaning="load, see docs/reference.md"), row)
+    rates = model.matrices.sensors @ (model.modal * model.poles) if model.matrices.sensors.size else model.slip[:0]
+    no_plates = np.zeros((len(rates), len(system.inputs)))
+    sensors = _each(_linear(model, Outputs(poles=rates, height=no_plates, velocity=no_plates)))
+    controlled = [damper for damper in vehicle.composition.dampers if damper.law.controlled]
+    names = [f"{damper.name}_{end}_velocity" for damper in controlled for end in ("wheel", "body")]
+    for name, rows in zip(names, sensors, strict=True):
+        add(Output(name=name, unit="m/s", meaning="sensor along the damper: absolute velocity of this end"), rows)
+    if not outputs:
+        raise ConfigurationError("--channels: all of them are plate displacements, which are inputs of an FMU")
+    assert all(rows.force.shape[1] == d for rows in parts)
+    return outputs, _joined(parts)
+
+
+def _no_outputs(model: PoleModel) -> Outputs:
+    """Return an output that is always zero."""
+    wheels = len(model.matrices.system.inputs)
+    zeros = np.zeros((1, wheels))
+    return Outputs(poles=np.zeros((1, len(model.poles)), dtype=complex), height=zeros, velocity=zeros)
+
+
+def _linear(model: PoleModel, outputs: Outputs, fixed: Vector | None = None) -> OutputRows:
+    """Return linear outputs without further direct terms, except for static values."""
+    count = len(outputs.poles)
+    return OutputRows(
+        outputs=outputs,
+        fixed=np.zeros(count) if fixed is None else fixed,
+        force=np.zeros((count, model.force.shape[1])),
+        slope=np.zeros((count, len(model.matrices.system.inputs))),
+    )
+
+
+def _of_plates(model: PoleModel, rows: Vector) -> Vector:
+    """Return rows over the plates of rolling tyres; zeros if the tyres stand."""
+    return rows if model.slope.shape[1] else np.zeros((len(rows), len(model.matrices.system.inputs)))
+
+
+def _second_derivative(model: PoleModel, displacements: Outputs) -> OutputRows:
+    """Return the second derivatives of displacements Re(rows xi), with xi' = s xi + b_z z + b_c z' + e f."""
+    rate = displacements.poles * model.poles
+    outputs = Outputs(
+        poles=rate * model.poles, height=(rate @ model.height).real, velocity=(rate @ model.velocity).real
+    )
+    slope = _of_plates(model, (rate @ model.slope).real)
+    return OutputRows(outputs=outputs, fixed=np.zeros(len(rate)), force=(rate @ model.force).real, slope=slope)
+
+
+def _each(rows: OutputRows) -> list[OutputRows]:
+    """Split output rows into single rows."""
+    parts = []
+    for k in range(len(rows.fixed)):
+        at = slice(k, k + 1)
+        outputs = rows.outputs
+        single = Outputs(poles=outputs.poles[at], height=outputs.height[at], velocity=outputs.velocity[at])
+        parts.append(OutputRows(outputs=single, fixed=rows.fixed[at], force=rows.force[at], slope=rows.slope[at]))
+    return parts
+
+
+def _joined(parts: Sequence[OutputRows]) -> OutputRows:
+    """Join several output rows."""
+    outputs = [part.outputs for part in parts]
+    return OutputRows(
+        outputs=Outputs(
+            poles=np.concatenate([part.poles for part in outputs]),
+            height=np.concatenate([part.height for part in outputs]),
+            velocity=np.concatenate([part.velocity for part in outputs]),
+        ),
+        fixed=np.concatenate([part.fixed for part in parts]),
+        force=np.concatenate([part.force for part in parts]),
+        slope=np.concatenate([part.slope for part in parts]),
+    )
+
+
+def watched_outputs(car: Car) -> tuple[OutputRows, Vector, list[str]]:
+    """Return the watched motions of a car, their limits, and a notice for each.
+
+    The limits are those of `vehicle.engines.reduced.validity`, for each axis of a rotation.
+    """
+    model, matrices = car.poles, car.poles.matrices
+    wheels, bodies = matrices.system.inputs, rotating_bodies(matrices)
+    load = np.array([car.static.tyre_load[wheel] for wheel in wheels])
+    parts = [_linear(model, tyre_outputs(model), load), _linear(model, segment_outputs(model))]
+    parts.append(_linear(model, rotation_outputs(model, bodies)))
+    limits = [(0.0, np.inf)] * len(wheels)
+    limits += [(segment.low, segment.high) for segment in matrices.segments]
+    limits += [(-LARGEST_ANGLE, LARGEST_ANGLE)] * (3 * len(bodies))
+    notices = [f"tyre {wheel} would lift off; this car is linear there, so the result is not valid" for wheel in wheels]
+    notices += [f"{segment.name} left the linear segment of its table" for segment in matrices.segments]
+    notices += [
+        f"{body} turned by more than {LARGEST_ANGLE:g} rad about {axis}; this car is valid up to there"
+        for body in bodies
+        for axis in "xyz"
+    ]
+    return _joined(parts), np.array(limits), notices

@@ -1,0 +1,160 @@
+"""Modes and paths that cause the weighted vibration of a run in a band: linear car, plates as in the run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.car_modes import Mode
+from vehicle.engines.linear.mode_shares import mode_shares
+from vehicle.engines.linear.path_shares import REST, path_shares
+from vehicle.errors import ConfigurationError
+from vehicle.names import CORNERS, point_words
+from vehicle.runs.report.findings import damper_state
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.main_band import POINT, MainBand
+from vehicle.signals.records.record_spectra import evaluated_from
+
+LINES = 400
+"""Number of spectral lines of a band that determine the shares of the modes."""
+
+PATH_LINES = 100
+"""Number of spectral lines of a band that determine the shares of the paths, which need all motions at each."""
+
+WORDS = {
+    "arm_front": "control arm bearing at the front",
+    "arm_rear": "control arm bushing at the rear",
+    "damper_mount": "damper mount",
+    "hydromount": "hydraulic engine mount",
+    "linear_mount": "engine mount",
+    "lower_front_inner": "lower link at the front",
+    "lower_rear_inner": "lower link at the rear",
+    "main_spring": "spring",
+    "pivot": "bushing of the trailing arm",
+    "stab_body": "anti-roll bar bearing",
+    "tie_inner": "tie rod",
+    "torque_arm_body": "torque arm",
+    "trailing_lower_inner": "lower trailing link",
+    "trailing_upper_inner": "upper trailing link",
+    "upper_inner": "upper link",
+}
+"""Words for elements of the templates whose names are short."""
+
+OTHER_SIDE = 0.25
+"""Minimum share of a side in the sum of both sides, for which both sides are named together."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """Plates of a run at the spectral lines of a band.
+
+    Attributes:
+        frequency: [Hz]; (m,).
+        plates: complex amplitudes of the plate displacements [m]; (w, m).
+    """
+
+    frequency: npt.NDArray[np.float64]
+    plates: npt.NDArray[np.complex128]
+
+
+def lines_of(run: FinishedRun, band: MainBand, count: int) -> Lines | None:
+    """Return the lines of the periodogram of the plates in a band, at most about `count`; None without plates."""
+    recording, wheels = run.recording, run.car.matrices.system.inputs
+    names = [f"plate_{wheel}_displacement" for wheel in wheels]
+    if not all(name in recording.channels for name in names):
+        return None
+    first = round(evaluated_from(run.summary) / recording.timestep)
+    plates = [recording.channels[name][first:] for name in names]
+    frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
+    inside = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
+    inside = inside[:: max(inside.size // count, 1)]
+    spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
+    return Lines(np.asarray(frequency[inside], dtype=float), spectra)
+
+
+def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode | None:
+    """Return the mode of the linear car with the largest share in a band of the seat rail.
+
+    The plates move as in the run, at the lines of its periodogram; the state of the dampers is that of most of the run.
+
+    Args:
+        run: the run.
+        band: axis and frequencies.
+        modes: modes of the car in this state of the dampers.
+
+    Returns:
+        The mode; None if no plate is recorded or no mode has a positive share.
+    """
+    lines = lines_of(run, band, LINES)
+    if lines is None:
+        return None
+    stuck = damper_state(run) == "stuck"
+    channel = f"{POINT}_acc_{band.axis}"
+    result = mode_shares(run.car.matrices.system, channel, lines.frequency, lines.plates, stuck=stuck)
+    at = int(np.argmax(result.shares))
+    if result.shares[at] <= 0.0:
+        return None
+    natural = abs(result.poles[at]) / (2.0 * np.pi)
+    mode = min(modes, key=lambda other: abs(other.frequency - natural), default=None)
+    same = mode is not None and abs(mode.frequency - natural) < 1e-6 * natural
+    return mode if same else None
+
+
+def paths(run: FinishedRun, band: MainBand) -> dict[str, float]:
+    """Return attachments of the body to their shares in a band of the seat rail; empty if it is not on the body.
+
+    Args:
+        run: the run, whose dampers stick or slide as during most of it.
+        band: axis and frequencies.
+    """
+    lines = lines_of(run, band, PATH_LINES)
+    if lines is None or not np.any(lines.plates):
+        return {}
+    car, channel = run.car, f"{POINT}_acc_{band.axis}"
+    stuck = damper_state(run) == "stuck"
+    try:
+        result = path_shares(
+            car.model, car.matrices, car.load_rows, channel, lines.frequency, lines.plates, stuck=stuck
+        )
+    except ConfigurationError:
+        return {}
+    return {name: float(share) for name, share in zip(result.names, result.shares, strict=True) if name != REST}
+
+
+def main_path(shares: Mapping[str, float]) -> str:
+    """Return the path with the largest share in words, with its share.
+
+    Both sides of an axle are named together if each of them carries `OTHER_SIDE` of their sum.
+
+    Args:
+        shares: name of each attachment to its share.
+    """
+    corners = {name: corner.replace("_", " ").split() for corner, name in CORNERS.items()}
+    groups: dict[tuple[str, str], dict[str, float]] = {}
+    for name, share in shares.items():
+        part, _, corner = name.rpartition("_")
+        axle, side = corners.get(corner, ["", ""]) if part else ["", ""]
+        groups.setdefault((axle, part if axle else name), {})[side] = share
+    singles = {(axle, side, part): share for (axle, part), sides in groups.items() for side, share in sides.items()}
+    pairs = {
+        (axle, "", part): sum(sides.values())
+        for (axle, part), sides in groups.items()
+        if len(sides) == 2 and min(sides.values()) >= OTHER_SIDE * sum(sides.values())
+    }
+    paths_of = singles | pairs
+    axle, side, part = max(paths_of, key=lambda key: paths_of[key])
+    name = " ".join(word for word in ("the", axle, side, WORDS.get(part, point_words(part))) if word)
+    both = ", left and right" if (axle, side, part) in pairs else ""
+    return f"{name}{both} ({100.0 * paths_of[axle, side, part]:.0f} %)"
+
+
+def path_words(name: str) -> str:
+    """Return an attachment in words: "front left suspension mount"."""
+    part, _, corner = name.rpartition("_")
+    corner_words = next((words for words, short in CORNERS.items() if short == corner), None) if part else None
+    if corner_words is None:
+        return WORDS.get(name, point_words(name))
+    return f"{corner_words.replace('_', ' ')} {WORDS.get(part, point_words(part))}"

@@ -1,0 +1,127 @@
+"""Words in the names of measured channels: wheel, axis, and the model channel that a name suggests."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Collection, Sequence
+
+from vehicle.signals.records.channel import Channel
+
+FRONT = ("front", "f", "vorn", "vorne", "v", "va")
+REAR = ("rear", "r", "back", "hinten", "hinter", "h", "ha")
+RIGHT = ("right", "r", "rechts", "re")
+LEFT = ("left", "l", "links", "li")
+"""Words for the ends and the sides of a car."""
+
+PAIRS = {
+    "fr": "fr",
+    "fl": "fl",
+    "rr": "rr",
+    "rl": "rl",
+    "vr": "fr",
+    "vl": "fl",
+    "hr": "rr",
+    "hl": "rl",
+    "rf": "fr",
+    "lf": "fl",
+    "lr": "rl",
+}
+"""Two letters for a wheel, in English and German, the side first or last."""
+
+AXES = {
+    "x": ("x", "longitudinal", "long", "fore", "laengs", "längs"),
+    "y": ("y", "lateral", "lat", "quer"),
+    "z": ("z", "vertical", "vert", "vertikal", "hoch", "heave"),
+}
+"""Words for the axes."""
+
+SEAT = {"seat", "sitz", "sitzschiene"}
+RAIL = {"rail", "schiene", "sitzschiene"}
+KNUCKLE = {"knuckle", "upright", "hub", "wheel", "spindle", "radträger", "radtraeger", "rad", "nabe", "achsschenkel"}
+ENGINE = {"engine", "motor", "powertrain"}
+SPRING = {"feder", "federweg", "spring", "damper", "dämpfer", "daempfer", "suspension", "travel", "einfederung"}
+"""Words for the places of the model channels; displacements of springs and dampers are no plates."""
+
+
+def words_of(name: str) -> list[str]:
+    """Return the words of a channel name in small letters: split at signs, digits and capitals.
+
+    Args:
+        name: as in "Shaker_FR", "accSeatZ", "Feder vorn links".
+    """
+    parts = re.findall(r"[A-ZÄÖÜ]?[a-zäöüß]+|[A-ZÄÖÜ]+(?![a-zäöüß])", name)
+    return [part.lower() for part in parts]
+
+
+def wheel_of(name: str) -> str:
+    """Return the wheel in the name of a channel; empty if there is none.
+
+    Args:
+        name: as "FR", "VL", "rear left", "hinten rechts", "LeftFront".
+    """
+    parts = words_of(name)
+    pair = next((PAIRS[word] for word in parts if word in PAIRS), "")
+    if pair:
+        return pair
+    end = next((letter for letter, names in (("f", FRONT), ("r", REAR)) if _any(parts, names)), "")
+    side = next((letter for letter, names in (("r", RIGHT), ("l", LEFT)) if _any(parts, names)), "")
+    return end + side if end and side else ""
+
+
+def _any(parts: Sequence[str], names: Sequence[str]) -> bool:
+    """Return True if a word of more than one letter is among the names."""
+    return any(word in names for word in parts if len(word) > 1)
+
+
+def axis_of(channel: Channel) -> str:
+    """Return the axis of a channel, from its direction or its name; empty if it has none.
+
+    Args:
+        channel: of a measurement.
+    """
+    if channel.direction:
+        return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
+    parts = words_of(channel.name)
+    return next((axis for axis, names in AXES.items() if any(word in names for word in parts)), "")
+
+
+def suggested_channels(channels: Sequence[Channel], model_channels: Collection[str] | None = None) -> dict[str, str]:
+    """Return the model channels that names and units of measured channels suggest, each with name or number.
+
+    A suggestion for the user, never a choice: "Stempel VL" in mm suggests plate_fl_displacement, "Hub RL z" in g
+    knuckle_rl_acc_z.
+
+    Args:
+        channels: channels of a measurement.
+        model_channels: names of the model; by default those of a car with four wheels.
+    """
+    names = [channel.name for channel in channels]
+    suggested: dict[str, str] = {}
+    for number, channel in enumerate(channels, 1):
+        model = _suggested(channel)
+        if not model or model in suggested or (model_channels is not None and model not in model_channels):
+            continue
+        plain = names.count(channel.name) == 1 and not channel.name.isdecimal() and not set(channel.name) & set("*?[=")
+        suggested[model] = channel.name if plain and channel.name else str(number)
+    return suggested
+
+
+def map_options(suggested: dict[str, str]) -> str:
+    """Return the options `--map` of the result of `suggested_channels`, as typed."""
+    return " ".join(f"--map {shlex.quote(f'{model}={name}')}" for model, name in suggested.items())
+
+
+def _suggested(channel: Channel) -> str:
+    """Return the model channel that a name and a unit suggest; empty if none."""
+    parts = set(words_of(f"{channel.name} {channel.place}"))
+    wheel, axis = wheel_of(channel.name), axis_of(channel)
+    if channel.quantity == "displacement":
+        return f"plate_{wheel}_displacement" if wheel and not parts & SPRING else ""
+    if channel.quantity != "acceleration" or not axis:
+        return ""
+    if parts & SEAT:
+        return f"seat_rail_acc_{axis}" if parts & RAIL else f"seat_acc_{axis}"
+    if parts & ENGINE:
+        return f"engine_acc_{axis}"
+    return f"knuckle_{wheel}_acc_{axis}" if wheel and parts & KNUCKLE else ""
