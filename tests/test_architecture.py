@@ -47,7 +47,7 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
-    "comparison": {"analysis", "car", "linear", "notebook", "records", "rendering", "threads"},
+    "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
@@ -56,7 +56,7 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
-    | {"reduced", "rendering", "simulation", "threads"},
+    | {"reduced", "rendering", "report", "simulation", "threads", "version"},
     "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
     | {"report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},

@@ -13,13 +13,13 @@ from vehicle import (
     DataError,
     Road,
     Signal,
-    compare_run,
+    compare,
     evaluate_comfort,
-    optimise_car,
+    optimise,
     replicate_drive,
-    run_sweep,
     save_run,
-    tune_car,
+    sweep,
+    tune,
     write_report,
 )
 from vehicle.signals.records.text_format import write_table
@@ -83,7 +83,7 @@ def test_a_sweep_runs_the_car_that_it_is_given(sedan):
     assert plan.skip == 1.0 and plan.cases[0].vehicle == file_of(sedan)
     changed = Car(stiff.vehicle)  # from no file: workers could not load it
     with pytest.raises(ConfigurationError, match=r"loaded from a file; load the car with Car\.load"):
-        run_sweep(changed, {"front.damper.viscous": [1500]}, "low.csv")
+        sweep(changed, {"front.damper.viscous": [1500]}, "low.csv")
 
 
 def test_parameters_of_a_fit_start_at_the_car(focus):
@@ -93,9 +93,9 @@ def test_parameters_of_a_fit_start_at_the_car(focus):
     with pytest.raises(ConfigurationError, match=r"must be \(lower, upper\)"):
         ranges_of(focus.vehicle, {VISCOUS: (500.0,)})
     with pytest.raises(ConfigurationError, match=r"the nearest is front\.damper\.viscous"):
-        tune_car(focus, {"damper.vicsous": (1.0, 2.0)}, [])
+        tune(focus, {"damper.vicsous": (1.0, 2.0)}, [])
     with pytest.raises(ConfigurationError, match="targets: no measurement to fit to"):
-        tune_car(focus, {VISCOUS: (500.0, 5000.0)}, [])
+        tune(focus, {VISCOUS: (500.0, 5000.0)}, [])
 
 
 def test_gravity_in_a_record_is_refused_until_it_is_removed(record):
@@ -122,13 +122,13 @@ def test_wrong_arguments_are_refused(focus, record, tmp_path):
     vary = {VISCOUS: (800.0, 4000.0)}
     for call, message in (
         (lambda: focus.run("low.csv", skip=70.0), r"--skip 70 s: allowed is 0 s to less than low\.csv"),
-        (lambda: compare_run(tmp_path, record, drift=0.2), "--drift 200000: must be"),
-        (lambda: compare_run(tmp_path, record, bands=(9.0, 3.0)), "must be increasing edges"),
+        (lambda: compare(tmp_path, record, drift=0.2), "--drift 200000: must be"),
+        (lambda: compare(tmp_path, record, bands=(9.0, 3.0)), "must be increasing edges"),
         (lambda: write_report("nowhere", "report.html"), "nowhere: is no folder"),
         (lambda: write_report([tmp_path], "report.pdf"), r"this file is written as \.html"),
-        (lambda: optimise_car(focus, vary, "low.csv", ["unweighted"], cars=4), "--cars 4: must be at least 8"),
-        (lambda: optimise_car(focus, vary, "low.csv", ["unweighted"], samples=8), "only valid with tolerances"),
-        (lambda: optimise_car(focus, {VISCOUS: (1.0,)}, "low.csv", ["unweighted"]), r"must be \(lower, upper\)"),
+        (lambda: optimise(focus, vary, "low.csv", ["unweighted"], cars=4), "--cars 4: must be at least 8"),
+        (lambda: optimise(focus, vary, "low.csv", ["unweighted"], samples=8), "only valid with tolerances"),
+        (lambda: optimise(focus, {VISCOUS: (1.0,)}, "low.csv", ["unweighted"]), r"must be \(lower, upper\)"),
         (lambda: replicate_drive(focus, record, {"knuckle_fr_acc_z": "z"}, wheels=("fr", "fl")), "2 plates"),
         (lambda: replicate_drive(focus, record, ["knuckle_fr_acc_z"], gain=2.0), "--gain 2: must be above 0"),
     ):

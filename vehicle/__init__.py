@@ -1,12 +1,41 @@
 """A complete car on a shaker or a road, on MuJoCo.
 
-    from vehicle import Car, Road
+>>> from vehicle import Car, compare, read, road, sweep, tune
+>>> car = Car.load("focus_road", {"body.mass": 1300})
+>>> car
+Car(focus_road, wheels fr, fl, rr, rl, body.mass=1300)
+>>> parameter = car["front.damper.viscous"]
+>>> parameter.value, parameter.unit
+(2250.0, 'N s/m')
+>>> [found.path for found in car.search("front damper coulomb")]
+['front.damper.coulomb_friction']
+>>> softer = car.with_({"front.damper.viscous": 1800})
+>>> run = car.run("low.csv", engine="reduced")
+>>> run.frf("seat rail z").names
+('seat_rail_acc_z',)
+>>> axes = run.frf("seat rail z").plot()
+>>> axes = softer.run("low.csv", engine="reduced").frf("seat rail z").plot(ax=axes)
+>>> run.comfort()
+seat rail: unweighted ... m/s2 (2 to 50 Hz), weighted ... m/s2 (ISO 2631-1)
+>>> run.psd("seat rail z").plot().shape
+(3,)
+>>> run.save("low").name, run.report("low.html").name
+('low', 'low.html')
+>>> read("low")["seat_rail_acc_z"].unit
+'m/s2'
+>>> compare(softer.run("low.csv", engine="reduced"), "low/frf.csv").plot("compare_frf_seat_rail").shape
+(3, 3)
+>>> drive = car.run(road("C", 80, duration=4), engine="reduced")
+>>> drive
+Run(road_C_80, 4 s, reduced, Car(focus_road, ...))
+>>> table = sweep(car, {"front.damper.viscous": [1800, 2250]}, road("C", 80, duration=4), engine="reduced")
+>>> table.to_dataframe()["weighted [m/s2]"].shape
+(2,)
+>>> f"{table.column('weighted')[1]:.4f}" == f"{drive.comfort().weighted.overall:.4f}"
+True
 
-    car = Car.load("focus", {"damper.coulomb_friction": 93.75})
-    run = car.run("low.csv")
-
-Names are imported at their first use; `help(vehicle.run_sweep)` prints the documentation of a name. No function has the
-name of a module of `python -m vehicle.NAME`: the import of the module would replace the function.
+Names are imported at their first use; `help(vehicle.sweep)` prints the documentation of a name. The import of a module
+`vehicle.NAME` replaces a function of the same name, so the module of `vehicle/sweep.py` can be called.
 """
 
 from __future__ import annotations
@@ -25,8 +54,9 @@ if TYPE_CHECKING:
     from vehicle.runs.car.car import Car as Car
     from vehicle.runs.car.car_data import CarData as CarData
     from vehicle.runs.car.road import Road as Road
+    from vehicle.runs.car.road import road as road
     from vehicle.runs.car.run import Run as Run
-    from vehicle.runs.comparison.compared_run import compare_run as compare_run
+    from vehicle.runs.comparison.compared_run import compare as compare
     from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
     from vehicle.runs.fmu.fmu_file import write_fmu as write_fmu
@@ -39,18 +69,18 @@ if TYPE_CHECKING:
     from vehicle.signals.excitation.signal_file import write_signal as write_signal
     from vehicle.signals.records.choice import Choice as Choice
     from vehicle.signals.records.measured import read_measured as read_measured
-    from vehicle.signals.records.reader import read_record as read_record
+    from vehicle.signals.records.reader import read as read
     from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
-    from vehicle.studies.optimisation.car_search import optimise_car as optimise_car
+    from vehicle.studies.optimisation.car_search import optimise as optimise
     from vehicle.studies.optimisation.search_result import FoundCars as FoundCars
     from vehicle.studies.replication.drive_files import save_drive as save_drive
     from vehicle.studies.replication.drive_search import FoundDrive as FoundDrive
     from vehicle.studies.replication.drive_search import replicate_drive as replicate_drive
     from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
-    from vehicle.studies.sweeps.plan import run_sweep as run_sweep
+    from vehicle.studies.sweeps.plan import sweep as sweep
     from vehicle.studies.sweeps.sweep_table import SweepTable as SweepTable
-    from vehicle.studies.tuning.car_fit import tune_car as tune_car
+    from vehicle.studies.tuning.car_fit import tune as tune
     from vehicle.studies.tuning.fit_result import TuningResult as TuningResult
     from vehicle.studies.tuning.measured_targets import measured_histories as measured_histories
     from vehicle.studies.tuning.measured_targets import measured_responses as measured_responses
@@ -75,23 +105,24 @@ _MODULES = {
     "SweepTable": "vehicle.studies.sweeps.sweep_table",
     "TuningResult": "vehicle.studies.tuning.fit_result",
     "VehicleError": "vehicle.errors",
+    "compare": "vehicle.runs.comparison.compared_run",
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
-    "compare_run": "vehicle.runs.comparison.compared_run",
     "evaluate_comfort": "vehicle.signals.records.record_comfort",
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
-    "optimise_car": "vehicle.studies.optimisation.car_search",
+    "optimise": "vehicle.studies.optimisation.car_search",
+    "read": "vehicle.signals.records.reader",
     "read_measured": "vehicle.signals.records.measured",
-    "read_record": "vehicle.signals.records.reader",
     "read_signal": "vehicle.signals.excitation.signal_file",
     "replicate_drive": "vehicle.studies.replication.drive_search",
-    "run_sweep": "vehicle.studies.sweeps.plan",
+    "road": "vehicle.runs.car.road",
     "save_comparison": "vehicle.runs.output.comparison_files",
     "save_drive": "vehicle.studies.replication.drive_files",
     "save_run": "vehicle.runs.output.saved_run",
     "shipped_cars": "vehicle.model.parameters.shipped",
     "shipped_inputs": "vehicle.signals.excitation.input_files",
-    "tune_car": "vehicle.studies.tuning.car_fit",
+    "sweep": "vehicle.studies.sweeps.plan",
+    "tune": "vehicle.studies.tuning.car_fit",
     "write_fmu": "vehicle.runs.fmu.fmu_file",
     "write_report": "vehicle.runs.report.report_file",
     "write_signal": "vehicle.signals.excitation.signal_file",

@@ -172,7 +172,7 @@ def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
 def _cars(folder: Path, hydromount: str, brackets: str, changes: tuple[str, ...]) -> tuple[Car, ...]:
     """Return a car, and the cars at the ends of its comfort curves."""
     car = Car.load(vehicle_file(folder, hydromount, brackets), changes)
-    return car, *(car.varied([f"{PATHS[name]}={value!r}"]) for name, value in ENDS)
+    return car, *(car.with_([f"{PATHS[name]}={value!r}"]) for name, value in ENDS)
 
 
 def _march(

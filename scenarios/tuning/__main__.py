@@ -62,7 +62,7 @@ class Tuning:
 
     def build(self, values: Mapping[str, float]) -> Car:
         """Return the car with given values; not cached."""
-        return self.runs.car().varied(overrides_of(self.vehicle, values))
+        return self.runs.car().with_(overrides_of(self.vehicle, values))
 
     def fit(
         self,

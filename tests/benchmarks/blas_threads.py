@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from threadpoolctl import ThreadpoolController
 
-from vehicle import Car, Road, run_sweep
+from vehicle import Car, road, sweep
 from vehicle.threads import THREADS
 
 REPEATS = 5
@@ -30,7 +30,7 @@ Job = Callable[[], Iterable[npt.ArrayLike]]
 def jobs() -> dict[str, Job]:
     """Return name to job; a job returns arrays of results."""
     car = Car.load("focus_road")
-    road = Road("C", speed=80, duration=10)
+    source = road("C", 80, duration=10)
     run = car.run("low.csv", engine="reduced")
     channels = ["seat_rail_acc_z", "seat_rail_acc_x"]
     values = [1500.0 + 50.0 * number for number in range(8)]
@@ -40,20 +40,20 @@ def jobs() -> dict[str, Job]:
         return system.mass, system.damping, system.stiffness
 
     def variants() -> Iterable[npt.ArrayLike]:
-        varied = [car.varied({"front.damper.viscous": value}) for value in values]
+        varied = [car.with_({"front.damper.viscous": value}) for value in values]
         return [one.matrix_frf(channels, np.arange(1.0, 40.0), damper="sliding") for one in varied]
 
-    def sweep() -> Iterable[npt.ArrayLike]:
-        table = run_sweep(car, {"front.damper.viscous": values}, [road], engine="reduced")
+    def swept() -> Iterable[npt.ArrayLike]:
+        table = sweep(car, {"front.damper.viscous": values}, [source], engine="reduced")
         return [table.column(name) for name in table.units]
 
     return {
         "matrices of a new car": build,
         "modes": lambda: [mode.shape for mode in car.modes()],
         "FRFs of 8 variants from matrices": variants,
-        "reduced run, 10 s": lambda: car.run(road, engine="reduced").recording.channels.values(),
+        "reduced run, 10 s": lambda: car.run(source, engine="reduced").recording.channels.values(),
         "FRF of a run": lambda: [run.frf(channels).response],
-        "sweep of 8 cars": sweep,
+        "sweep of 8 cars": swept,
     }
 
 

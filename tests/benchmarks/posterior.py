@@ -85,7 +85,7 @@ def hidden_cells(car: Car, emulated: EmulatedCar, points: np.ndarray) -> np.ndar
     """Return the exact cells of cars at points, without noise."""
     paths = [parameter.path for parameter in emulated.parameters]
     cars = [
-        car.varied(overrides_of(car.vehicle, dict(zip(paths, row, strict=True))))
+        car.with_(overrides_of(car.vehicle, dict(zip(paths, row, strict=True))))
         for row in values_at(emulated.parameters, points)
     ]
     return evaluated_cars(cars, emulated.cells)[0]

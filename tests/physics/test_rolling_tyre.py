@@ -231,7 +231,7 @@ def test_engines_agree_on_a_road() -> None:
 def test_varied_speed_and_tyre_are_those_of_a_car_that_is_built() -> None:
     base = Car.load("sedan", ["driving.speed=20"])
     changes = ["driving.speed=30", "front.bushings.tyre.trail=0.01", "rear.bushings.tyre.cornering_stiffness=5e4"]
-    short, built = base.varied(changes), Car.load("sedan", ["driving.speed=20", *changes])
+    short, built = base.with_(changes), Car.load("sedan", ["driving.speed=20", *changes])
     assert short._from_terms is not None
     for name in ("stiffness", "damping", "input_damping", "branch_rows", "branch_drifts", "branch_effects"):
         varied, other = (getattr(car.matrices.system, name) for car in (short, built))

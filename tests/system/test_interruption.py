@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
+import time
 
+from vehicle.commands import command_line
 from vehicle.commands.command_line import INTERRUPTED, ProgressLine, run_command
 
 
@@ -36,3 +39,31 @@ def test_the_time_left_is_that_of_the_work_that_goes_on(monkeypatch, capsys):
     for fraction in (0.01, 0.11, 0.21):
         line(fraction)
     assert capsys.readouterr().err.splitlines() == ["work: 1 %", "work: 11 %, 276 s left", "work: 21 %, 245 s left"]
+
+
+class Terminal(io.StringIO):
+    """Standard error of a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_bar_moves_without_a_finished_part_until_the_command_ends(monkeypatch):
+    """A single case of a sweep may take minutes; the bar of a terminal still moves every two seconds."""
+    monkeypatch.setattr(command_line, "BEAT", 0.02)
+    terminal = Terminal()
+    monkeypatch.setattr("sys.stderr", terminal)
+
+    def job():
+        line = ProgressLine("work")
+        time.sleep(0.2)
+        line(0.1)
+        line(0.2)
+        time.sleep(0.2)
+
+    assert run_command(job) == 0
+    written = terminal.getvalue()
+    drawn = written.split("\r")
+    assert len(drawn) > 8 and "after 0 s" in drawn[1] and "s left" in drawn[-1] and " 20 %" in drawn[-1]
+    time.sleep(0.1)
+    assert terminal.getvalue() == written

@@ -6,6 +6,7 @@ import argparse
 import atexit
 import gc
 import io
+import math
 import os
 import signal
 import sys
@@ -83,6 +84,8 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         _say(f"{FAULT} ({type(error).__name__}: {error}); please report it with what --debug shows")
         return VehicleError.exit_code
     finally:
+        for line in tuple(_moving_lines):
+            line.stop()
         for number, handler in previous.items():
             signal.signal(number, handler)
     return 0
@@ -188,8 +191,11 @@ def _say(message: str) -> None:
 class ProgressLine:
     """Progress of a long computation: a bar on a terminal, a new line every half minute in a file.
 
+    The bar moves every second even if no part of the computation ends: the time left counts down, or without an
+    estimate the time so far counts up.
+
     Args:
-        what: name of the computation.
+        work: name of the computation.
         enabled: False prints nothing.
     """
 
@@ -200,6 +206,11 @@ class ProgressLine:
         self.started = time.monotonic()
         self.last = self.started - (MOVING_EVERY if self.moving else 0.0)
         self.first: tuple[float, float] | None = None
+        self.fraction, self.end = 0.0, math.nan  # expected time of the end
+        self._ended = threading.Event()
+        if enabled and self.moving:
+            _moving_lines.add(self)
+            threading.Thread(target=self._beat, daemon=True).start()
 
     def __call__(self, fraction: float) -> None:
         """Print a finished fraction [-]; raise KeyboardInterrupt after a lost interruption."""
@@ -208,20 +219,50 @@ class ProgressLine:
         now = time.monotonic()
         if self.first is None:
             self.first = (now, fraction)  # the time left is estimated without compiling and reading
+        begun, done = self.first
+        if fraction > done:
+            self.end = now + (now - begun) * (1.0 - fraction) / (fraction - done)
+        self.fraction = fraction
         due = now - self.last >= (MOVING_EVERY if self.moving else LINE_EVERY) or (self.moving and fraction >= 1.0)
-        if not (self.enabled and due):
+        if not (self.enabled and due) or self._ended.is_set():
             return
         self.last = now
-        begun, done = self.first
-        left = f"{(now - begun) * (1.0 - fraction) / (fraction - done):.0f} s left" if fraction > done else ""
         if self.moving:
-            bar = "#" * round(30 * fraction)
-            end = "\n" if fraction >= 1.0 else ""
-            sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * fraction:3.0f} %  {left:>11} {end}")
+            self._draw(now)
         else:
-            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{', ' * bool(left)}{left}\n")
+            left = "" if math.isnan(self.end) else f", {self.end - now:.0f} s left"
+            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{left}\n")
+            sys.stderr.flush()
+        if fraction >= 1.0:
+            self.stop()
+
+    def stop(self) -> None:
+        """End the movement of the bar, because the computation has ended or failed."""
+        self._ended.set()
+        _moving_lines.discard(self)
+
+    def _beat(self) -> None:
+        """Draw the bar every second until the computation ends."""
+        while not self._ended.wait(BEAT):
+            now = time.monotonic()
+            if now - self.last >= BEAT:
+                self._draw(now)
+
+    def _draw(self, now: float) -> None:
+        """Draw the bar with the time left [s], or without an estimate with the time so far."""
+        bar = "#" * round(30 * self.fraction)
+        newline = "\n" if self.fraction >= 1.0 else ""
+        elapsed = f"after {now - self.started:.0f} s"
+        remark = elapsed if math.isnan(self.end) else f"{max(self.end - now, 0.0):.0f} s left"
+        sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %  {remark:>12} {newline}")
         sys.stderr.flush()
 
 
+_moving_lines: set[ProgressLine] = set()
+"""Bars that move on a terminal; the end of a command stops them."""
+
 MOVING_EVERY, LINE_EVERY = 0.2, 30.0
 """Minimum time between two outputs on a terminal and in a file [s]."""
+
+BEAT = 1.0
+"""Time after which the bar of a terminal moves without a finished part [s]."""

@@ -247,7 +247,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
         options: parsed options of the command; `measured` is the file.
         output: folder of the results.
     """
-    from vehicle.runs.comparison.compared_run import compare_run
+    from vehicle.runs.comparison.compared_run import compare
     from vehicle.runs.comparison.frf_comparison import edges_of
     from vehicle.runs.output.comparison_files import save_comparison
     from vehicle.signals.records.reader import read_record
@@ -270,7 +270,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
             refuse_idle(options, RESPONSES)
         if measured.record is None:
             refuse_idle(options, RECORDS)
-        comparison = compare_run(run, measured, delay=delay, drift=drift, window=options.window, bands=edges)
+        comparison = compare(run, measured, delay=delay, drift=drift, window=options.window, bands=edges)
         save_comparison(comparison, output, force=options.force, figures=options.figures, protect=(options.measured,))
         summary, said = comparison.summary(), comparison.text()
     return summary, said

@@ -7,6 +7,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from vehicle.errors import ConfigurationError
+
+REPORT = "report.html"
+"""Default name of a report."""
+
 
 def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tuple[Path, ...] = ()) -> Path:
     """Choose the folder of the results.
@@ -115,3 +120,25 @@ def _said(options: argparse.Namespace, default: Path, chosen: Path) -> Path:
     if chosen != default and not getattr(options, "quiet", False):
         print(f"notice: {default} exists; writing {chosen} (--force replaces {default})", file=sys.stderr)
     return chosen
+
+
+def report_path(options: argparse.Namespace, output: Path) -> Path:
+    """Return the path of the report; a plain name is in the output folder."""
+    name = Path(options.report or REPORT)
+    if name.suffix != ".html":
+        raise ConfigurationError(f"--report {name}: a report is written as .html; give FILE.html")
+    return path_beside(name, "--report", output, options)
+
+
+def path_beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
+    """Check a path: a plain name in the output folder, or a free path outside this folder."""
+    from vehicle.runs.output.free_names import named_file
+
+    if name.parent == Path():
+        return name
+    folder = output.resolve()
+    if name.resolve().parent == folder:
+        return Path(name.name)
+    if folder in name.resolve().parents:
+        raise ConfigurationError(f"{option} {name}: is below the output folder; set a plain name: {name.name}")
+    return named_file(options.held, name, option, force=options.force)

@@ -6,12 +6,10 @@ import argparse
 from pathlib import Path
 
 from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import output_file_of
+from vehicle.commands.destination import REPORT, output_file_of
 from vehicle.commands.options import command_parser, message_options, output_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
-
-NAME = "report.html"
 
 
 def parser() -> Parser:
@@ -27,7 +25,7 @@ def parser() -> Parser:
     parser.add_argument("--author", default="", metavar="NAME", help="author in the head of the report")
     parser.add_argument("--project", default="", metavar="NAME", help="project in the head of the report")
     output_options(
-        parser, None, default=f"{NAME} in the folder of a single run, and here for several,", metavar="FILE.html"
+        parser, None, default=f"{REPORT} in the folder of a single run, and here for several,", metavar="FILE.html"
     )
     message_options(parser, quiet=True)
     return parser
@@ -39,7 +37,7 @@ def _job(options: argparse.Namespace) -> None:
     missing = next((run for run in options.runs if not run.is_dir()), None)
     if missing is not None:
         raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
-    default = options.runs[0] / NAME if len(options.runs) == 1 else Path(NAME)
+    default = options.runs[0] / REPORT if len(options.runs) == 1 else Path(REPORT)
     path = output_file_of(options, default, ending=".html")
     write_report(
         options.runs,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.compare import measured_beside, measured_options
-from vehicle.commands.destination import output_folder_of
+from vehicle.commands.destination import output_folder_of, path_beside, report_path
 from vehicle.commands.input_options import (
     drives_on_road,
     record_choice,
@@ -143,7 +143,7 @@ def _job(options: argparse.Namespace) -> None:
 
         video_name = _film_path(options, stem, output)
         require_film()
-    report_name = None if options.report is None else _report_path(options, output)
+    report_name = None if options.report is None else report_path(options, output)
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
 
@@ -264,31 +264,7 @@ def _engine(options: argparse.Namespace) -> tuple[str, str]:
 
 def _film_path(options: argparse.Namespace, stem: str, output: Path) -> Path:
     """Return the path of the film; a plain name is in the folder of the run."""
-    return _beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
-
-
-def _report_path(options: argparse.Namespace, output: Path) -> Path:
-    """Return the path of the report; a plain name is in the folder of the run."""
-    from vehicle.commands.report import NAME
-
-    name = Path(options.report or NAME)
-    if name.suffix != ".html":
-        raise ConfigurationError(f"--report {name}: a report is written as .html; give FILE.html")
-    return _beside(name, "--report", output, options)
-
-
-def _beside(name: Path, option: str, output: Path, options: argparse.Namespace) -> Path:
-    """Check a path: a plain name in the folder of the run, or a free path outside this folder."""
-    from vehicle.runs.output.free_names import named_file
-
-    if name.parent == Path():
-        return name
-    folder = output.resolve()
-    if name.resolve().parent == folder:
-        return Path(name.name)
-    if folder in name.resolve().parents:
-        raise ConfigurationError(f"{option} {name}: is below the folder of the run; set a plain name: {name.name}")
-    return named_file(options.held, name, option, force=options.force)
+    return path_beside(film_name(options.video, f"{stem}.mp4"), "--video", output, options)
 
 
 main = command(parser, _job)

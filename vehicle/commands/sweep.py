@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.destination import prepared_folder_of, report_path
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
@@ -58,6 +59,14 @@ def parser() -> Parser:
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
+    parser.add_argument(
+        "--report",
+        nargs="?",
+        const="",
+        metavar="FILE.html",
+        help="write a report too: best and base car, picture, tables, how to repeat the sweep; report.html in the "
+        "folder of the sweep by default",
+    )
     message_options(parser, quiet=True)
     return parser
 
@@ -66,12 +75,13 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.runs.car import Car
-    from vehicle.runs.output.folder import write_whole
+    from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.executors import executor_factory
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.store import ROWS
+    from vehicle.studies.sweeps.sweep_page import sweep_page
     from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
     from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
     from vehicle.studies.sweeps.sweep_table import read_variations
@@ -83,6 +93,7 @@ def _job(options: argparse.Namespace) -> None:
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=ROWS)
+    report = None if options.report is None else report_path(options, folder)
     for text in () if options.quiet else plan.notes:
         print(f"note        {text}")
     try:
@@ -99,12 +110,17 @@ def _job(options: argparse.Namespace) -> None:
         raise
     cars = ranked_cars(table)
     drawn = cars is not None and can_be_drawn(cars)
+    caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
+    units = {} if cars is None else {path: str(car.vehicle.quantity_of(path).get("unit", "")) for path in cars.paths}
     if cars is not None and drawn:
-        caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
-        units = {path: str(car.vehicle.quantity_of(path).get("unit", "")) for path in cars.paths}
         write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, units, caption))
+    if report is not None:
+        command = f"python -m vehicle sweep {shlex.join(options.words)}"
+        page = sweep_page(table, car.vehicle.name, units=units, caption=caption, command=command, notes=plan.notes)
+        write_text(folder / report if report.parent == Path() else report, page)
     if not options.quiet:
-        more = f"{PICTURE}, " if drawn else ""
+        more = "" if report is None else f"{report}, "
+        more += f"{PICTURE}, " if drawn else ""
         more += f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
         print(
             f"{folder}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "

@@ -7,6 +7,8 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
+from matplotlib.axes import Axes
 
 from vehicle.drawing.notebook.picture import HEIGHT, WIDTH, line_drawing
 from vehicle.errors import ConfigurationError, MissingPartError
@@ -40,12 +42,37 @@ def test_each_has_a_table_and_a_drawing(run, response):
     assert f"{run.comfort().unweighted.overall:.4g} m/s²" in run._repr_html_()
 
 
-def test_plots_are_pictures(run, response, tmp_path):
-    for one in (run, response):
-        shown = one.plot()
-        assert shown._repr_png_().startswith(b"\x89PNG")
-    shown.save(tmp_path / "frf.png")
-    assert (tmp_path / "frf.png").read_bytes() == shown.png
+def test_every_plot_returns_axes_and_draws_on_those_of_the_user(run, response, tmp_path):
+    pyplot.switch_backend("agg")
+    spectra = run.psd(["seat rail z", "engine z"])
+    for one, count in ((run, 4), (response, 3), (spectra, 6)):
+        axes = one.plot()
+        assert axes.size == count and all(isinstance(axis, Axes) and axis.has_data() for axis in axes.ravel())
+        axes.ravel()[0].set_title("edited")
+        axes.ravel()[0].figure.savefig(tmp_path / "figure.png")
+    for one, drawn in ((response, 2), (spectra, 3)):
+        _, axis = pyplot.subplots()
+        assert one.plot(ax=axis) is axis and len(axis.lines) == drawn
+        assert one.plot(ax=axis) is axis and len(axis.lines) == 2 * drawn
+        colours = [line.get_color() + str(line.get_linestyle()) for line in axis.lines]
+        assert len(set(colours)) == min(len(colours), 5)  # a second plot goes on with the colours
+    _, axis = pyplot.subplots()
+    assert run.plot("seat rail z", ax=axis) is axis
+    np.testing.assert_array_equal(axis.lines[0].get_ydata(), run["seat_rail_acc_z"])
+    with pytest.raises(ConfigurationError, match="ax: found 2 axes, must be 1"):
+        run.plot("seat rail z", ax=[axis, axis])
+    pyplot.close("all")
+
+
+def test_words_name_a_channel(run):
+    np.testing.assert_array_equal(run["seat rail vertical"], run["seat_rail_acc_z"])
+    np.testing.assert_array_equal(run["damper velocity front left"], run["damper_fl_velocity"])
+    assert run.frf("seat rail z").names == ("seat_rail_acc_z",)
+    assert run.psd("knuckle fr z").channels[0].name == "knuckle_fr_acc_z"
+    with pytest.raises(ConfigurationError, match=r"channel 'steering wheel z': no channel has these words; choose"):
+        run.frf("steering wheel z")
+    with pytest.raises(ConfigurationError, match=r"'damper velocity': several channels have .* choose from damper_f"):
+        run["damper velocity"]
 
 
 def test_frfs_of_a_run_are_frfs(run, response):
@@ -92,7 +119,6 @@ def test_a_drawn_line_keeps_its_extremes():
 def test_spectra_and_both_comfort_values(run):
     spectra = run.psd(["seat_rail_acc_z", "engine_acc_z"])
     assert repr(spectra).startswith("Spectra of seat_rail_acc_z, seat_rail_acc_z Wk, engine_acc_z: ")
-    assert spectra.plot()._repr_png_().startswith(b"\x89PNG")
     assert list(spectra.to_dataframe().columns.levels[0]) == ["engine_acc_z", "seat_rail_acc_z", "seat_rail_acc_z Wk"]
     assert ElementTree.fromstring(spectra._repr_html_()).find(".//table") is not None
     comfort = run.comfort()

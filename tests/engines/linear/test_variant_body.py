@@ -34,7 +34,7 @@ def test_the_mass_alone_is_a_file_with_that_tensor(sedan):
     table = dict(sedan.vehicle.table)
     moments = {name: factor * value for name, value in table["body"]["inertia"].items()}
     separate = Car(vehicle_of({**table, "body": {**table["body"], "mass": 1300.0, "inertia": moments}}))
-    varied = sedan.varied(["body.mass=1300"])
+    varied = sedan.with_(["body.mass=1300"])
     for expected, mode in zip(separate.modes("sliding"), varied.modes("sliding"), strict=True):
         assert mode.frequency == pytest.approx(expected.frequency, rel=1e-9)
     for wheel, load in separate.static.tyre_load.items():
@@ -50,13 +50,13 @@ def test_a_flexible_body_varied_is_the_body_built():
     """
     car, changes = Car.load("focus"), ["body.mass=829.26"]
     require_same(car, "focus", (), changes)
-    pairs = zip(car.varied(changes).modes(), Car.load("focus", changes).modes(), strict=True)
+    pairs = zip(car.with_(changes).modes(), Car.load("focus", changes).modes(), strict=True)
     assert max(abs(mode.frequency / other.frequency - 1.0) for mode, other in pairs) < 1e-7
     # Its modal coordinates are mass-normalised again.
-    matrices = car.varied(changes).matrices
+    matrices = car.with_(changes).matrices
     np.testing.assert_allclose(matrices.system.mass[matrices.modal, matrices.modal], np.eye(9), atol=1e-12)
 
 
 def test_another_elastic_body_is_built(car):
     for changes in (["body.cog.z=1.0"], ["body.inertia.iyy=5300"], ["body.mass=829.26", "body.inertia.izz=4700"]):
-        assert car.varied(changes)._from_terms is None, changes
+        assert car.with_(changes)._from_terms is None, changes

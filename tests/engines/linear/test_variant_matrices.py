@@ -57,7 +57,7 @@ def same(varied, built, path):
 
 
 def require_same(reference, file, fixed, changes):
-    varied, built = reference.varied(changes), Car.load(file, (*fixed, *changes))
+    varied, built = reference.with_(changes), Car.load(file, (*fixed, *changes))
     assert varied.vehicle == built.vehicle and varied.vehicle.composition == built.vehicle.composition
     assert varied.vehicle.body == built.vehicle.body and varied.vehicle.solver == built.vehicle.solver
     assert (varied.overrides, varied.origin) == (built.overrides, built.origin)
@@ -89,7 +89,7 @@ def test_every_number_of_a_vehicle_file_moves_what_it_moves_in_a_built_car(file,
         factor = 1.04 if "inertia" in path else 1.01 + 0.001 * (index % 37)
         change = f"{path}={value * factor if value else 1e-3!r}"
         try:
-            short = reference.varied([change])._from_terms is not None
+            short = reference.with_([change])._from_terms is not None
         except VehicleError:
             # A moment alone may be refused; those of a part together are moved below.
             short = "parts" in path and "inertia" in path
@@ -132,8 +132,8 @@ def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
     spring = reference._terms.rows.layout.springs.rows[0]
     at = -float(reference.static.preload[spring]) / RATE
     # The two sides differ so little that the spring carries the same force, and is at rest on the breakpoint.
-    assert reference.varied(table(at + 0.01, RATE + 1e-3))._from_terms is not None
-    assert reference.varied(table(at, RATE + 1e-3))._from_terms is None
+    assert reference.with_(table(at + 0.01, RATE + 1e-3))._from_terms is not None
+    assert reference.with_(table(at, RATE + 1e-3))._from_terms is None
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_a_spring_on_a_corner_of_its_table_has_its_car_built():
     ],
 )
 def test_another_kind_of_element_or_another_place_is_built(car, changes):
-    assert car.varied(changes)._from_terms is None
+    assert car.with_(changes)._from_terms is None
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_another_kind_of_element_or_another_place_is_built(car, changes):
 )
 def test_what_is_wrong_is_said_as_of_a_built_car(car, changes):
     varied, built = (
-        outcome(lambda make=make: make(changes)) for make in (car.varied, lambda more: Car.load(None, more))
+        outcome(lambda make=make: make(changes)) for make in (car.with_, lambda more: Car.load(None, more))
     )
     if isinstance(built, str):
         assert varied == built
@@ -181,15 +181,15 @@ def test_what_is_wrong_is_said_as_of_a_built_car(car, changes):
 
 def test_a_star_means_what_it_means_to_a_built_car():
     fixed, stars = ["front.damper.gas_force=50.0"], ["*.damper.gas_force=100.0", "*.damper.viscous=2000.0"]
-    varied = Car.load("focus_road", fixed).varied(stars).vehicle
+    varied = Car.load("focus_road", fixed).with_(stars).vehicle
     assert varied == Car.load("focus_road", [*fixed, *stars]).vehicle
     # The rear one has it too now, which had none.
     assert [damper.law.gas_force for damper in varied.composition.dampers] == [100.0] * 4
 
 
 def test_a_varied_car_can_be_varied_and_has_a_model_where_one_is_asked_for(car):
-    once = car.varied(["damper.viscous=2000.0"])
-    twice = once.varied(["main_spring.stiffness=2.2e4"])
+    once = car.with_(["damper.viscous=2000.0"])
+    twice = once.with_(["main_spring.stiffness=2.2e4"])
     assert twice.overrides == ("damper.viscous=2000.0", "main_spring.stiffness=2.2e4")
     same(twice.static.tyre_load, Car.load(None, twice.overrides).model.static.tyre_load, "tyre load")
     assert twice.model.static.tyre_load == pytest.approx(twice.static.tyre_load, rel=1e-9)

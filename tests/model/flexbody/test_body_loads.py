@@ -105,14 +105,14 @@ def test_a_load_of_nothing_is_none_and_grows_by_the_short_way():
     override = f"load.trunk.at={list(TRUNK)}"
     bare, empty = Car.load("sedan"), Car.load("sedan", ["load.trunk.mass=0", override])
     assert [mode.frequency for mode in empty.modes()] == [mode.frequency for mode in bare.modes()]
-    full, built = empty.varied(["load.trunk.mass=80"]), Car.load("sedan", ["load.trunk.mass=80", override])
+    full, built = empty.with_(["load.trunk.mass=80"]), Car.load("sedan", ["load.trunk.mass=80", override])
     assert full.vehicle == built.vehicle and full._from_terms is not None
     for actual, expected in zip(full.modes(), built.modes(), strict=True):
         assert actual.frequency == pytest.approx(expected.frequency, rel=1e-9)
     # On a wheel carrier too, and on a flexible body the car is built.
     hub = ["load.hub.mass=1", "load.hub.at=wheel_center_fr", "load.hub.on=knuckle_fr"]
-    assert Car.load("focus", hub).varied(["load.hub.mass=2"])._from_terms is not None
-    assert Car.load("focus", ["load.trunk.mass=0", override]).varied(["load.trunk.mass=80"])._from_terms is None
+    assert Car.load("focus", hub).with_(["load.hub.mass=2"])._from_terms is not None
+    assert Car.load("focus", ["load.trunk.mass=0", override]).with_(["load.trunk.mass=80"])._from_terms is None
 
 
 @pytest.mark.parametrize(

@@ -54,9 +54,9 @@ CHANGES = [
 @pytest.mark.parametrize(("name", "changes"), CHANGES)
 def test_all_ways_to_a_value_make_the_same_car(name, changes):
     built = Car.load(name, changes)
-    assert Car.load(name).varied(changes).vehicle == built.vehicle
+    assert Car.load(name).with_(changes).vehicle == built.vehicle
     *first, last = changes
-    body = Car.load(name, first).varied([last]).vehicle.body
+    body = Car.load(name, first).with_([last]).vehicle.body
     assert body.mass == built.vehicle.body.mass and body.model_mass == built.vehicle.body.model_mass
     np.testing.assert_allclose(cog_inertia(body), cog_inertia(built.vehicle.body), rtol=1e-12, atol=1e-9)
     # A run repeats from the file that it writes.
@@ -73,7 +73,7 @@ def test_radii_of_gyration_stay_and_given_moments_win():
         assert getattr(varied.inertia, name) / 1300.0 == pytest.approx(getattr(own.inertia, name) / own.mass, rel=1e-14)
     # In whatever order, and where one was given before.
     assert load_vehicle(Path("sedan"), ["body.inertia.ixx=600", "body.mass=1300"]).body == varied
-    assert Car.load("sedan", ["body.inertia.ixx=600"]).varied(["body.mass=1300"]).vehicle.body == varied
+    assert Car.load("sedan", ["body.inertia.ixx=600"]).with_(["body.mass=1300"]).vehicle.body == varied
 
 
 def test_modes_of_the_body_go_with_the_root_of_the_mass():

@@ -43,7 +43,7 @@ def on_road(name: str, level: str, overrides: tuple[str, ...] = ()) -> tuple[Car
     """Return a car on a road or an obstacle with rolling tyres, and the road under its wheels."""
     car = Car.load(name, overrides)
     ride = Road(level, speed=80, duration=SECONDS + 0.1).under(car.vehicle, car.overrides)
-    return car.varied(ride.overrides), ride.signal()
+    return car.with_(ride.overrides), ride.signal()
 
 
 def on_plates(level: str, overrides: tuple[str, ...] = ()) -> tuple[Car, Signal]:

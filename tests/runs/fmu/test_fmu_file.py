@@ -51,7 +51,7 @@ def test_fmpy_finds_nothing_wrong(focus_fmu):
 def test_equal_cars_give_equal_bytes(tmp_path: Path, car: Car):
     first, second = (write_fmu(car, tmp_path / name).path.read_bytes() for name in ("a.fmu", "b.fmu"))
     assert first == second
-    stiffer = write_fmu(car.varied(["front.damper.viscous=800"]), tmp_path / "c.fmu").path
+    stiffer = write_fmu(car.with_(["front.damper.viscous=800"]), tmp_path / "c.fmu").path
     tokens = [zipfile.ZipFile(path).read("resources/car.bin")[8:48] for path in (tmp_path / "a.fmu", stiffer)]
     assert tokens[0] != tokens[1]
 

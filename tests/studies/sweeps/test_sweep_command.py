@@ -122,7 +122,10 @@ def test_failed_rows_are_no_success(signal, tmp_path, capsys):
     printed = capsys.readouterr()
     assert "1 of 2 runs failed; the table is written" in printed.err and "2 runs, 1 failed" in printed.out
     assert [row["failed because"] != "" for row in table_of(tmp_path / "out")] == [True, False]
-    assert main([*arguments, "--output", str(tmp_path / "out"), "--resume", "--allow-failed"]) == 0
+    assert main([*arguments, "--output", str(tmp_path / "out"), "--resume", "--allow-failed", "--report"]) == 0
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "1 failed runs" in page and "damper.viscous=-1" in page and "python -m vehicle sweep --input" in page
+    assert "report.html" in capsys.readouterr().out
 
 
 def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):

@@ -2,10 +2,13 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 
+from vehicle.errors import ConfigurationError
 from vehicle.studies.sweeps.case import Case, SignalFile
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
@@ -22,7 +25,7 @@ def table_of(values, paths, inputs=("a.csv", "b.csv")):
     for number, row in enumerate(values):
         for place, name in enumerate(inputs):
             texts = tuple(f"{path}={value}" for path, value in zip(paths, row, strict=True))
-            cases.append(Case(source=SignalFile(path=name, wheel="fl"), overrides=texts))
+            cases.append(Case(source=SignalFile(path=Path(name), wheel="fl"), overrides=texts))
             weighted = number + 1.0 + 2.0 * place
             results.append(Result(values={"unweighted": 2.0 * weighted, "weighted": weighted}))
     return SweepTable(cases=cases, results=results, units=UNITS, made={})
@@ -37,7 +40,7 @@ def ranked(table):
 def test_cars_are_ranked_by_the_mean_over_the_inputs():
     table = table_of([("30", "1"), ("10", "1"), ("20", "1")], ["front.spring", "fixed"])
     cars = ranked(table)
-    assert cars.paths == ["front.spring"] and cars.inputs == 2 and cars.point == "seat rail"
+    assert cars.paths == ["front.spring"] and cars.inputs == 2 and cars.point == "at the seat rail"
     assert cars.order == [0, 1, 2] and cars.weighted.tolist() == [2.0, 3.0, 4.0]
     assert cars.change(2) == pytest.approx(100.0) and cars.unweighted[1] == 6.0
     lines = ranking_lines(cars)
@@ -75,3 +78,29 @@ def test_pictures(tmp_path, count):
 def test_texts_are_not_drawn():
     assert not can_be_drawn(ranked(table_of([("soft",), ("hard",)], ["law"])))
     assert not can_be_drawn(None)
+
+
+def test_the_report_names_best_and_base_with_the_numbers_of_the_table(tmp_path):
+    table = table_of([("30", "1"), ("10", "1"), ("20", "1")], ["front.spring", "fixed"])
+    falling = [replace(r, values={k: 40.0 - v for k, v in r.values.items()}) for r in table.results]
+    table = replace(table, results=falling)
+    page = table.report(tmp_path / "sweep.html").read_text(encoding="utf-8")
+    assert "Most comfortable of 3 cars: front.spring = 20: weighted 36 m/s², unweighted 32 m/s², -5.26 %" in page
+    assert "Base car, the first of the sweep: front.spring = 30: weighted 38 m/s², unweighted 36 m/s²." in page
+    assert "--set front.spring=20" in page and page.count("<svg") == 1 and ">b<" in page
+    with pytest.raises(ConfigurationError, match=r"sweep\.html"):
+        table.report(tmp_path / "sweep.html")
+    assert str(table).splitlines()[1].split() == ["20", "36", "-5.26", "%", "32"] and "\n" not in repr(table)
+
+
+def test_a_sweep_draws_on_the_axes_of_the_user():
+    pyplot.switch_backend("agg")
+    values = [("1", "1"), ("2", "3"), ("3", "2")]
+    _, axis = pyplot.subplots()
+    line = table_of([value[:1] for value in values], ["a"])
+    assert line.plot(ax=axis) is axis
+    np.testing.assert_array_equal(axis.lines[0].get_ydata(), [2.0, 3.0, 4.0])
+    assert table_of(values, ["a", "b"]).plot().get_xlabel() == "a"
+    with pytest.raises(ConfigurationError, match="needs two or more cars"):
+        table_of([("soft",), ("hard",)], ["law"]).plot()
+    pyplot.close("all")

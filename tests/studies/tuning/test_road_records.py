@@ -18,7 +18,7 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.channel import uniform_axis
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.table import Record
-from vehicle.studies.tuning.car_fit import tune_car
+from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels
 from vehicle.studies.tuning.record_target import RecordTarget
@@ -100,7 +100,7 @@ def test_heights_over_time_in_the_record_drive_the_same_road(folder):
     record = folder / "drive.mf4"
     choice = {"left": "Road left", "right": "Road right"}
     over_time = Road(record, speed="channel:Speed", choice=Choice(channels=choice))
-    hidden, errors = start.varied(HIDDEN), []
+    hidden, errors = start.with_(HIDDEN), []
     for road in (Road(folder / "profile.csv", speed=SPEED, duration=LENGTH), over_time):
         target = measured_histories(start, record, road, labels, stretch=(2.0, 5.0)).target
         assert isinstance(target, RecordTarget)
@@ -125,7 +125,7 @@ def test_classes_of_level_find_the_same_values(folder):
     assert isinstance(target, LevelTarget)
     assert len(target.rows) == 8 and target.data.channels[0].startswith("knuckle_fl_acc_z, plate_fl ")
     bounds = {"front.damper.coulomb_friction": (50.0, 250.0), "front.damper.viscous": (1e3, 5e3)}
-    result = tune_car(start, bounds, [entry])
+    result = tune(start, bounds, [entry])
     assert result.converged and not result.unidentified
     for path in bounds:
         validated(
@@ -135,8 +135,8 @@ def test_classes_of_level_find_the_same_values(folder):
         )  # fmt: skip
         assert result.standard_errors[path] < 0.05 * HIDDEN[path]
     # Friction acts most at the low level. Classes of a road differ without friction too: their spectra differ.
-    with_friction = np.abs(target.model_response(start.varied(HIDDEN))).reshape(2, 2, -1)
-    without = np.abs(target.model_response(start.varied({"*.damper.coulomb_friction": 0.0}))).reshape(2, 2, -1)
+    with_friction = np.abs(target.model_response(start.with_(HIDDEN))).reshape(2, 2, -1)
+    without = np.abs(target.model_response(start.with_({"*.damper.coulomb_friction": 0.0}))).reshape(2, 2, -1)
     effect = np.mean(np.abs(np.log(with_friction / without)), axis=(0, 2))
     assert effect[0] > 1.2 * effect[1] > 0.05
 

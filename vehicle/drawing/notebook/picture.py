@@ -1,12 +1,9 @@
-"""Pictures in a notebook, and small drawings next to a table."""
+"""Tables of a notebook with a small drawing on their right."""
 
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -15,36 +12,6 @@ Vector = npt.NDArray[np.float64]
 
 WIDTH, HEIGHT = 330, 110
 """Size of a small drawing [pixel]."""
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """Figure that a notebook displays if it is the last value of a cell."""
-
-    png: bytes
-    """content of the file"""
-
-    def _repr_png_(self) -> bytes:
-        return self.png
-
-    def __repr__(self) -> str:
-        return f"Picture({len(self.png) / 1024:.0f} kB)"
-
-    def save(self, path: Path | str) -> None:
-        """Write the figure as PNG."""
-        Path(path).write_bytes(self.png)
-
-
-def picture(plot: Callable[[Path], object]) -> Picture:
-    """Return the figure that a plot function of `rendering` writes.
-
-    Args:
-        plot: function that writes a PNG file at a given path.
-    """
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "figure.png"
-        plot(path)
-        return Picture(path.read_bytes())
 
 
 def card(title: str, rows: Mapping[str, str], drawing: str) -> str:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vehicle.drawing.notebook.frames import response_frame
-from vehicle.drawing.notebook.picture import Picture, card, line_drawing, picture
+from vehicle.drawing.notebook.picture import card, line_drawing
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import DataError
 from vehicle.signals.analysis.dependence import what_moves
@@ -51,14 +50,24 @@ class RunResponse(FrequencyResponse):
         label = f"{self.names[0]}, log magnitude over log frequency"
         return card("Frequency responses", rows, line_drawing(np.log10(self.frequency), level, label))
 
-    def plot(self) -> Picture:
-        """Plot magnitude, phase and coherence of all rows."""
-        from vehicle.drawing.rendering.response_plot import plot_response
+    def plot(self, ax: Any = None) -> Any:
+        """Plot magnitude, phase and coherence of all rows.
 
-        def draw(path: Path) -> None:
-            plot_response(path, self, self.names, f"Frequency responses to {self.plate}", self.estimator)
+        Args:
+            ax: axes of the magnitude alone, or three axes of magnitude, phase and coherence; a new figure by default.
 
-        return picture(draw)
+        Returns:
+            The axes: one, or an array of three.
+        """
+        from vehicle.drawing.rendering.open_axes import open_axes, plain
+        from vehicle.drawing.rendering.response_plot import draw_response
+
+        rows = 3 if ax is None else len(np.ravel(np.array(ax, dtype=object)))
+        look: dict[str, Any] = {"sharex": True, "height_ratios": (2.2, 1.0, 0.9)}
+        title = f"Frequency responses to {self.plate}"
+        axes = open_axes(ax, (8.0, 7.2), 3 if rows > 1 else 1, title=title, **look)
+        draw_response(axes, self, self.names)
+        return plain(axes)
 
     def to_dataframe(self) -> Any:
         """Return a pandas table; see `response_frame`."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
+import numpy as np
+
 from vehicle.drawing.notebook.frames import spectra_frame
-from vehicle.drawing.notebook.picture import Picture, card, line_drawing, picture
+from vehicle.drawing.notebook.picture import card, line_drawing
 from vehicle.signals.records.record_spectra import RecordSpectra
 
 
@@ -27,13 +29,29 @@ class RunSpectra(RecordSpectra):
         label = f"{shown.label}: cumulative RMS over frequency"
         return card("Spectra", rows, line_drawing(shown.frequency, shown.cumulative_rms, label))
 
-    def plot(self) -> Picture:
-        """Plot density, third octaves and cumulative RMS of up to four channels."""
-        from vehicle.drawing.rendering.spectra_plot import plot_spectra
+    def plot(self, ax: Any = None) -> Any:
+        """Plot density, third octaves and cumulative RMS of up to four channels, those of seat and seat rail first.
 
-        names = list(dict.fromkeys(spectrum.name for spectrum in self.channels))[:4]
-        runs, columns = {self.name: self.channels}, {name: name for name in names}
-        return picture(lambda path: plot_spectra(path, runs, columns, "", self.caption))
+        Args:
+            ax: axes of the densities of all channels, or an array of three axes for each channel; a new figure by
+                default.
+
+        Returns:
+            The axes: one; three of a channel; or an array of three rows with a column for each channel.
+        """
+        from vehicle.drawing.rendering.open_axes import open_axes, plain
+        from vehicle.drawing.rendering.spectra_plot import draw_densities, draw_spectra
+
+        channels = dict.fromkeys(spectrum.name for spectrum in self.channels)
+        names = sorted(channels, key=lambda name: not name.startswith("seat"))[:4]
+        if ax is not None and np.array(ax, dtype=object).size == 1:
+            axes = open_axes(ax, (8.0, 5.0))
+            draw_densities(axes[0, 0], self.channels)
+            return plain(axes)
+        look: dict[str, Any] = {"sharex": True, "sharey": "row", "height_ratios": (2.0, 1.3, 1.3)}
+        axes = open_axes(ax, (max(7.0, 1.6 + 3.8 * len(names)), 8.6), 3, len(names), **look)
+        draw_spectra(axes, {self.name: self.channels}, {name: name for name in names})
+        return plain(axes)
 
     def to_dataframe(self) -> Any:
         """Return a pandas table of density and cumulative RMS of each channel; see `spectra_frame`."""

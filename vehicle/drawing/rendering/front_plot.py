@@ -77,6 +77,20 @@ def plot_front(path: Path, picture: FrontPicture, caption: str) -> None:
             _bars(axes[1], picture)
 
 
+def draw_first(axis: Any, picture: FrontPicture) -> None:
+    """Draw the cars over the first two objectives, or the convergence of a single objective.
+
+    Args:
+        axis: the axes.
+        picture: data of the picture.
+    """
+    if len(picture.objectives) > 1:
+        _objectives(axis, picture, 0, 1)
+        axis.legend(**BELOW, ncols=3)
+    else:
+        _course(axis, picture)
+
+
 def _objectives(axis: Any, picture: FrontPicture, x: int, y: int) -> None:
     """Plot two objectives against each other."""
     axis.plot(*picture.tried[:, [x, y]].T, ".", color="#c9c9c9", markersize=3, zorder=1, label="cars tried")

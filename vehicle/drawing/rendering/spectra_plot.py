@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import cycle
+from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, LINES, PAGE_WIDTH, power_of_ten, saved_figure, wrapped
 from vehicle.signals.analysis.road_level import CLASS_WIDTH, CLASSES, REFERENCE, RoadLevel
@@ -52,34 +53,60 @@ def plot_spectra(
         axes = figure.subplots(
             3, len(channels), sharex=True, sharey="row", height_ratios=(2.0, 1.3, 1.3), squeeze=False
         )
-        largest = 0.0
-        for column, (channel, heading) in zip(axes.T, channels.items(), strict=True):
-            for (name, spectra), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
-                for spectrum in (spectrum for spectrum in spectra if spectrum.name == channel):
-                    label = f"{name}, weighted" if spectrum.weighting else name
-                    style = {"color": colour, "linestyle": line, **(WEIGHTED if spectrum.weighting else {})}
-                    bands = spectrum.third_octaves
-                    column[0].plot(spectrum.frequency, spectrum.density, **style)
-                    column[1].stairs(bands.rms, bands.edges, baseline=None, **style)
-                    column[2].plot(spectrum.frequency, spectrum.cumulative_rms, label=label, **style)
-                    largest = max(largest, float(spectrum.density.max()))
-            column[0].set_title(heading)
-            column[2].set_xlabel("frequency [Hz]")
-        axes[2, 0].legend(loc="upper left")
-        for row, label in zip(axes, ROWS, strict=True):
-            row[0].set_ylabel(label)
-        for axis in axes[0]:
-            axis.set(xscale="log", yscale="log", xlim=_limits(runs))
-        if largest > 0.0:
-            axes[0, 0].set_ylim(largest / DECADES, 2.0 * largest)
-        axes[0, 0].yaxis.set_major_formatter(power_of_ten)
-        for row in axes[1:]:
-            row[0].set_ylim(bottom=0.0)
-        for axis in axes[2]:
-            axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
-            axis.set_xticks([], minor=True)
-            axis.set_xlim(_limits(runs))
-        figure.align_ylabels(axes[:, 0])
+        draw_spectra(axes, runs, channels)
+
+
+def draw_spectra(
+    axes: npt.NDArray[Any], runs: Mapping[str, Sequence[ChannelSpectrum]], channels: Mapping[str, str]
+) -> None:
+    """Draw densities, third octaves and cumulative RMS of accelerations, a column for each channel.
+
+    Args:
+        axes: axes, (3, channels), with shared scales.
+        runs, channels: see `plot_spectra`.
+    """
+    largest = 0.0
+    for column, (channel, heading) in zip(axes.T, channels.items(), strict=True):
+        for (name, spectra), colour, line in zip(runs.items(), cycle(COLOURS), cycle(LINES), strict=False):
+            for spectrum in (spectrum for spectrum in spectra if spectrum.name == channel):
+                label = f"{name}, weighted" if spectrum.weighting else name
+                style = {"color": colour, "linestyle": line, **(WEIGHTED if spectrum.weighting else {})}
+                bands = spectrum.third_octaves
+                column[0].plot(spectrum.frequency, spectrum.density, **style)
+                column[1].stairs(bands.rms, bands.edges, baseline=None, **style)
+                column[2].plot(spectrum.frequency, spectrum.cumulative_rms, label=label, **style)
+                largest = max(largest, float(spectrum.density.max()))
+        column[0].set_title(heading)
+        column[2].set_xlabel("frequency [Hz]")
+    axes[2, 0].legend(loc="upper left")
+    for row, label in zip(axes, ROWS, strict=True):
+        row[0].set_ylabel(label)
+    for axis in axes[0]:
+        axis.set(xscale="log", yscale="log", xlim=_limits(runs))
+    if largest > 0.0:
+        axes[0, 0].set_ylim(largest / DECADES, 2.0 * largest)
+    axes[0, 0].yaxis.set_major_formatter(power_of_ten)
+    for row in axes[1:]:
+        row[0].set_ylim(bottom=0.0)
+    for axis in axes[2]:
+        axis.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+        axis.set_xticks([], minor=True)
+        axis.set_xlim(_limits(runs))
+    axes[0, 0].figure.align_ylabels(axes[:, 0])
+
+
+def draw_densities(axis: Any, spectra: Sequence[ChannelSpectrum]) -> None:
+    """Draw the densities of several channels on the same axes; curves that the axes already have stay.
+
+    Args:
+        axis: the axes.
+        spectra: spectra of the channels, weighted and not.
+    """
+    looks = cycle(zip(COLOURS, LINES, strict=True))
+    for spectrum, (colour, line) in zip(spectra, islice(looks, len(axis.lines), None), strict=False):
+        axis.plot(spectrum.frequency, spectrum.density, color=colour, linestyle=line, label=spectrum.label)
+    axis.set(xscale="log", yscale="log", xlabel="frequency [Hz]", ylabel=ROWS[0])
+    axis.legend()
 
 
 def _limits(runs: Mapping[str, Sequence[ChannelSpectrum]]) -> tuple[float, float]:

@@ -40,13 +40,22 @@ def plot_sweep(
     """
     size = (7.6, 5.0) if len(names) < 3 else (2.4 + 1.7 * len(names), 5.4)
     with saved_figure(path, size, title, caption) as figure:
-        axis: Any = figure.subplots()
-        if len(names) == 1:
-            _line(axis, names[0], parameters[:, 0], weighted, unweighted)
-        elif len(names) == 2:
-            _map(figure, axis, names, parameters, weighted)
-        else:
-            _parallel(figure, axis, names, parameters, weighted)
+        draw_sweep(figure.subplots(), names, parameters, weighted, unweighted)
+
+
+def draw_sweep(axis: Any, names: Sequence[str], parameters: Vector, weighted: Vector, unweighted: Vector) -> None:
+    """Draw the comfort of the cars of a sweep: a line, a map, or parallel axes; arguments as in `plot_sweep`.
+
+    Args:
+        axis: the axes.
+        names, parameters, weighted, unweighted: see `plot_sweep`.
+    """
+    if len(names) == 1:
+        _line(axis, names[0], parameters[:, 0], weighted, unweighted)
+    elif len(names) == 2:
+        _map(axis.figure, axis, names, parameters, weighted)
+    else:
+        _parallel(axis.figure, axis, names, parameters, weighted)
 
 
 def _line(axis: Any, name: str, values: Vector, weighted: Vector, unweighted: Vector) -> None:

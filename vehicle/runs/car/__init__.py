@@ -1,9 +1,9 @@
 """The car in Python: load a car, simulate a run on a signal, and read its results.
 
 car = Car.load()
-run = car.run("low.csv")              # or Road("C", speed=80), or a Signal
-run["seat_rail_acc_z"]                # time history
-run.frf(["seat_rail_acc_z"]).response # FRF to the shaker displacement
+run = car.run("low.csv")              # or road("C", 80), or a Signal
+run["seat rail z"]                    # time history
+run.frf("seat rail z").response       # FRF to the shaker displacement
 run.comfort().unweighted.overall      # unweighted RMS of the seat rail, 2 to 50 Hz (Bommer 2006)
 run.comfort().weighted.overall        # weighted RMS (ISO 2631-1)
 """

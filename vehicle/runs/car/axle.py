@@ -18,7 +18,7 @@ def axle_names(car: Any) -> list[str]:
 
 def car_at_rest(car: Any) -> Any:
     """Return the car with standing tyres: on its rig an axle does not drive, and its wheels are fixed to the hubs."""
-    return car.varied(["driving.speed=0"]) if car.vehicle.driving.rolling else car
+    return car.with_(["driving.speed=0"]) if car.vehicle.driving.rolling else car
 
 
 def axle_statics(car: Any, name: str, *, ideal: bool, standing: bool = False) -> AxleStatics:

@@ -101,7 +101,7 @@ class Car:
         )
         return car
 
-    def varied(self, overrides: Overrides) -> Car:
+    def with_(self, overrides: Overrides) -> Car:
         """Return a variant of this car with changed parameters; fast for many variants.
 
         If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
@@ -297,7 +297,7 @@ class Car:
 
         Args:
             source: displacement of the plates; a file of it or the name of a shipped one, as "low.csv"; or a road, as
-                Road("C", speed=80), on which the tyres roll.
+                road("C", 80), on which the tyres roll.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear except for the dampers; "auto": "reduced",
                 and "mujoco" if the motion leaves the valid range or numba is missing.
@@ -320,7 +320,7 @@ class Car:
             drive = source.under(self.vehicle, self.overrides)
             signal = drive.signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
-            car = self.varied(drive.overrides) if drive.overrides else self
+            car = self.with_(drive.overrides) if drive.overrides else self
             run = car.run(replace(signal, source=drive.name), progress, engine=engine, channels=channels)
             return replace(run, skip=start, road=drive.summary(signal))
         signal = (

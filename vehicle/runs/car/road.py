@@ -20,9 +20,9 @@ Drive = RoadDrive | RecordedDrive
 """A road under the wheels of one car."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Road:
-    """Road for the wheels of any car, as `Road("C", speed=80)`.
+    """Road for the wheels of any car; `road("C", 80)` makes one.
 
     Attributes:
         road: class of ISO 8608, "A" to "H"; an obstacle on a level road, as "cleat:20x50" (`Obstacle`); or the file
@@ -49,6 +49,12 @@ class Road:
     contact: str | None = None
     tyre: str | None = None
     choice: Choice = field(default_factory=Choice, hash=False)
+
+    def __repr__(self) -> str:
+        """Return the call of `road` that makes this road."""
+        names = ("duration", "rate", "seed", "coherence", "patch", "contact", "tyre")
+        options = "".join(f", {name}={value!r}" for name, value in self._given(*names).items())
+        return f"road({str(self.road)!r}, {self.speed!r}{options})"
 
     @property
     def file(self) -> Path | None:
@@ -120,6 +126,44 @@ class Road:
         if self.tyre == "standing" or (self.tyre is None and on_blocks):
             return 0.0 if vehicle.driving.rolling else None
         return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
+
+
+def road(
+    profile: str | Path,
+    speed: float | str,
+    *,
+    duration: float | None = None,
+    rate: float | None = None,
+    seed: int | None = None,
+    coherence: float | None = None,
+    patch: float | None = None,
+    contact: str | None = None,
+    tyre: str | None = None,
+    choice: Choice | None = None,
+) -> Road:
+    """Return a road for the wheels of any car, as road("C", 80).
+
+    Args:
+        profile: class of ISO 8608, "A" to "H"; an obstacle, as "cleat:20x50"; or the file of a measured profile or of
+            heights over time.
+        speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
+        duration, rate, seed, coherence, patch, contact, tyre, choice: see `Road`.
+
+    Returns:
+        The road; `Car.run` and `sweep` take it.
+    """
+    return Road(
+        profile,
+        speed=speed,
+        duration=duration,
+        rate=rate,
+        seed=seed,
+        coherence=coherence,
+        patch=patch,
+        contact=contact,
+        tyre=tyre,
+        choice=choice or Choice(),
+    )
 
 
 def _wheel_positions(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:

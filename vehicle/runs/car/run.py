@@ -14,12 +14,12 @@ import numpy.typing as npt
 
 from vehicle.drawing.notebook.cards import run_card
 from vehicle.drawing.notebook.frames import recording_dataset, recording_frame
-from vehicle.drawing.notebook.picture import Picture, picture
 from vehicle.drawing.notebook.run_response import RunResponse, of_wheel, require_moving, responses
 from vehicle.drawing.notebook.run_spectra import RunSpectra, with_display
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.motion_response import MotionResponse
@@ -70,11 +70,25 @@ class Run:
     def _repr_html_(self) -> str:
         return run_card(self)
 
-    def plot(self) -> Picture:
-        """Return the plot of the main time histories for a notebook."""
-        from vehicle.drawing.rendering.plots import plot_time
+    def plot(self, channels: str | Sequence[str] | None = None, ax: Any = None) -> Any:
+        """Plot time histories.
 
-        return picture(lambda path: plot_time(path, self))
+        Args:
+            channels: names or words of channels, as "seat rail z"; by default the plate, the seat rail, the knuckle and
+                the damper of the excited wheel.
+            ax: axes, one for each channel; a new figure by default.
+
+        Returns:
+            The axes: one, or an array.
+        """
+        from vehicle.drawing.rendering.history_plot import draw_histories
+        from vehicle.drawing.rendering.open_axes import open_axes, plain
+
+        names = self._named(channels) if channels is not None else self._main_channels()
+        axes = open_axes(ax, (9.0, 1.0 + 1.7 * len(names)), len(names), sharex=True)
+        units = self.recording.units
+        draw_histories(axes, self.time, {name: (self[name], units[name]) for name in names})
+        return plain(axes)
 
     def to_dataframe(self) -> Any:
         """Return all channels as a pandas table over the time [s]; `attrs["units"]` contains the units."""
@@ -85,8 +99,15 @@ class Run:
         return recording_dataset(self.recording)
 
     def __getitem__(self, channel: str) -> npt.NDArray[np.float64]:
-        """Return the time history of a channel of `car.vehicle.channels`; its unit is in `recording.units`."""
-        return self.recording[channel]
+        """Return the time history of a channel; its unit is in `recording.units`.
+
+        Args:
+            channel: name or words of a channel, as "seat_rail_acc_z" or "seat rail z".
+
+        Raises:
+            ConfigurationError: no recorded channel has this name or these words.
+        """
+        return self.recording[self._named(channel)[0]]
 
     @property
     def time(self) -> npt.NDArray[np.float64]:
@@ -104,7 +125,7 @@ class Run:
         return (*self.recording.excited, *self.signal.wheels)[0]
 
     def frf(
-        self, channels: Sequence[str] | None = None, *, window: float | None = None, wheel: str | None = None
+        self, channels: str | Sequence[str] | None = None, *, window: float | None = None, wheel: str | None = None
     ) -> RunResponse:
         """FRFs of acceleration channels to the plate displacement, 1 to 50 Hz, with coherence and random error.
 
@@ -114,7 +135,7 @@ class Run:
         multiple coherence with all plates. Plates with equal motion count as one, with the FRF to this motion.
 
         Args:
-            channels: names; all acceleration channels by default.
+            channels: names or words, as "seat rail z"; all acceleration channels by default.
             window: length of averaged Hann windows [s] for the H1 estimate; by default the whole record is evaluated
                 without leakage, by its periods if the input is periodic, else by local rational models.
             wheel: wheel of the plate; `self.wheel` by default.
@@ -127,10 +148,12 @@ class Run:
             DependentInputsError: a plate repeats the motion of another with a delay.
         """
         require_moving(self.recording, wheel)
-        names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
-        return of_wheel(self.frfs(channels, window=window), wheel, names)
+        names = self._accelerations(channels)
+        return of_wheel(self.frfs(names, window=window), wheel, names)
 
-    def frfs(self, channels: Sequence[str] | None = None, *, window: float | None = None) -> tuple[MotionResponse, ...]:
+    def frfs(
+        self, channels: str | Sequence[str] | None = None, *, window: float | None = None
+    ) -> tuple[MotionResponse, ...]:
         """Return the FRFs of acceleration channels to each independent plate motion; arguments like `frf`.
 
         Returns:
@@ -139,7 +162,7 @@ class Run:
         Raises:
             DataError, DependentInputsError: see `frf`.
         """
-        names = self.car.vehicle.acceleration_channels if channels is None else tuple(channels)
+        names = self._accelerations(channels)
         return responses(self.recording, self.signal, names, self.signal.band(FRF_BAND), window)
 
     def comfort(self, point: str = "seat_rail") -> RunComfort:
@@ -169,12 +192,12 @@ class Run:
             point=point.replace("_", " "),
         )
 
-    def psd(self, channels: Sequence[str] | None = None) -> RunSpectra:
+    def psd(self, channels: str | Sequence[str] | None = None) -> RunSpectra:
         """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.
 
         Args:
-            channels: names of acceleration channels; by default seat rail, a seat with an occupant, and the vertical
-                motion of the knuckles.
+            channels: names or words of acceleration channels, as "seat rail z"; by default seat rail, a seat with an
+                occupant, and the vertical motion of the knuckles.
 
         Raises:
             ConfigurationError: a channel is not recorded or no acceleration.
@@ -188,7 +211,7 @@ class Run:
                 self.recording,
                 source,
                 f"{source}, {span}, tyres {vehicle.driving.words}",
-                channels,
+                None if channels is None else self._accelerations(channels),
                 begin=self.skip,
                 seated=vehicle.seated,
                 road=self.road,
@@ -252,6 +275,22 @@ class Run:
     def first_slip(self, wheel: str, velocity: float | None = None) -> float | None:
         """Return the first time [s] with |damper velocity| above a limit [m/s] (default: slip velocity), or None."""
         return first_slip(self.time, *self._damper(wheel, velocity))
+
+    def _named(self, channels: str | Sequence[str]) -> tuple[str, ...]:
+        """Return the recorded channels with these names or words."""
+        return channels_named(channels, tuple(self.recording.channels))
+
+    def _accelerations(self, channels: str | Sequence[str] | None) -> tuple[str, ...]:
+        """Return the acceleration channels with these names or words; all by default."""
+        names = self.car.vehicle.acceleration_channels
+        return names if channels is None else channels_named(channels, names)
+
+    def _main_channels(self) -> tuple[str, ...]:
+        """Return the recorded channels among plate, seat rail, and knuckle and damper of the excited wheel."""
+        wheel = self.wheel
+        main = (f"plate_{wheel}_displacement", "seat_rail_acc_z", f"knuckle_{wheel}_acc_z", f"damper_{wheel}_velocity")
+        recorded = tuple(name for name in main if name in self.recording.channels)
+        return recorded or tuple(self.recording.channels)[:1]
 
     def _damper(self, wheel: str, velocity: float | None) -> tuple[npt.NDArray[np.float64], float]:
         """Return the velocity of a damper, and the limit of slip [m/s]."""

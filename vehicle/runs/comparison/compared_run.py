@@ -24,7 +24,7 @@ LARGEST_DRIFT = 0.1
 """Maximum drift of a clock [-]; a larger value means a wrong sampling rate."""
 
 
-def compare_run(
+def compare(
     run: Run | Simulated | Path | str,
     measured: Measured | Path | str,
     channels: Mapping[str, str] | None = None,

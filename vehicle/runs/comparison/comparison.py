@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,9 +13,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
 from vehicle.signals.records.counterpart import PARTS
-
-if TYPE_CHECKING:
-    from vehicle.drawing.notebook.picture import Picture
 
 SHOWN = 12
 """Maximum number of rows of a table on the console."""
@@ -57,26 +54,40 @@ class Comparison:
         return self.simulated + (f" (tyres {self.tyres})" if self.tyres else "")
 
     def __repr__(self) -> str:
+        """Return what is compared in a line."""
+        counts = f"{len(self.responses)} responses, {len(self.records)} time histories"
+        return f"Comparison({self.measured} with {self.run}: {counts})"
+
+    def __str__(self) -> str:
         """Return the tables of the console."""
         return self.text()
 
-    def plot(self, name: str | None = None) -> Picture:
-        """Draw measured and simulated data of one output point as a figure that a notebook shows.
+    def plot(self, name: str | None = None, ax: Any = None) -> Any:
+        """Plot measured and simulated data of one output point.
 
         Args:
             name: as "compare_frf_seat_rail", "compare_time_seat_rail" or "compare_signatures"; the first by default.
+            ax: array of axes, as many as the picture has; a new figure by default.
+
+        Returns:
+            The axes.
 
         Raises:
             ConfigurationError: there is no picture of this name; the message lists all.
         """
-        from vehicle.drawing.notebook.picture import picture
-        from vehicle.runs.comparison.named_pictures import drawings_of
+        from vehicle.drawing.rendering.open_axes import open_axes, plain
+        from vehicle.runs.comparison.named_pictures import pictures_of
 
-        drawings = drawings_of(self)
-        wanted = next(iter(drawings)) if name is None else name
-        if wanted not in drawings:
-            raise ConfigurationError(f"no picture {wanted!r}; there are {', '.join(drawings)}")
-        return picture(drawings[wanted])
+        pictures = pictures_of(self)
+        wanted = next(iter(pictures)) if name is None else name
+        if wanted not in pictures:
+            raise ConfigurationError(f"no picture {wanted!r}; there are {', '.join(pictures)}")
+        picture = pictures[wanted]
+        look: dict[str, Any] = {"height_ratios": (2.4, 1.0, 0.9), "sharex": True} if picture.rows == 3 else {}
+        title = f"{self.measured} and {self.run}"
+        axes = open_axes(ax, picture.size, picture.rows, picture.columns, title=title, **look)
+        picture.draw(axes)
+        return plain(axes)
 
     def rows(self) -> list[dict[str, Any]]:
         """Return the rows of the table: bands of responses by falling error, then time histories by rising rating."""

@@ -4,28 +4,80 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
+
+import numpy.typing as npt
 
 from vehicle.runs.comparison.comparison import Comparison
-from vehicle.runs.comparison.pictures import plot_histories, plot_responses, plot_signatures
+from vehicle.runs.comparison.pictures import (
+    draw_histories,
+    draw_responses,
+    draw_signatures,
+    plot_histories,
+    plot_responses,
+    plot_signatures,
+)
 
 
-def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
-    """Return the name of each picture, as "compare_frf_seat_rail", and what writes it as PNG at a path."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class NamedPicture:
+    """Picture of a comparison.
+
+    Attributes:
+        write: function that writes the picture to a path.
+        draw: function that draws the picture on axes.
+        rows, columns: number of axes.
+        size: width and height of a new figure [inch].
+    """
+
+    write: Callable[[Path], None]
+    draw: Callable[[npt.NDArray[Any]], None]
+    rows: int
+    columns: int
+    size: tuple[float, float]
+
+
+def pictures_of(comparison: Comparison) -> dict[str, NamedPicture]:
+    """Return the name of each picture, as "compare_frf_seat_rail", to the picture."""
     caption = f"measured: {comparison.measured}; simulated: {comparison.run}"
-    drawings: dict[str, Callable[[Path], None]] = {}
+    pictures: dict[str, NamedPicture] = {}
     for point in dict.fromkeys(_point_of(item.channel) for item in comparison.responses):
         responses = [item for item in comparison.responses if _point_of(item.channel) == point]
-        drawings[f"compare_frf_{point}"] = partial(plot_responses, point=point, responses=responses, caption=caption)
+        pictures[f"compare_frf_{point}"] = NamedPicture(
+            write=partial(plot_responses, point=point, responses=responses, caption=caption),
+            draw=partial(draw_responses, responses=responses),
+            rows=3,
+            columns=len(responses),
+            size=(max(7.6, 5.2 * len(responses) + 1.0), 8.2),
+        )
     for point in dict.fromkeys(_point_of(item.channel) for item in comparison.records):
-        rows = [item for item in comparison.records if _point_of(item.channel) == point]
-        drawings[f"compare_time_{point}"] = partial(plot_histories, point=point, histories=rows, caption=caption)
+        histories = [item for item in comparison.records if _point_of(item.channel) == point]
+        pictures[f"compare_time_{point}"] = NamedPicture(
+            write=partial(plot_histories, point=point, histories=histories, caption=caption),
+            draw=partial(draw_histories, histories=histories),
+            rows=len(histories),
+            columns=2,
+            size=(13.0, 2.6 * len(histories) + 1.4),
+        )
     agreement = comparison.signatures
     if agreement is not None:
         text = f"{agreement.channels} responses; {caption}"
-        drawings["compare_signatures"] = partial(plot_signatures, signatures=agreement, caption=text)
-    return drawings
+        pictures["compare_signatures"] = NamedPicture(
+            write=partial(plot_signatures, signatures=agreement, caption=text),
+            draw=partial(draw_signatures, signatures=agreement),
+            rows=1,
+            columns=1,
+            size=(9.0, 4.6),
+        )
+    return pictures
+
+
+def drawings_of(comparison: Comparison) -> dict[str, Callable[[Path], None]]:
+    """Return the name of each picture and the function that writes it to a path."""
+    return {name: picture.write for name, picture in pictures_of(comparison).items()}
 
 
 def _point_of(channel: str) -> str:

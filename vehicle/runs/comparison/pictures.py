@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -49,26 +50,31 @@ def plot_responses(path: Path, point: str, responses: Sequence[FrfComparison], c
         axes = figure.subplots(
             3, len(responses), sharex=True, sharey="row", height_ratios=(2.4, 1.0, 0.9), squeeze=False
         )
-        for response, (magnitude, phase, coherence) in zip(responses, axes.T, strict=True):
-            pairs = {
-                "measured": (response.measured, response.measured_coherence),
-                "simulated": (response.simulated, response.simulated_coherence),
-            }
-            for label, (values, beside) in pairs.items():
-                fading(magnitude, response.frequency, np.abs(values), beside, label, **LOOKS[label])
-                phase.plot(response.frequency, wrapped_phase(values.copy()), **LOOKS[label])
-                if np.isfinite(beside).any():
-                    coherence.plot(response.frequency, beside, label=label, **LOOKS[label])
-            magnitude.set_title(
-                f"{response.channel}\nFRAC {response.frac:.3f}; {response.scaled_frac:.3f} with frequencies times "
-                f"{response.scale:.3f}"
-            )
-            magnitude.legend(loc="best")
-        frf_axes(figure, axes, (0, 0.25, 0.5, 0.75, 1))
-        lines = np.concatenate([response.frequency for response in responses])
-        low, high = max(float(lines.min()), 0.9 * FRF_BAND[0]), float(lines.max())
-        if low > 2.0 * FRF_BAND[0] or high < 0.5 * FRF_BAND[1]:
-            axes[0, 0].set_xlim(low, high)
+        draw_responses(axes, responses)
+
+
+def draw_responses(axes: npt.NDArray[Any], responses: Sequence[FrfComparison]) -> None:
+    """Draw magnitude, phase and both coherences of the responses of an output point on axes, (3, responses)."""
+    for response, (magnitude, phase, coherence) in zip(responses, axes.T, strict=True):
+        pairs = {
+            "measured": (response.measured, response.measured_coherence),
+            "simulated": (response.simulated, response.simulated_coherence),
+        }
+        for label, (values, beside) in pairs.items():
+            fading(magnitude, response.frequency, np.abs(values), beside, label, **LOOKS[label])
+            phase.plot(response.frequency, wrapped_phase(values.copy()), **LOOKS[label])
+            if np.isfinite(beside).any():
+                coherence.plot(response.frequency, beside, label=label, **LOOKS[label])
+        magnitude.set_title(
+            f"{response.channel}\nFRAC {response.frac:.3f}; {response.scaled_frac:.3f} with frequencies times "
+            f"{response.scale:.3f}"
+        )
+        magnitude.legend(loc="best")
+    frf_axes(axes[0, 0].figure, axes, (0, 0.25, 0.5, 0.75, 1))
+    lines = np.concatenate([response.frequency for response in responses])
+    low, high = max(float(lines.min()), 0.9 * FRF_BAND[0]), float(lines.max())
+    if low > 2.0 * FRF_BAND[0] or high < 0.5 * FRF_BAND[1]:
+        axes[0, 0].set_xlim(low, high)
 
 
 def plot_histories(path: Path, point: str, histories: Sequence[RecordComparison], caption: str) -> None:
@@ -83,20 +89,25 @@ def plot_histories(path: Path, point: str, histories: Sequence[RecordComparison]
     size = (13.0, 2.6 * len(histories) + 1.4)
     with saved_figure(path, size, f"{point}: measured and simulated", caption) as figure:
         axes = figure.subplots(len(histories), 2, sharey="row", width_ratios=(1.6, 1.4), squeeze=False)
-        for history, (whole, detail) in zip(histories, axes, strict=True):
-            inside = _highest_level(history)
-            for label in LOOKS:
-                values = getattr(history, label)
-                whole.plot(history.time, values, **(LOOKS[label] | {"linewidth": 0.6}), label=label)
-                detail.plot(history.time[inside], values[inside], **LOOKS[label], label=label)
-            whole.set_ylabel(f"{history.channel}\n[{history.unit.replace('2', '²')}]")
-            whole.set_xlim(history.time[0], history.time[-1])
-            detail.set_xlim(history.time[inside][0], history.time[inside][-1])
-        axes[0, 0].set_title("whole record")
-        axes[0, 1].set_title("excerpt with the highest measured level")
-        axes[0, 1].legend(loc="upper right", ncols=2)
-        for axis in axes[-1]:
-            axis.set_xlabel("time of the run [s]")
+        draw_histories(axes, histories)
+
+
+def draw_histories(axes: npt.NDArray[Any], histories: Sequence[RecordComparison]) -> None:
+    """Draw time histories of an output point on axes, (histories, 2): whole record and excerpt."""
+    for history, (whole, detail) in zip(histories, axes, strict=True):
+        inside = _highest_level(history)
+        for label in LOOKS:
+            values = getattr(history, label)
+            whole.plot(history.time, values, **(LOOKS[label] | {"linewidth": 0.6}), label=label)
+            detail.plot(history.time[inside], values[inside], **LOOKS[label], label=label)
+        whole.set_ylabel(f"{history.channel}\n[{history.unit.replace('2', '²')}]")
+        whole.set_xlim(history.time[0], history.time[-1])
+        detail.set_xlim(history.time[inside][0], history.time[inside][-1])
+    axes[0, 0].set_title("whole record")
+    axes[0, 1].set_title("excerpt with the highest measured level")
+    axes[0, 1].legend(loc="upper right", ncols=2)
+    for axis in axes[-1]:
+        axis.set_xlabel("time of the run [s]")
 
 
 def _highest_level(record: RecordComparison) -> slice:
@@ -115,17 +126,21 @@ def plot_signatures(path: Path, signatures: Signatures, caption: str) -> None:
         signatures: CSAC and CSF.
         caption: what was measured and what was simulated.
     """
-    frequency = signatures.frequency
     with saved_figure(path, (9.0, 4.6), "Agreement of all responses together", caption) as figure:
-        axis = figure.subplots()
-        axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: shape over the points")
-        axis.plot(frequency, signatures.csf, color=COLOURS[3], linestyle="--", label="CSF: shape and amplitude")
-        axis.set(xscale="log", ylim=(0.0, 1.03), xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]",
-                 ylabel="1 is equal [-]")  # fmt: skip
-        axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
-        axis.set_xticks([], minor=True)
-        axis.set_xlim(frequency[0], frequency[-1])
-        axis.legend(loc="lower left")
+        draw_signatures(figure.subplots(squeeze=False), signatures)
+
+
+def draw_signatures(axes: npt.NDArray[Any], signatures: Signatures) -> None:
+    """Draw CSAC and CSF over frequency on one axes."""
+    axis, frequency = axes.item(), signatures.frequency
+    axis.plot(frequency, signatures.csac, color=COLOURS[0], label="CSAC: shape over the points")
+    axis.plot(frequency, signatures.csf, color=COLOURS[3], linestyle="--", label="CSF: shape and amplitude")
+    axis.set(xscale="log", ylim=(0.0, 1.03), xlim=(frequency[0], frequency[-1]), xlabel="frequency [Hz]",
+             ylabel="1 is equal [-]")  # fmt: skip
+    axis.set_xticks(FRF_TICKS, [str(tick) for tick in FRF_TICKS])
+    axis.set_xticks([], minor=True)
+    axis.set_xlim(frequency[0], frequency[-1])
+    axis.legend(loc="lower left")
 
 
 def plot_mac(

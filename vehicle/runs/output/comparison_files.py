@@ -25,7 +25,7 @@ def save_comparison(
     """Write the tables of a comparison and a picture for each output point into a new folder.
 
     Args:
-        comparison: result of `compare_run`.
+        comparison: result of `compare`.
         folder: name of the folder.
         force: replace files of an earlier run.
         figures: False writes no pictures.

@@ -31,7 +31,7 @@ def save_run(
         figures: False writes no pictures.
 
     Returns:
-        The folder; `write_report` and `compare_run` take it.
+        The folder; `write_report` and `compare` take it.
 
     Raises:
         ConfigurationError: the folder exists without `force`, or holds files that no run wrote; or the run has not all

@@ -39,7 +39,7 @@ class PlateMotion:
     """Second time derivative of the displacement [m/s2], wheel -> shape (m,)."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Signal:
     """Upward plate displacements z(t) on a uniform time grid that begins at t = 0.
 
@@ -67,6 +67,10 @@ class Signal:
     highest: float | None = None
     slope_velocity: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     profile: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        """Return source, length and wheels in a line."""
+        return f"Signal({self.source}, {self.duration:g} s, wheels {', '.join(self.wheels)})"
 
     def __post_init__(self) -> None:
         time = _read_only(self.time)

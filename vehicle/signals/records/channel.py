@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle.errors import DataError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.clock import clock_of_rounded, is_uniform, longest_step
 from vehicle.signals.records.geometry import Geometry, ModeShape
 from vehicle.signals.records.table import Vector
@@ -18,7 +18,7 @@ from vehicle.signals.records.units import find_ratio
 Values = NDArray[np.float64] | NDArray[np.complex128]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Channel:
     """Channel of a measurement file, with name, unit and values unchanged.
 
@@ -45,6 +45,11 @@ class Channel:
     direction: str = ""
     reference: str = ""
     remark: str = ""
+
+    def __repr__(self) -> str:
+        """Return name, unit, number of values and rate in a line."""
+        rate = f", {self.rate:g} Hz" if self.rate else ""
+        return f"Channel({self.name!r} [{self.unit}], {self.values.size} values{rate})"
 
     @property
     def quantity(self) -> str:
@@ -85,7 +90,7 @@ class Channel:
         return clock[0] if clock is not None else 1.0 / median
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Measurement:
     """Contents of a measurement file.
 
@@ -110,6 +115,24 @@ class Measurement:
     notices: tuple[str, ...] = field(default=())
     geometry: Geometry = field(default_factory=Geometry)
     shapes: tuple[ModeShape, ...] = ()
+
+    def __repr__(self) -> str:
+        """Return file, format and the first channels in a line."""
+        names = ", ".join(channel.name for channel in self.channels[:3])
+        more = f" and {len(self.channels) - 3} more" if len(self.channels) > 3 else ""
+        return f"Measurement({self.path.name}, {self.format}, {len(self.channels)} channels: {names}{more})"
+
+    def __getitem__(self, name: str) -> Channel:
+        """Return the channel with a name.
+
+        Raises:
+            ConfigurationError: no channel or several channels have this name.
+        """
+        matches = [channel for channel in self.channels if channel.name == name]
+        if len(matches) != 1:
+            names = ", ".join(dict.fromkeys(channel.name for channel in self.channels))
+            raise ConfigurationError(f"{self.path}: {len(matches)} channels are named {name!r}; choose from {names}")
+        return matches[0]
 
 
 def exact_rate(rate: float) -> float:

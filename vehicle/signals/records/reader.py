@@ -44,6 +44,22 @@ def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement
     return measurement
 
 
+def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
+    """Read all channels of a measurement file of any format, or of the folder of a run.
+
+    Args:
+        file: measurement file, or the folder of a run, whose time histories are read.
+        databases: DBC files that decode the log of a CAN bus.
+
+    Returns:
+        Channels with names, units and times; `read(file)["Seat Z"]` is one of them.
+
+    Raises:
+        ConfigurationError, DataError, MissingPartError: see `read_record`.
+    """
+    return read_record(time_file(Path(file)), databases)
+
+
 def is_table(path: Path) -> bool:
     """Return True for a file in a table format; also for a missing file, which `read_table` reports."""
     return not path.is_file() or bool(recognised_format(path).table)

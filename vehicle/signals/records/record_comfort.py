@@ -65,6 +65,12 @@ class RecordComfort:
         return (*self.summary["notices"], *self.summary["reasons"])
 
     def __repr__(self) -> str:
+        """Return the weighted RMS by axis and overall in a line."""
+        axes = ", ".join(f"{axis} {value:.4g}" for axis, value in self.weighted_rms.items())
+        overall = "" if self.overall is None else f"; overall {self.overall:.4g}"
+        return f"RecordComfort(weighted RMS {axes}{overall} m/s2)"
+
+    def __str__(self) -> str:
         """Return the table of all values."""
         return self.text()
 

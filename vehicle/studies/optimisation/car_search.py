@@ -118,7 +118,7 @@ def plan_search(
     skip: float | None = None,
     seed: int = 1,
 ) -> SearchPlan:
-    """Check the arguments of a search and return the search; arguments and errors as in `optimise_car`."""
+    """Check the arguments of a search and return the search; arguments and errors as in `optimise`."""
     pymoo("core.problem")
     vehicle, file = car.vehicle, file_of(car)
     sources = inputs_of(car, inputs)
@@ -153,7 +153,7 @@ def plan_search(
     return SearchPlan(trials=trials, vehicle=vehicle, skip=start, seed=seed)
 
 
-def optimise_car(
+def optimise(
     car: Car,
     vary: Mapping[str, Sequence[float]] | Sequence[Range],
     inputs: Source | Sequence[Source],

@@ -92,7 +92,7 @@ def validity_warnings(trials: Trials, cars: Mapping[str, Car]) -> list[str]:
     warnings = []
     for name, car in cars.items():
         for source in trials.inputs:
-            run = car.varied(overrides_of(source)).run(
+            run = car.with_(overrides_of(source)).run(
                 signal_of(source), engine="reduced", channels=trials.measure.channels
             )
             warnings += [f"{name} on {source.name}: {warning}" for warning in run.recording.statistics.warnings]

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.vehicle import Vehicle
@@ -53,8 +54,30 @@ class FoundCars:
     notices: tuple[str, ...]
 
     def __repr__(self) -> str:
+        """Return the numbers of cars and the names of the best in a line."""
+        count, front = len(self.outcome.tried.reasons), self.outcome.front_size
+        return f"FoundCars({count} cars, {front} on the front: {', '.join(self.cars)})"
+
+    def __str__(self) -> str:
         """Return the table of the named cars."""
         return self.text()
+
+    def plot(self, ax: Any = None) -> Any:
+        """Plot the cars tried and the front over the first two objectives, or the convergence of a single one.
+
+        Args:
+            ax: the axes; a new figure by default.
+
+        Returns:
+            The axes.
+        """
+        from vehicle.drawing.rendering.front_plot import draw_first
+        from vehicle.drawing.rendering.open_axes import open_axes
+        from vehicle.studies.optimisation.search_files import picture_of
+
+        axis = open_axes(ax, (6.4, 5.4)).item()
+        draw_first(axis, picture_of(self.outcome, None))
+        return axis
 
     @property
     def values(self) -> dict[str, dict[str, float | None]]:

@@ -87,7 +87,7 @@ def _reference(vehicle: Path | None, changed: int, shared: tuple[str, ...]) -> C
 
 @lru_cache(maxsize=4)
 def _varied(vehicle: Path | None, changed: int, shared: tuple[str, ...], overrides: tuple[str, ...]) -> Car:
-    return _reference(vehicle, changed, shared).varied(overrides)
+    return _reference(vehicle, changed, shared).with_(overrides)
 
 
 def _car_of(case: Case) -> Car:

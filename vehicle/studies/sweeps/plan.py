@@ -20,7 +20,8 @@ from vehicle.studies.sweeps.case import Case, all_tyre_words
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import Notice
 from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
-from vehicle.studies.sweeps.sweep import Progress, sweep
+from vehicle.studies.sweeps.sweep import Progress
+from vehicle.studies.sweeps.sweep import sweep as run_cases
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
@@ -61,7 +62,7 @@ class SweepPlan:
         notice: Notice | None = None,
     ) -> SweepTable:
         """Run the sweep; arguments, result and errors as in `vehicle.studies.sweeps.sweep.sweep`."""
-        return sweep(
+        return run_cases(
             self.cases,
             self.measure,
             executor=executor,
@@ -83,7 +84,7 @@ def plan_sweep(
     skip: float | None = None,
     measure: Measure | None = None,
 ) -> SweepPlan:
-    """Check the arguments of a sweep and return the sweep; arguments and errors as in `run_sweep`."""
+    """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`."""
     changes = changes_of(vary)
     vehicle = file_of(car)
     require_paths(vehicle, car.overrides, changes[0])
@@ -99,7 +100,7 @@ def plan_sweep(
     )
 
 
-def run_sweep(
+def sweep(
     car: Car,
     vary: Variations,
     inputs: Source | Sequence[Source],

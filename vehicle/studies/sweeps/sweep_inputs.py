@@ -36,7 +36,7 @@ def inputs_of(car: Car, sources: Source | Sequence[Source]) -> list[Input]:
     """
     listed = list(sources) if isinstance(sources, Sequence) and not isinstance(sources, str) else [sources]
     if not listed:
-        raise ConfigurationError("inputs: no input; pass a file, or a road, as Road('C', speed=80)")
+        raise ConfigurationError("inputs: no input; pass a file, or a road, as road('C', 80)")
     inputs: list[Input] = []
     for source in listed:
         if isinstance(source, Road):

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from vehicle.drawing.rendering.sweep_plot import plot_sweep
+from vehicle.drawing.rendering.open_axes import open_axes
+from vehicle.drawing.rendering.sweep_plot import draw_sweep, plot_sweep
+from vehicle.errors import ConfigurationError
 from vehicle.studies.sweeps.sweep_ranking import RankedCars
 
 PICTURE = "sweep.png"
@@ -15,6 +18,24 @@ PICTURE = "sweep.png"
 def can_be_drawn(cars: RankedCars | None) -> bool:
     """Return True for two or more cars whose varied parameters are numbers."""
     return cars is not None and len(cars.order) > 1 and cars.numbers() is not None
+
+
+def plotted(cars: RankedCars | None, ax: Any = None) -> Any:
+    """Draw ranked cars on axes and return the axes.
+
+    Args:
+        cars: the cars; None for a sweep without comfort.
+        ax: the axes; a new figure by default.
+
+    Raises:
+        ConfigurationError: the cars cannot be drawn.
+    """
+    parameters = cars.numbers() if can_be_drawn(cars) and cars is not None else None
+    if cars is None or parameters is None:
+        raise ConfigurationError("plot: needs two or more cars with comfort values whose varied parameters are numbers")
+    axes = open_axes(ax, (7.6, 5.0))
+    draw_sweep(axes.item(), cars.paths, parameters, cars.weighted, cars.unweighted)
+    return axes.item()
 
 
 def draw_ranked(path: Path, cars: RankedCars, units: Mapping[str, str], caption: str = "") -> None:
@@ -28,7 +49,7 @@ def draw_ranked(path: Path, cars: RankedCars, units: Mapping[str, str], caption:
     """
     parameters = cars.numbers()
     assert parameters is not None
-    title = f"Comfort at the {cars.point} over the varied parameters"
+    title = f"Comfort {cars.point} over the varied parameters"
     over = f"mean of {cars.inputs} inputs" if cars.inputs > 1 else "one input"
     names = [f"{name} [{units[name]}]" if units.get(name) else name for name in cars.paths]
     plot_sweep(path, names, parameters, cars.weighted, cars.unweighted, title, "; ".join(filter(None, (over, caption))))

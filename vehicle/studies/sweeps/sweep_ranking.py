@@ -48,7 +48,7 @@ class RankedCars:
     @property
     def point(self) -> str:
         """Return the words of the point of both values."""
-        return "cushion" if self.prefix else "seat rail"
+        return "on the cushion" if self.prefix else "at the seat rail"
 
     @property
     def best(self) -> int:
@@ -132,8 +132,8 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     if left > 0:
         lines.append(f"and {left} more cars in table.csv")
     over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
-    words = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
-    lines.append(f"{words}; at the {cars.point}{over}")
+    definitions = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
+    lines.append(f"{definitions}; {cars.point}{over}")
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
     if best and cars.best == 0:
         lines.append(f"most comfortable is the first car: {best}")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import html
 import io
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any, TextIO, TypedDict
 
@@ -16,6 +18,7 @@ import numpy.typing as npt
 
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.runs.output.folder import check_file, write_text
 from vehicle.signals.records.formats import recognised_format
 from vehicle.signals.records.sheet_format import read_sheet_texts
 from vehicle.signals.records.text_format import read_texts
@@ -100,8 +103,50 @@ class SweepTable:
                 }
 
     def __repr__(self) -> str:
-        """Return the numbers of runs and of failed runs, and the columns, in a line."""
-        return f"SweepTable({len(self.cases)} runs, {len(self.failed)} failed: {', '.join(self.units)})"
+        """Return the numbers of runs and of failed runs, and the varied parameters, in a line."""
+        return f"SweepTable({len(self.cases)} runs, {len(self.failed)} failed: {', '.join(self.paths())})"
+
+    def __str__(self) -> str:
+        """Return the cars in the order of comfort, as the console shows them; without comfort, the line of `repr`."""
+        ranking = _later("sweep_ranking")
+        cars = ranking.ranked_cars(self)
+        return repr(self) if cars is None else "\n".join(ranking.ranking_lines(cars))
+
+    def plot(self, ax: Any = None) -> Any:
+        """Plot comfort over the varied parameters: a line for one, a map for two, parallel axes for more.
+
+        Args:
+            ax: the axes; a new figure by default.
+
+        Returns:
+            The axes.
+
+        Raises:
+            ConfigurationError: fewer than two cars have comfort values, or a varied value is no number.
+        """
+        return _later("sweep_picture").plotted(_later("sweep_ranking").ranked_cars(self), ax)
+
+    def report(self, file: Path | str, *, force: bool = False) -> Path:
+        """Write the report of the sweep as one HTML file: best and base car, picture, tables.
+
+        Args:
+            file: name of the report, with the ending .html.
+            force: replace a report that was written there before.
+
+        Raises:
+            ConfigurationError: another ending, or a file that exists without `force`.
+            OutputError: the file cannot be written.
+        """
+        path = Path(file)
+        check_file(path, ending=".html", force=force)
+        evaluated = f"evaluated from {self.made.get('evaluated_from_s') or 0:g} s on"
+        name = ", ".join(self.made.get("vehicles", ("car",)))
+        write_text(path, _later("sweep_page").sweep_page(self, name, units={}, caption=evaluated))
+        return path
+
+    def _repr_html_(self) -> str:
+        """Return the cars in the order of comfort for a notebook."""
+        return f"<pre>{html.escape(str(self))}</pre>"
 
     def to_dataframe(self) -> Any:
         """Return the table in pandas: input, varied parameters, values with their units in the heads, engine, reason.
@@ -110,6 +155,11 @@ class SweepTable:
             MissingPartError: pandas is not installed.
         """
         return table_frame(self.text())
+
+
+def _later(name: str) -> Any:
+    """Return a module of this package that imports this module; it is imported at the call."""
+    return import_module(f"vehicle.studies.sweeps.{name}")
 
 
 class _Returned:

@@ -21,7 +21,7 @@ Bounds = Sequence[float]
 """Lower bound, upper bound and optionally start value of a parameter, in the unit of the parameter."""
 
 
-def tune_car(
+def tune(
     car: Car,
     parameters: Mapping[str, Bounds] | Sequence[Range],
     measurements: Sequence[MeasuredTarget | FrfTarget | LevelTarget | RecordTarget],
@@ -31,7 +31,7 @@ def tune_car(
     """Fit parameters of a car to measured FRFs and time histories by weighted least squares.
 
     Args:
-        car: the car; `car.varied(result.values)` is the fitted one.
+        car: the car; `car.with_(result.values)` is the fitted one.
         parameters: path to (lower, upper) or (lower, upper, start) in the unit of the parameter; the value of the car
             is the default start.
         measurements: results of `measured_responses` and `measured_histories`.
@@ -50,7 +50,7 @@ def tune_car(
     targets = [
         measurement.target if isinstance(measurement, MeasuredTarget) else measurement for measurement in measurements
     ]
-    return fit(ranges, targets, lambda values: car.varied(overrides_of(car.vehicle, values)), progress=progress)
+    return fit(ranges, targets, lambda values: car.with_(overrides_of(car.vehicle, values)), progress=progress)
 
 
 def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Range]) -> tuple[Range, ...]:
@@ -58,7 +58,7 @@ def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Rang
 
     Args:
         vehicle: vehicle with the default start values.
-        parameters: path to bounds, see `tune_car`.
+        parameters: path to bounds, see `tune`.
 
     Raises:
         ConfigurationError: a path is not a numeric parameter of the vehicle, or bounds are out of order.

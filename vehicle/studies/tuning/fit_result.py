@@ -50,7 +50,7 @@ class RowStatistics:
         return float(self.rms * np.sqrt(self.inflation))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class TuningResult:
     """Fitted parameters with standard errors, correlation and residual statistics.
 
@@ -91,6 +91,11 @@ class TuningResult:
     message: str
     sensitivity: Vector
     weights: Vector
+
+    def __repr__(self) -> str:
+        """Return the fitted values with their standard errors in a line."""
+        values = [f"{path} {value:.5g} +- {self.standard_errors[path]:.2g}" for path, value in self.values.items()]
+        return f"TuningResult({'; '.join(values)})"
 
     def deviation(self, path: str, value: float) -> float:
         """Return (fitted - value) of a parameter over its standard error [-]."""

@@ -252,7 +252,7 @@ def _histories(
     settled = 0.0
     if isinstance(signal, Road):
         drive = signal.under(car.vehicle, car.overrides)
-        road, settled = RoadCar(start=car, rolling=car.varied(drive.overrides)), drive.skip
+        road, settled = RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
         signal = drive.signal()
     else:
         signal = _signal(signal, car, path, measured, asked, inverted)

@@ -176,7 +176,7 @@ def emulated_car(
     done = progress or (lambda fraction: None)
     built = []
     for index, row in enumerate(values_at(checked, points)):
-        built.append(car.varied(overrides_of(car.vehicle, dict(zip(paths, row, strict=True)))))
+        built.append(car.with_(overrides_of(car.vehicle, dict(zip(paths, row, strict=True)))))
         _ = built[-1].poles
         done(0.6 * (index + 1) / cars)
     means, comfort = evaluated_cars(built, cells, lambda fraction: done(0.6 + 0.4 * fraction))

@@ -28,4 +28,4 @@ class RoadCar:
         Args:
             car: variant, from `start.varied`.
         """
-        return self.rolling.varied(car.overrides[len(self.start.overrides) :])
+        return self.rolling.with_(car.overrides[len(self.start.overrides) :])

@@ -14,7 +14,7 @@ from vehicle.model.parameters.paths import overrides_of, unit_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
-from vehicle.studies.tuning.car_fit import tune_car
+from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import FullSteps, full_steps
@@ -68,7 +68,7 @@ class TunedCar:
     @cached_property
     def fitted(self) -> Car:
         """Car with the fitted values."""
-        return self.start.varied(overrides_of(self.start.vehicle, self.result.values))
+        return self.start.with_(overrides_of(self.start.vehicle, self.result.values))
 
     @property
     def settings(self) -> str:
@@ -165,20 +165,20 @@ def tuned_car(
         parameters: parameters with bounds and start values.
         measurements: results of `measured_responses` and `measured_histories`.
         engine: engine of the last steps, see `full_steps`; "reduced" ends after the fit with the fast models.
-        progress: see `tune_car`.
+        progress: see `tune`.
         simulated: called with the number of runs of the last steps.
 
     Raises:
-        ConfigurationError, DataError, SimulationError: see `tune_car`.
+        ConfigurationError, DataError, SimulationError: see `tune`.
     """
-    result = tune_car(car, parameters, measurements, progress=progress)
+    result = tune(car, parameters, measurements, progress=progress)
     final = None
     if engine != "reduced" and any(each.signal is not None for each in measurements):
         count = 0
 
         def models(values: Mapping[str, float]) -> list[Car | Run]:
             nonlocal count
-            varied = car.varied(overrides_of(car.vehicle, values))
+            varied = car.with_(overrides_of(car.vehicle, values))
             listed: list[Car | Run] = []
             for each in measurements:
                 if each.signal is None:
@@ -193,7 +193,7 @@ def tuned_car(
         final = full_steps(result, [each.target for each in measurements], models)
         result = final.result
     return TunedCar(
-        start=car.varied(overrides_of(car.vehicle, {entry.path: entry.start for entry in result.parameters})),
+        start=car.with_(overrides_of(car.vehicle, {entry.path: entry.start for entry in result.parameters})),
         result=result,
         measurements=tuple(measurements),
         engine=engine if final is not None else "reduced",

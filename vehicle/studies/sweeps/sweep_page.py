@@ -1,0 +1,134 @@
+"""Report of a sweep: best and base car, picture, cars in the order of comfort, all runs, and how to repeat it."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Mapping, Sequence
+from datetime import date
+
+from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
+from vehicle.runs.report.page import document
+from vehicle.runs.report.svg_figure import drawing
+from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
+from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
+from vehicle.studies.sweeps.sweep_ranking import RankedCars, ranked_cars
+from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
+from vehicle.version import package_version
+
+MOST_ROWS = 2000
+"""Maximum number of runs in the table of all runs; `table.csv` has all."""
+
+
+def sweep_page(
+    results: SweepTable,
+    name: str,
+    *,
+    units: Mapping[str, str],
+    caption: str,
+    command: str = "",
+    notes: Sequence[str] = (),
+) -> str:
+    """Return the report of a sweep as one HTML document.
+
+    Args:
+        results: table of the sweep.
+        name: name of the car.
+        units: parameter path to its unit; without unit if missing.
+        caption: tyres and evaluated span.
+        command: command line that made the sweep; empty for a sweep in Python.
+        notes: messages on side effects of the varied parameters.
+    """
+    cars = ranked_cars(results)
+    parts: list[tuple[str, str, Markup]] = []
+    if cars is not None:
+        parts += [("Result", "result", _result(cars, units, caption)), ("Cars", "cars", _cars(cars, units))]
+    parts.append(("All runs", "runs", _runs(results)))
+    parts.append(("How to repeat the sweep", "repeat", _repeating(cars, results, command, notes)))
+    inputs = ", ".join(str(source) for source in results.made.get("inputs", {}))
+    counts = f"{len(results.cases)} runs, {len(results.failed)} failed"
+    head = f"{name} on {inputs}; {counts}; {caption}"
+    return document(f"Sweep of {name}", (head, f"{date.today().isoformat()}, {package_version()}"), parts)
+
+
+def best_sentences(cars: RankedCars) -> list[str]:
+    """Return sentences that name the most comfortable car and the base car with their comfort."""
+    names = f"{cars.prefix}{WEIGHTED}", f"{cars.prefix}{UNWEIGHTED}"
+
+    def values(car: int) -> str:
+        return f"{names[0]} {cars.weighted[car]:.4g} m/s², {names[1]} {cars.unweighted[car]:.4g} m/s²"
+
+    def parameters(car: int) -> str:
+        return ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[car], strict=True))
+
+    base = f"Base car, the first of the sweep: {parameters(0)}: {values(0)}."
+    if cars.best == 0:
+        return [f"The base car is the most comfortable of {len(cars.order)} cars.", base]
+    change = cars.change(cars.best)
+    against = f", {change:+.2f} % against the base car" if math.isfinite(change) else ""
+    return [f"Most comfortable of {len(cars.order)} cars: {parameters(cars.best)}: {values(cars.best)}{against}.", base]
+
+
+def _result(cars: RankedCars, units: Mapping[str, str], caption: str) -> Markup:
+    over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
+    definitions = "; ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
+    parts: list[object] = [tag("p", text) for text in best_sentences(cars)]
+    if can_be_drawn(cars):
+        label = "Comfort over the varied parameters"
+        parts.append(drawing(lambda path: draw_ranked(path, cars, units, caption), label))
+    parts.append(tag("p", f"{definitions}; {cars.point}{over}. Lower is better."))
+    return joined(parts)
+
+
+def _cars(cars: RankedCars, units: Mapping[str, str]) -> Markup:
+    heads = [f"{path} [{units[path]}]" if units.get(path) else path for path in cars.paths]
+    count = len(heads)
+    heads += [f"{cars.prefix}{WEIGHTED} [m/s²]", "change [%]", f"{cars.prefix}{UNWEIGHTED} [m/s²]"]
+    heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
+    rows = []
+    for car in cars.order:
+        change = cars.change(car)
+        rows.append(
+            [
+                *cars.cells[car],
+                number(cars.weighted[car], 4),
+                "base" if car == 0 else f"{change:+.2f}" if math.isfinite(change) else "–",
+                number(cars.unweighted[car], 4),
+                *([] if cars.seat_value is None else [number(cars.seat_value[car], 4)]),
+            ]
+        )
+    return shortened(f"{len(rows)} cars in the order of comfort", heads, rows, text_columns=count)
+
+
+def _runs(results: SweepTable) -> Markup:
+    paths = results.paths()
+    heads = ["input", *paths, *(f"{name} [{unit}]" for name, unit in results.units.items()), "engine"]
+    rows: list[list[str]] = []
+    for case, row in zip(results.cases, results.rows(), strict=True):
+        if len(rows) == MOST_ROWS:
+            break
+        values = [float(row["values"].get(name, math.nan)) for name in results.units]
+        cells = [number(value if math.isfinite(value) else None, 4) for value in values]
+        rows.append([case.source.name, *parameter_cells(case, paths), *cells, row["engine"]])
+    more = f"the first {MOST_ROWS} of {len(results.cases)}; all are in table.csv" if len(rows) == MOST_ROWS else "all"
+    failed = [tag("li", f"{case.label}: {reason}") for case, reason in results.failed[:20]]
+    heading = tag("h3", f"{len(results.failed)} failed runs")
+    return joined(
+        [
+            folded(f"Table of the runs ({more})", table(heads, rows, text_columns=1 + len(paths))),
+            *([heading, tag("ul", *failed, class_="notices")] if failed else []),
+        ]
+    )
+
+
+def _repeating(cars: RankedCars | None, results: SweepTable, command: str, notes: Sequence[str]) -> Markup:
+    parts: list[object] = [tag("p", text) for text in notes]
+    if command:
+        parts.append(tag("pre", command))
+    if cars is not None and cars.paths:
+        settings = zip(cars.paths, cars.cells[cars.best], strict=True)
+        best = " ".join(f"--set {shlex.quote(f'{path}={cell}')}" for path, cell in settings)
+        parts += [tag("p", "The most comfortable car in every other command:"), tag("pre", best)]
+    engines = ", ".join(results.made.get("engines_asked", ()))
+    parts.append(tag("p", f"Engine {engines}; program {results.made.get('program', '')}."))
+    return joined(parts)
