@@ -83,7 +83,7 @@ def test_steps_of_a_millisecond_equal_short_steps(tmp_path):
     """The road is a cubic between samples of 1 ms, which displacement and velocity at both ends give exactly."""
     car = Car.load("focus_road")
     ride = Road("C", speed=80, duration=SECONDS + 0.2).under(car.vehicle)
-    signal, fmu = ride.signal(), written(car.varied(ride.overrides), tmp_path)
+    signal, fmu = ride.signal(), written(car.with_(ride.overrides), tmp_path)
     plates = plates_of(signal, SECONDS)
     short = drive(Instance(fmu, started=False), signal, plates, OUTPUTS, 5)
     long = drive(Instance(fmu, started=False), signal, plates[::5], OUTPUTS, 1, 1e-3)
@@ -91,7 +91,7 @@ def test_steps_of_a_millisecond_equal_short_steps(tmp_path):
 
 
 def test_a_lifted_tyre_gives_one_warning(tmp_path):
-    car = Car.load("focus_road").varied(["driving.speed=20"])
+    car = Car.load("focus_road").with_(["driving.speed=20"])
     instance = Instance(written(car, tmp_path))
     for k in range(200):
         phase = 60.0 * (k + 1) * 1e-3
