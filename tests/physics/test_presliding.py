@@ -10,7 +10,7 @@ import pytest
 from tests.engines.reduced.test_reduced_quarter_car import CAR, ROAD, damper, matrices
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from tests.validation import validated
-from vehicle.engines.linear.car_matrices import SliderElements
+from vehicle.engines.linear.damper_elements import SliderElements
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced

@@ -105,10 +105,10 @@ def test_a_friction_law_with_40_numbers_of_its_own(tmp_path: Path) -> None:
         '("coulomb", "stribeck", "presliding", "wave")',
     )
     names = ", ".join(f'"{name}"' for name in NUMBERS)
-    edit(laws / "damper.py", '            "spare",\n', f'            "spare",\n            {names},\n')
-    edit(
-        laws / "damper.py", "            0.0,\n        ),\n", "            0.0,\n            *range(40),\n        ),\n"
-    )
+    last = '            "side_force",  # growth of the limit with the side force [-]\n'
+    edit(laws / "damper.py", last, f"{last}            {names},\n")
+    last = "            damper.side_force_coefficient,\n"
+    edit(laws / "damper.py", last, f"{last}            *range(40),\n")
     environment = os.environ | {"PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     done = subprocess.run(
         [sys.executable, "-c", CHECK], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300

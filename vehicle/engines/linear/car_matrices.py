@@ -14,6 +14,14 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.damper_elements import (
+    SideRows,
+    SliderElements,
+    no_side_forces,
+    no_sliders,
+    side_rows,
+    slider_elements,
+)
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
@@ -50,33 +58,6 @@ class LinearSegment:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SliderElements:
-    """Groups of parallel Jenkins elements (`vehicle.model.laws.jenkins`) over one displacement each, g groups.
-
-    Attributes:
-        rows: displacements over the velocity coordinates; (g, n).
-        dampers: index of the damper whose friction limit the limits are shares of; (g,).
-        stiffness: k [N/m], padded with zeros; (g, e). limit: limits as shares [-]; (g, e).
-        steepness: largest slope of the other nonlinear force of each damper [N s/m], infinite for a friction line;
-            (d,).
-    """
-
-    rows: Vector
-    dampers: npt.NDArray[np.int64]
-    stiffness: Vector
-    limit: Vector
-    steepness: Vector
-
-
-def no_sliders() -> SliderElements:
-    """Return no groups of Jenkins elements."""
-    none = np.zeros((0, 0))
-    return SliderElements(
-        rows=none, dampers=np.zeros(0, dtype=np.int64), stiffness=none, limit=none, steepness=np.zeros(0)
-    )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarMatrices:
     """Linear car: a system with the plates as inputs and the dampers as sliding pairs, and data of its parts.
 
@@ -97,6 +78,7 @@ class CarMatrices:
         spinning: bodies that rotate with a rolling wheel; their angle is not a state.
         carried_by: body to which each body is fixed; the body itself if it can move on its parent.
         sliders: Jenkins elements of the dampers; their forces are not in the matrices.
+        sides: side forces of the dampers whose friction depends on them.
         slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
@@ -118,6 +100,7 @@ class CarMatrices:
     carried_by: dict[str, str]
     modal: slice
     sliders: SliderElements = field(default_factory=no_sliders)
+    sides: SideRows = field(default_factory=no_side_forces)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
 
@@ -228,34 +211,12 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
         car={
             "viscous": viscous,
             "segments": _segments(rows, jacobian),
-            "sliders": _sliders(rows),
+            "sliders": slider_elements(rows),
+            "sides": side_rows(rows, jacobian, preload),
             "tyre_rows": vertical,
             **{f"tyre_{term}": values for term, values in tyres.items()},
             "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
         },
-    )
-
-
-def _sliders(rows: Rows) -> SliderElements:
-    """Return the Jenkins elements of the dampers with presliding friction."""
-    e, p = rows.layout.dampers, rows.layout.presliding
-    dampers, numbers = np.unique(p.dampers), np.bincount(p.dampers, minlength=1)
-    if not dampers.size:
-        return no_sliders()
-    stiffness, limit = np.zeros((2, len(dampers), int(numbers.max())))
-    for group, damper in enumerate(dampers):
-        elements = p.dampers == damper
-        stiffness[group, : numbers[damper]], limit[group, : numbers[damper]] = p.stiffness[elements], p.share[elements]
-    steepness = np.full(len(e.dofs), np.inf)
-    for damper in dampers:
-        steepness[damper] = 0.5 * np.max(e.pieces[e.valves[:, 1] == damper, 0], initial=0.0)
-    steepness[rows.layout.controls.dampers] = np.inf
-    return SliderElements(
-        rows=np.eye(rows.model.nv)[e.dofs[dampers]],
-        dampers=dampers,
-        stiffness=stiffness,
-        limit=limit,
-        steepness=steepness,
     )
 
 

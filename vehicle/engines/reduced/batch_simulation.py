@@ -11,6 +11,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 import numpy.typing as npt
@@ -122,9 +123,15 @@ def simulate_batch(
         statistics[car] = run.statistics
         table[:, car] = [run[name] for name in channels]
     # Group cars with similar numbers of poles: the largest number in a group applies to all its cars.
-    ordered_cars = sorted(factors, key=lambda car: (factors[car].pairs, factors[car].reals))
-    for first in range(0, len(ordered_cars), LANES):
-        cars = ordered_cars[first : first + LANES]
+    ordered_cars = sorted(
+        factors, key=lambda car: (_nonlinear_elements(models[car]), factors[car].pairs, factors[car].reals)
+    )
+    groups = [
+        cars[first : first + LANES]
+        for cars in (list(equal) for _, equal in groupby(ordered_cars, lambda car: _nonlinear_elements(models[car])))
+        for first in range(0, len(cars), LANES)
+    ]
+    for cars in groups:
         started = clock.perf_counter()
         group = GroupRun(
             [models[car] for car in cars],
@@ -165,10 +172,17 @@ def _single_precision_factors(
         for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
         if not any(law.controlled for law in laws) and np.min(np.abs(model.poles)) >= SLOWEST
     ]
-    rolling = models[0].slope.shape[1] > 0
-    factors = car_factors([models[car] for car in suitable], timestep, columns, exact=False, present_load=rolling)
-    return {
-        car: factors_of_car
-        for car, factors_of_car in zip(suitable, factors, strict=True)
-        if factors_of_car.coupling <= LARGEST_COUPLING
-    }
+    rolling, by_car = models[0].slope.shape[1] > 0, dict[int, CarFactors]()
+    suitable.sort(key=lambda car: _nonlinear_elements(models[car]))
+    for _, equal in groupby(suitable, lambda car: _nonlinear_elements(models[car])):
+        cars = list(equal)
+        factors = car_factors([models[car] for car in cars], timestep, columns, exact=False, present_load=rolling)
+        pairs = zip(cars, factors, strict=True)
+        by_car |= {car: factor for car, factor in pairs if factor.coupling <= LARGEST_COUPLING}
+    return by_car
+
+
+def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:
+    """Return the dampers with Jenkins elements, number of elements, and dampers with side forces: equal in a group."""
+    sliders, sides = model.matrices.sliders, model.matrices.sides
+    return tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist())

@@ -61,6 +61,7 @@ class CarTable:
         start: (z, z') of the driven plates at the first instant; (2, m).
         element: number type.
         sensors: sensors of each car, see `vehicle.engines.reduced.feedback.sensor_outputs`.
+        static: side forces of each car at rest; (2 k,), none by default.
 
     Attributes:
         plates: number m of driven plates.
@@ -80,6 +81,7 @@ class CarTable:
         start: Vector,
         element: np.dtype[Any],
         sensors: Sequence[Outputs],
+        static: Sequence[Vector] = (),
     ) -> None:
         self.element, lanes = element, aligned_table(1, element).shape[1]
         split = lanes if element == DOUBLE else 1
@@ -100,6 +102,7 @@ class CarTable:
         sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
         sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": g}
+        sizes["static"] = len(static[0]) if static else 0
         sizes |= dict.fromkeys(("spring", "give", "share", "slider"), g * e)
         sizes |= {"work": d * (4 + 4 * node_count) + g * (2 + 4 * e) + 2 * self.sums + TILE}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
@@ -123,6 +126,7 @@ class CarTable:
             values["sensors"] = car_sensors.height[:, columns] @ start[0] + car_sensors.velocity[:, columns] @ start[1]
             sliders = cars[car].sliders
             values |= {"level": cars[car].levels if part.start == 0 else 0.0 * cars[car].levels}
+            values |= {"static": static[car]} if static else {}
             values |= {"spring": sliders.stiffness, "share": sliders.limit}
             values["give"] = np.divide(
                 1.0, sliders.stiffness, out=np.zeros_like(sliders.stiffness), where=sliders.stiffness > 0.0
@@ -140,7 +144,8 @@ class CarTable:
         self.rows = TableRows(
             pairs=pairs, reals=reals, iterations=iterations, groups=g, elements=e, pieces=node_count - 1, **first_rows
         )
-        varying = any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
+        varying = sizes["static"] > 0
+        varying |= any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
 
     def tiles(self, weights: Sequence[Vector]) -> Table:

@@ -44,6 +44,7 @@ class Feedback(NamedTuple):
         memory: states of their laws, with delayed settings; (k, ...).
         step: index of the next step; (1,).
         owners: index of the damper of each group of Jenkins elements; (g,).
+        sides: indices of the dampers whose friction limit depends on their side force; (k,).
     """
 
     tyres: int
@@ -53,6 +54,7 @@ class Feedback(NamedTuple):
     memory: Vector
     step: npt.NDArray[np.int64]
     owners: npt.NDArray[np.int64]
+    sides: npt.NDArray[np.int64]
 
 
 def sensor_outputs(
@@ -67,12 +69,17 @@ def sensor_outputs(
         tyre_load: static tyre loads [N] by wheel; None if no current loads act on the slopes.
 
     Returns:
-        F_z/F_0 - 1 of the driven tyres, then velocities of wheel and body at each controlled damper [m/s].
+        F_z/F_0 - 1 of the driven tyres, velocities of wheel and body at each controlled damper [m/s], then side forces
+        without their static values [N].
     """
     inputs = model.matrices.system.inputs
     rates = np.zeros((0, len(model.poles)), dtype=np.complex128)
     if any(damper.controlled for damper in dampers):
         rates = model.matrices.sensors @ (model.modal * model.poles)
+    sides = model.matrices.sides
+    if sides.dampers.size:
+        forces = sides.displacement @ model.modal + sides.velocity @ (model.modal * model.poles)
+        rates = np.concatenate([rates, forces + sides.branch @ model.branch])
     no_plates = np.zeros((len(rates), len(inputs)))
     velocities = Outputs(poles=rates, height=no_plates, velocity=no_plates)
     if tyre_load is None:
@@ -90,13 +97,18 @@ def sensor_outputs(
 
 
 def feedback_at_rest(
-    dampers: Sequence[Damper], owners: npt.NDArray[np.int64], tyres: int, plate_inputs: int, timestep: float
+    dampers: Sequence[Damper],
+    owners: npt.NDArray[np.int64],
+    sides: npt.NDArray[np.int64],
+    tyres: int,
+    plate_inputs: int,
+    timestep: float,
 ) -> Feedback:
     """Return the feedback of a car at rest.
 
     Args:
         dampers: laws of all dampers.
-        owners, tyres, plate_inputs: see `Feedback`.
+        owners, sides, tyres, plate_inputs: see `Feedback`.
         timestep: time step [s].
     """
     controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
@@ -111,6 +123,7 @@ def feedback_at_rest(
         memory=memory,
         step=np.zeros(1, dtype=np.int64),
         owners=owners,
+        sides=sides,
     )
 
 

@@ -88,9 +88,17 @@ class GroupRun:
         ]
         tyres = len(columns) if present_load else 0
         self.feedback = feedback_at_rest(
-            dampers[0], factors[0].sliders.dampers, tyres, factors[0].plate_inputs, self.timestep
+            dampers[0],
+            factors[0].sliders.dampers,
+            models[0].matrices.sides.dampers,
+            tyres,
+            factors[0].plate_inputs,
+            self.timestep,
         )
-        self.start, self.cars = start, CarTable(factors, dampers, start, element, sensors)
+        self.start, self.cars = (
+            start,
+            CarTable(factors, dampers, start, element, sensors, [model.matrices.sides.static for model in models]),
+        )
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
         """Simulate the cars and fill their rows of the table.

@@ -26,7 +26,7 @@ from math import factorial
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.car_matrices import SliderElements, no_sliders
+from vehicle.engines.linear.damper_elements import SliderElements, no_sliders
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 Vector = npt.NDArray[np.float64]

@@ -58,6 +58,7 @@ class TableRows(NamedTuple):
         spring, give, share: stiffness k of the Jenkins elements, 1/k (0 without), and their shares of the limit.
         slider: forces of the elements at the beginning of the step.
         place: displacements of the groups there.
+        static: side forces at rest.
         work: work space for the solution of a step.
     """
 
@@ -90,6 +91,7 @@ class TableRows(NamedTuple):
     share: int
     slider: int
     place: int
+    static: int
     work: int
 
 

@@ -25,6 +25,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 from vehicle.compiler import OPTIONS, numba_module
 from vehicle.engines.reduced.feedback import Feedback, excess_coefficient
 from vehicle.engines.reduced.simd_vector import (
@@ -217,6 +219,26 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
 
 
 @inlined
+def add_side_forces(t: Any, r: TableRows, feedback: Feedback, laws: Any) -> None:
+    """Add the growth with the side force, extrapolated to the middle of the step, to the friction limits.
+
+    Args:
+        t, r, feedback, laws: see `vehicle.engines.reduced.time_stepping.step_cars`.
+    """
+    first, half = feedback.tyres + 2 * feedback.dampers.shape[0], filled(t, 0.5)
+    for k in range(feedback.sides.shape[0]):
+        for i in range(2 * k, 2 * k + 2):
+            force = load(t, r.sensors + first + i)
+            middle = load(t, r.static + i) + force + half * (force - load(t, r.past + first + i))
+            store(t, r.past + first + i, force)
+            store(t, r.work + i - 2 * k, middle)
+        row = r.limit + feedback.sides[k]
+        for lane in range(laws.shape[1]):
+            x, y = t[r.work, lane], t[r.work + 1, lane]
+            t[row, lane] += laws[feedback.sides[k], lane]["side_force"] * np.sqrt(x * x + y * y)
+
+
+@inlined
 def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, step: int, dampers: Any) -> None:
     """Set the inputs of the next step, its friction limits and the coefficients of controlled dampers.
 
@@ -251,9 +273,11 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
             store(t, r.limit + i, now + filled(t, 0.5) * (now - load(t, r.earlier + i)))
             for lane in range(laws.shape[1]):
                 t[r.limit + i, lane] = friction_limit(laws[i, lane], t[r.limit + i, lane])
-            if laws.shape[1] == 1:
-                store(t, r.limit + i, broadcast(t[r.limit + i, 0]))
         store(t, r.earlier + i, now)
+    add_side_forces(t, r, feedback, laws)
+    if laws.shape[1] == 1:
+        for i in range(laws.shape[0]):
+            store(t, r.limit + i, broadcast(t[r.limit + i, 0]))
 
 
 @inlined

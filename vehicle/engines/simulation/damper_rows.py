@@ -5,14 +5,15 @@ Friction rows follow the equality rows: those of joints in their order, then tho
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import mujoco
 import numpy as np
 
-from vehicle.engines.simulation.element_records import Dampers, Index, Presliding
-from vehicle.engines.simulation.law_arrays import LawNames, friction_tendons
+from vehicle.engines.simulation.element_records import Dampers, Index, Presliding, SideForces
+from vehicle.engines.simulation.law_arrays import LawNames, Numbers, friction_tendons
+from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import unpack
 
 
@@ -65,6 +66,40 @@ def presliding_rows(model: mujoco.MjModel, law: LawNames, dampers: Dampers, firs
         dampers=whole_numbers([index for _, index in indices]),
         stiffness=np.zeros(0),
         share=np.zeros(0),
+    )
+
+
+def side_forces(
+    model: mujoco.MjModel, law: LawNames, numbers: Numbers, ends: Mapping[str, tuple[int, int]]
+) -> SideForces:
+    """Return the bushings at the rods of the dampers.
+
+    Args:
+        model, law, numbers: model, names of its elements and numbers of their laws.
+        ends: sites on the moving part and on the carrier of each bushing.
+
+    Raises:
+        ConfigurationError: a damper with a side force coefficient has no bushing at its rod.
+    """
+    oblique = [name for name in law.bushings if f"directions/{name}" in numbers]
+    sides: list[tuple[int, int, float, int]] = []
+    for damper, actuator in enumerate(_damper_actuators(model)):
+        rod, before = model.body_weldid[model.jnt_bodyid[model.actuator_trnid[actuator, 0]]], len(sides)
+        for index, name in enumerate(law.bushings):
+            for site, sign in zip(ends[name], (1.0, -1.0), strict=True):
+                if model.body_weldid[model.site_bodyid[site]] == rod:
+                    sides.append((damper, index, sign, oblique.index(name) if name in oblique else -1))
+        record = unpack(numbers[f"actuator/{law.dampers[damper]}"])[0]
+        if record["side_force"] > 0.0 and len(sides) == before:
+            raise ConfigurationError(
+                f"{law.dampers[damper]}: side_force_coefficient is {record['side_force']:g}, but no bushing holds the "
+                "rod, whose force it needs; set the coefficient to 0, or give the mount of the rod a stiffness"
+            )
+    return SideForces(
+        dampers=whole_numbers([side[0] for side in sides]),
+        elements=whole_numbers([side[1] for side in sides]),
+        signs=np.array([side[2] for side in sides]),
+        oblique=whole_numbers([side[3] for side in sides]),
     )
 
 

@@ -120,6 +120,21 @@ class Presliding(NamedTuple):
     share: Vector
 
 
+class SideForces(NamedTuple):
+    """Bushings at the rods of the dampers, whose forces across the slide are the side forces; k of them.
+
+    Attributes:
+        dampers: index of the damper; (k,). elements: index of the bushing; (k,).
+        signs: 1 if the rod is the moving part of the bushing, -1 if it is the carrier; (k,).
+        oblique: index among the oblique elements, -1 for others; (k,).
+    """
+
+    dampers: Index
+    elements: Index
+    signs: Vector
+    oblique: Index
+
+
 class Controls(NamedTuple):
     """Controlled dampers, k of the w dampers.
 
@@ -262,8 +277,8 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, presliding, controls, tables, modes, space, rolling, round: records of
-            the elements.
+        bushings, rotations, springs, dampers, presliding, sides, controls, tables, modes, space, rolling, round:
+            records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -275,6 +290,7 @@ class Layout(NamedTuple):
     springs: Springs
     dampers: Dampers
     presliding: Presliding
+    sides: SideForces
     controls: Controls
     tables: Tables
     modes: Modes

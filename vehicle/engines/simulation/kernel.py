@@ -256,6 +256,30 @@ def ideal_joints(efc: Efc, e: Layout, c: Weights, s: State) -> None:
 
 
 @jitable
+def side_force(damper: int, d: Fields, e: Layout, s: State) -> float:
+    """Return the force of the bushings of a rod across its slide [N]; call this after `elements`."""
+    b, x, y, z = e.bushings, 0.0, 0.0, 0.0
+    for k in range(e.sides.dampers.shape[0]):
+        if e.sides.dampers[k] == damper:
+            n, sign = e.sides.elements[k], e.sides.signs[k]
+            f, g, h = s.explicit[b.rows[n, 0]], s.explicit[b.rows[n, 1]], s.explicit[b.rows[n, 2]]
+            if e.sides.oblique[k] >= 0:
+                way, frame = b.directions[e.sides.oblique[k]], d.xmat[b.carriers[n]]
+                u = way[0] * f + way[3] * g + way[6] * h
+                v = way[1] * f + way[4] * g + way[7] * h
+                w = way[2] * f + way[5] * g + way[8] * h
+                f = frame[0] * u + frame[1] * v + frame[2] * w
+                g = frame[3] * u + frame[4] * v + frame[5] * w
+                h = frame[6] * u + frame[7] * v + frame[8] * w
+            x, y, z = x + sign * f, y + sign * g, z + sign * h
+    # The axis of a slide is the linear part of its motion.
+    axis = d.cdof[e.dampers.dofs[damper]]
+    along = x * axis[3] + y * axis[4] + z * axis[5]
+    force: float = np.sqrt(max(x * x + y * y + z * z - along * along, 0.0))
+    return force
+
+
+@jitable
 def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
     """Write viscous, friction and valve rows of the dampers."""
     damper_rows = e.dampers
@@ -264,6 +288,8 @@ def dampers(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         efc.aref[damper_rows.rows[n]] = 0.0
         row, sliding = damper_rows.frictions[n], d.qvel[damper_rows.dofs[n]]
         limit = friction_limit(damper_rows.laws[n], sliding)
+        if damper_rows.laws[n]["side_force"] > 0.0:
+            limit += damper_rows.laws[n]["side_force"] * side_force(n, d, e, s)
         efc.D[row] = max(slope_at_rest(limit, damper_rows.laws[n]["smoothing"]) * c.timestep, EMPTY_ROW)
         efc.aref[row] = -sliding / c.timestep
         efc.frictionloss[row] = s.limit[n] = limit

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, whole_numbers
+from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, side_forces, whole_numbers
 from vehicle.engines.simulation.element_records import (
     Bushings,
     Controls,
@@ -120,6 +120,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         ),
         dampers=dampers,
         presliding=presliding_rows(model, law, dampers, int(first_rows[-1])),
+        sides=side_forces(model, law, numbers, ends),
         controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
         tables=tables_through([]),
         modes=_modes(

@@ -37,7 +37,7 @@ RECORD = np.dtype(
             "rest_force",  # F_c(0) - F_gas [N]
             "shift",  # shift - F_gas [N]
             "friction_law",  # index in FRICTION_LAWS
-            "spare",
+            "side_force",  # growth of the limit with the side force [-]
         )
     ],
     align=True,
@@ -62,7 +62,7 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
             force_at_rest,
             force_at_rest - curve.at_rest(),
             FRICTION_LAWS.index(damper.friction_law),
-            0.0,
+            damper.side_force_coefficient,
         ),
         dtype=RECORD,
     )

@@ -171,8 +171,9 @@ class Damper:
     Friction is a line with c = (2/pi) limit eps, the slope of the published limit (2/pi) atan(eps v) at rest, up to
     the limit (clamp(x, L) = min(L, max(-L, x))): the atan itself is the law of the lumped models.
     The limit is Fd for the Coulomb law and Fd + (Fs - Fd) exp(-|v/vs|^delta) for the Stribeck law.
-    Presliding friction has the limit Fd, and below it springs with sliders over the stroke in place of the line: on
-    first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
+    With a side force coefficient the limit of every law grows by it times the transverse force of the mounts of the
+    rod. Presliding friction has the limit Fd, and below it springs with sliders over the stroke in place of the line:
+    on first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
     that curve (`vehicle.model.laws.presliding`); the smoothing has no effect.
     Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law.
     """
@@ -215,6 +216,10 @@ class Damper:
     stribeck_exponent: float | None = quantity(
         "-", "delta, exponent of the Stribeck law", above=0.0, at_most=20.0, why="1 and 2 are usual", default=None
     )
+    side_force_coefficient: float = quantity(
+        "-", "growth of the friction limit with the side force on the rod: limit + coefficient |Q|", at_least=0.0,
+        at_most=2.0, why="0.1 to 0.4 for a sliding bush and its lever; 0 for a damper between two joints", default=0.0,
+    )  # fmt: skip
     presliding_stiffness: float | None = quantity(
         "N/m", "K, stiffness of presliding friction after a reversal", above=0.0, default=None, **STIFFEST
     )

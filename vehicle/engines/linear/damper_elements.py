@@ -1,0 +1,122 @@
+"""Jenkins elements and side forces of the dampers as rows over the coordinates of the linear car."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.rows import Rows
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SliderElements:
+    """Groups of parallel Jenkins elements (`vehicle.model.laws.jenkins`) over one displacement each, g groups.
+
+    Attributes:
+        rows: displacements over the velocity coordinates; (g, n).
+        dampers: index of the damper whose friction limit the limits are shares of; (g,).
+        stiffness: k [N/m], padded with zeros; (g, e). limit: limits as shares [-]; (g, e).
+        steepness: largest slope of the other nonlinear force of each damper [N s/m], infinite for a friction line;
+            (d,).
+    """
+
+    rows: Vector
+    dampers: npt.NDArray[np.int64]
+    stiffness: Vector
+    limit: Vector
+    steepness: Vector
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SideRows:
+    """Side forces on the rods of k dampers, along two directions across the slide each: static + rows (u, u', f_b).
+
+    Attributes:
+        dampers: indices of the dampers with a side force coefficient; (k,).
+        static: forces at rest [N]; (2 k,).
+        displacement, velocity, branch: rows over u, u' and the forces of the Maxwell branches; (2 k, ...).
+    """
+
+    dampers: npt.NDArray[np.int64]
+    static: Vector
+    displacement: Vector
+    velocity: Vector
+    branch: Vector
+
+
+def no_side_forces() -> SideRows:
+    """Return no side forces."""
+    none = np.zeros((0, 0))
+    return SideRows(
+        dampers=np.zeros(0, dtype=np.int64), static=np.zeros(0), displacement=none, velocity=none, branch=none
+    )
+
+
+def no_sliders() -> SliderElements:
+    """Return no groups of Jenkins elements."""
+    none = np.zeros((0, 0))
+    return SliderElements(
+        rows=none, dampers=np.zeros(0, dtype=np.int64), stiffness=none, limit=none, steepness=np.zeros(0)
+    )
+
+
+def slider_elements(rows: Rows) -> SliderElements:
+    """Return the Jenkins elements of the dampers with presliding friction."""
+    e, p = rows.layout.dampers, rows.layout.presliding
+    dampers, numbers = np.unique(p.dampers), np.bincount(p.dampers, minlength=1)
+    if not dampers.size:
+        return no_sliders()
+    stiffness, limit = np.zeros((2, len(dampers), int(numbers.max())))
+    for group, damper in enumerate(dampers):
+        elements = p.dampers == damper
+        stiffness[group, : numbers[damper]], limit[group, : numbers[damper]] = p.stiffness[elements], p.share[elements]
+    steepness = np.full(len(e.dofs), np.inf)
+    for damper in dampers:
+        steepness[damper] = 0.5 * np.max(e.pieces[e.valves[:, 1] == damper, 0], initial=0.0)
+    steepness[rows.layout.controls.dampers] = np.inf
+    return SliderElements(
+        rows=np.eye(rows.model.nv)[e.dofs[dampers]],
+        dampers=dampers,
+        stiffness=stiffness,
+        limit=limit,
+        steepness=steepness,
+    )
+
+
+def side_rows(rows: Rows, jacobian: Vector, preload: Vector) -> SideRows:
+    """Return the side forces of the dampers with a side force coefficient; arguments: see `car_matrices.law_matrices`.
+
+    The turn of the static force along the slide with the rod is neglected: it is the weight of the rod, and the
+    force of its gas.
+    """
+    e, b, model = rows.layout, rows.layout.bushings, rows.model
+    dampers = np.flatnonzero(e.dampers.laws["side_force"] > 0.0)
+    if not dampers.size:
+        return no_side_forces()
+    branches = np.cumsum(b.branch_stiffness.ravel() > 0.0).reshape(b.rows.shape) - 1
+    count = int(np.count_nonzero(b.branch_stiffness > 0.0))
+    static, branch = np.zeros((len(dampers), 2)), np.zeros((len(dampers), 2, count))
+    displacement, velocity = np.zeros((2, len(dampers), 2, jacobian.shape[1]))
+    for side, damper in enumerate(dampers):
+        # In the design position all frames are parallel.
+        across = np.linalg.svd(model.jnt_axis[model.dof_jntid[e.dampers.dofs[damper]]][None])[2][1:]
+        for k in np.flatnonzero(e.sides.dampers == damper):
+            n = e.sides.elements[k]
+            way = rows.directions.get(int(n), np.eye(3))
+            along = e.sides.signs[k] * across @ way.T
+            static[side] += along @ preload[b.rows[n]]
+            displacement[side] -= along @ (b.stiffness[n][:, None] * jacobian[b.rows[n]])
+            velocity[side] -= along @ (b.damping[n][:, None] * jacobian[b.rows[n]])
+            for axis in np.flatnonzero(b.branch_stiffness[n] > 0.0):
+                branch[side, :, branches[n, axis]] -= along[:, axis]
+    return SideRows(
+        dampers=dampers.astype(np.int64),
+        static=static.ravel(),
+        displacement=displacement.reshape(2 * len(dampers), -1),
+        velocity=velocity.reshape(2 * len(dampers), -1),
+        branch=branch.reshape(2 * len(dampers), -1),
+    )
