@@ -74,6 +74,8 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
+    from vehicle.model.parameters.paths import full_path
+    from vehicle.model.parameters.toml_file import as_table
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
@@ -111,7 +113,8 @@ def _job(options: argparse.Namespace) -> None:
     cars = ranked_cars(table)
     drawn = cars is not None and can_be_drawn(cars)
     caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
-    units = {} if cars is None else {path: str(car.vehicle.quantity_of(path).get("unit", "")) for path in cars.paths}
+    paths = {} if cars is None else {path: full_path(as_table(car.vehicle), path) for path in cars.paths}
+    units = {path: str(car.vehicle.quantity_of(whole).get("unit", "")) for path, whole in paths.items()}
     if cars is not None and drawn:
         write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, units, caption))
     if report is not None:
@@ -127,7 +130,7 @@ def _job(options: argparse.Namespace) -> None:
             f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
         if cars is not None:
-            print("\n".join(ranking_lines(cars)))
+            print("\n".join(ranking_lines(cars, units)))
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:

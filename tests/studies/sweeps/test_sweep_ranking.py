@@ -43,7 +43,8 @@ def test_cars_are_ranked_by_the_mean_over_the_inputs():
     assert cars.paths == ["front.spring"] and cars.inputs == 2 and cars.point == "at the seat rail"
     assert cars.order == [0, 1, 2] and cars.weighted.tolist() == [2.0, 3.0, 4.0]
     assert cars.change(2) == pytest.approx(100.0) and cars.unweighted[1] == 6.0
-    lines = ranking_lines(cars)
+    lines = ranking_lines(cars, {"front.spring": "N/m"})
+    assert lines[0].split()[:2] == ["front.spring", "[N/m]"] and "[N/m]" not in ranking_lines(cars, {})[0]
     assert lines[1].split() == ["30", "2", "base", "4"] and lines[2].split() == ["10", "3", "+50.00", "%", "6"]
     assert lines[-1] == "most comfortable is the first car: front.spring = 30"
 
@@ -53,7 +54,7 @@ def test_a_failed_run_takes_its_car_out():
     failed = [replace(table.results[0], values={}, reason="stopped"), *table.results[1:]]
     cars = ranked(replace(table, results=failed))
     assert cars.order == [1, 2] and math.isnan(cars.weighted[0]) and math.isnan(cars.change(1))
-    assert ranking_lines(cars)[1].split() == ["10", "3", "-", "6"]
+    assert ranking_lines(cars, {})[1].split() == ["10", "3", "-", "6"]
     everything = [replace(result, values={}, reason="stopped") for result in table.results]
     assert ranked_cars(replace(table, results=everything)) is None
 
@@ -61,7 +62,7 @@ def test_a_failed_run_takes_its_car_out():
 def test_many_cars_are_cut_and_the_first_stays():
     table = table_of([(str(100 - i),) for i in range(30)], ["a"], inputs=("a.csv",))
     falling = [replace(r, values={k: 40.0 - v for k, v in r.values.items()}) for r in table.results]
-    lines = ranking_lines(ranked(replace(table, results=falling)))
+    lines = ranking_lines(ranked(replace(table, results=falling)), {})
     assert lines[1].split()[0] == "71" and lines[13].split()[:3] == ["100", "39", "base"]
     assert lines[14] == "and 17 more cars in table.csv" and lines[-1].startswith("most comfortable: a = 71 (-74.36 %")
 

@@ -16,6 +16,9 @@ Vector = npt.NDArray[np.float64]
 MOST_LINES = 3000
 """Maximum number of cars drawn on parallel axes: the most comfortable and evenly spaced others."""
 
+MOST_TICKS = 8
+"""Maximum number of values of a parameter that each have a tick of their own."""
+
 COLOURS_OF_COMFORT = "viridis"
 
 
@@ -74,6 +77,9 @@ def _map(figure: Any, axis: Any, names: Sequence[str], parameters: Vector, weigh
         grid = np.full((rows.size, columns.size), np.nan)
         grid[np.searchsorted(rows, parameters[:, 1]), np.searchsorted(columns, parameters[:, 0])] = weighted
         shown = axis.pcolormesh(columns, rows, grid, cmap=COLOURS_OF_COMFORT, shading="nearest")
+        for ticks, values in ((axis.set_xticks, columns), (axis.set_yticks, rows)):
+            if values.size <= MOST_TICKS:
+                ticks(values, labels=[f"{value:g}" for value in values])
     else:
         shown = axis.scatter(parameters[:, 0], parameters[:, 1], c=weighted, cmap=COLOURS_OF_COMFORT, s=40)
     _mark(axis, parameters[:, 0], parameters[:, 1], weighted)

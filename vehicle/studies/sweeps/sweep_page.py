@@ -81,7 +81,7 @@ def _result(cars: RankedCars, units: Mapping[str, str], caption: str) -> Markup:
 
 
 def _cars(cars: RankedCars, units: Mapping[str, str]) -> Markup:
-    heads = [f"{path} [{units[path]}]" if units.get(path) else path for path in cars.paths]
+    heads = cars.headings(units)
     count = len(heads)
     heads += [f"{cars.prefix}{WEIGHTED} [m/s²]", "change [%]", f"{cars.prefix}{UNWEIGHTED} [m/s²]"]
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]

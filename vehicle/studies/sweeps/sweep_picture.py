@@ -51,5 +51,12 @@ def draw_ranked(path: Path, cars: RankedCars, units: Mapping[str, str], caption:
     assert parameters is not None
     title = f"Comfort {cars.point} over the varied parameters"
     over = f"mean of {cars.inputs} inputs" if cars.inputs > 1 else "one input"
-    names = [f"{name} [{units[name]}]" if units.get(name) else name for name in cars.paths]
-    plot_sweep(path, names, parameters, cars.weighted, cars.unweighted, title, "; ".join(filter(None, (over, caption))))
+    plot_sweep(
+        path,
+        cars.headings(units),
+        parameters,
+        cars.weighted,
+        cars.unweighted,
+        title,
+        "; ".join(filter(None, (over, caption))),
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,6 +59,14 @@ class RankedCars:
         """Return the change of the weighted value from the first car [%]; NaN without a value of the first car."""
         return 100.0 * (float(self.weighted[car]) / float(self.weighted[0]) - 1.0)
 
+    def headings(self, units: Mapping[str, str]) -> list[str]:
+        """Return the varied parameters with their units.
+
+        Args:
+            units: parameter path to its unit; without unit if missing.
+        """
+        return [f"{path} [{units[path]}]" if units.get(path) else path for path in self.paths]
+
     def numbers(self) -> Vector | None:
         """Return the parameters as numbers, (cars, paths); None if a value is a text or a vector."""
         try:
@@ -109,12 +117,17 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
     )
 
 
-def ranking_lines(cars: RankedCars) -> list[str]:
-    """Return the printed table: parameters, comfort and change from the first car, most comfortable car first."""
+def ranking_lines(cars: RankedCars, units: Mapping[str, str]) -> list[str]:
+    """Return the printed table: parameters, comfort and change from the first car, most comfortable car first.
+
+    Args:
+        cars: the cars.
+        units: parameter path to its unit; without unit if missing.
+    """
     shown = list(cars.order[:SHOWN])
     if 0 in cars.order and 0 not in shown:
         shown.append(0)
-    heads = [*cars.paths, f"{cars.prefix}{WEIGHTED} [m/s2]", "change", f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
+    heads = [*cars.headings(units), f"{cars.prefix}{WEIGHTED} [m/s2]", "change", f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
     rows = [
         [

@@ -110,7 +110,7 @@ class SweepTable:
         """Return the cars in the order of comfort, as the console shows them; without comfort, the line of `repr`."""
         ranking = _later("sweep_ranking")
         cars = ranking.ranked_cars(self)
-        return repr(self) if cars is None else "\n".join(ranking.ranking_lines(cars))
+        return repr(self) if cars is None else "\n".join(ranking.ranking_lines(cars, {}))
 
     def plot(self, ax: Any = None) -> Any:
         """Plot comfort over the varied parameters: a line for one, a map for two, parallel axes for more.
