@@ -74,8 +74,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
-    from vehicle.model.parameters.paths import full_path
-    from vehicle.model.parameters.toml_file import as_table
+    from vehicle.model.parameters.paths import unit_of_override
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
@@ -113,8 +112,7 @@ def _job(options: argparse.Namespace) -> None:
     cars = ranked_cars(table)
     drawn = cars is not None and can_be_drawn(cars)
     caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
-    paths = {} if cars is None else {path: full_path(as_table(car.vehicle), path) for path in cars.paths}
-    units = {path: str(car.vehicle.quantity_of(whole).get("unit", "")) for path, whole in paths.items()}
+    units = {} if cars is None else {path: unit_of_override(car.vehicle, path) for path in cars.paths}
     if cars is not None and drawn:
         write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, units, caption))
     if report is not None:

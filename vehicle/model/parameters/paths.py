@@ -242,6 +242,20 @@ def unit_of(car: Any, path: str) -> str:
     return str(quantity_of(car, path)["unit"])
 
 
+def unit_of_override(vehicle: Any, path: str) -> str:
+    """Return the unit of the parameters that an override sets; empty for a text and for a key that the file lacks.
+
+    Args:
+        vehicle: the vehicle.
+        path: see `meant`.
+    """
+    try:
+        first, *_ = meant(vehicle.table, path)
+    except ConfigurationError:
+        return ""
+    return str(vehicle.quantity_of(first).get("unit", ""))
+
+
 def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
     """Return the declaration of a parameter, see `quantity`: unit, meaning, range.
 
