@@ -122,7 +122,7 @@ def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str,
     )
     from vehicle.signals.records.teim_orbit import is_property_file, read_property_file
 
-    *above, name, _ = path.split(".")
+    *above, name = path.split(".")[:-1] or [""]
     of_points = name == "stop" or name.startswith("table")
     bushing = "bushings" in above[-2:] or above[:1] == ["connection"]
     # Only dampers have a law of damping; a table of one side may leave it out.
