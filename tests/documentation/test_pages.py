@@ -94,7 +94,9 @@ def test_the_newcomer_finds_the_parameters_of_both_files(site):
     for row in fitted["parameters"]:
         assert abs(row["value"] - execution.names["real"][row["path"]]) < 3.0 * row["standard_error"]
         assert row["standard_error"] < 0.01 * row["value"]
-    assert "coulomb_friction from " in (execution.folder / "a_or_b.html").read_text(encoding="utf-8")
+    assert "front damper Coulomb friction 45 instead of" in (execution.folder / "a_or_b.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_python_examples_show_every_public_function():
