@@ -142,7 +142,13 @@ class CarTable:
         del first_rows["pair"]
         iterations = cars[0].iterations if element == DOUBLE else ITERATIONS[0]
         self.rows = TableRows(
-            pairs=pairs, reals=reals, iterations=iterations, groups=g, elements=e, pieces=node_count - 1, **first_rows
+            pairs=pairs,
+            reals=reals,
+            iterations=iterations,
+            groups=(0.0,) * g,
+            elements=e,
+            pieces=node_count - 1,
+            **first_rows,
         )
         varying = sizes["static"] > 0
         varying |= any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
@@ -159,7 +165,7 @@ class CarTable:
         """
         tile_count, poles = (
             -(-len(weights[0]) // TILE),
-            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - self.rows.groups),
+            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.rows.groups)),
         )
         table = aligned_table(tile_count * self.states * TILE, self.element)
         view = table.reshape(tile_count, self.states, TILE, table.shape[1])

@@ -40,7 +40,8 @@ class TableRows(NamedTuple):
             pairs.
         iterations: Gauss-Seidel iterations over the forces.
         real: first row of the factors of the real poles.
-        groups, elements: number of groups of Jenkins elements, and of the elements of each.
+        groups: tuple with the length of the groups of Jenkins elements, which the compiler knows.
+        elements: number of elements of a group.
         slip: contribution of z' at the end of a step to the damper velocities and to the displacements of the groups,
             by plates. level: contribution of z to the latter.
         gain, ramp: contributions of the mean forces of dampers and groups, and of the slopes of the damper forces.
@@ -65,7 +66,7 @@ class TableRows(NamedTuple):
     pairs: int
     reals: int
     iterations: int
-    groups: int
+    groups: tuple[float, ...]
     elements: int
     real: int
     slip: int

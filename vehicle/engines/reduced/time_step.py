@@ -77,8 +77,8 @@ def prepare_groups(t: Any, r: TableRows, owners: Any, count: int, work: int) -> 
         work: first row of the corners: for each group the smallest and the largest mean force, then left side and mean
             force at each corner.
     """
-    half, size, width = filled(t, 0.5), 2 + 4 * r.elements, count + r.groups
-    for group in range(r.groups):
+    half, size, width = filled(t, 0.5), 2 + 4 * r.elements, count + len(r.groups)
+    for group in range(len(r.groups)):
         at, first, limit = work + size * group, r.elements * group, load(t, r.limit + owners[group])
         gain = load(t, r.gain + (count + group) * (width + 1))
         low, high = filled(t, 0.0), filled(t, 0.0)
@@ -123,7 +123,7 @@ def advance_groups(t: Any, r: TableRows, owners: Any, moved: int) -> None:
         t, r, owners: see `prepare_groups`.
         moved: first row of the changes of the displacements over the step.
     """
-    for group in range(r.groups):
+    for group in range(len(r.groups)):
         u, limit = load(t, moved + group), load(t, r.limit + owners[group])
         store(t, r.place + group, load(t, r.place + group) + u)
         for i in range(r.elements * group, r.elements * (group + 1)):
@@ -139,7 +139,7 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
     The work space begins with the velocities and displacements without forces.
     """
     count = len(dampers)
-    sums = count + r.groups
+    sums = count + len(r.groups)
     step, old = r.work + sums, r.inputs
     nodes = r.pieces + 1
     width = 3 * nodes
@@ -148,7 +148,7 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
     corners, slider = work + 4 * nodes * count, old + 2 * count
     zeros, ones = filled(t, 0.0), filled(t, 1.0)
     prepare_groups(t, r, owners, count, corners)
-    for group in range(r.groups):
+    for group in range(len(r.groups)):
         row = r.work + count + group
         arriving = load(t, row) - load(t, r.place + group)
         for j in range(count):
@@ -182,7 +182,7 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
                 if j != i:
                     other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
                     arriving = arriving + other * load(t, old + j)
-            for j in range(r.groups):
+            for j in range(len(r.groups)):
                 arriving = arriving + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
             at, law = work + 4 * nodes * i, r.law + width * i
             force, hold = load(t, at + 2), load(t, law + 1)
@@ -195,12 +195,12 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
             store(t, old + i, zeros - force - load(t, r.hold + i))
             if iteration == r.iterations - 1:
                 store(t, step + i, hold)
-        for group in range(r.groups):
+        for group in range(len(r.groups)):
             i, value = count + group, load(t, r.work + count + group)
             for j in range(count):
                 other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
                 value = value + other * load(t, old + j)
-            for j in range(r.groups):
+            for j in range(len(r.groups)):
                 if j != group:
                     value = value + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
             force = group_force(t, corners + (2 + 4 * r.elements) * group, 2 * r.elements, value)
@@ -247,7 +247,7 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         step: index of the step.
     """
     count, plates = len(dampers), rates.shape[1] // 4
-    row = r.inputs + 2 * count + r.groups
+    row = r.inputs + 2 * count + len(r.groups)
     for k in range(2 * plates):
         store(t, row + k, broadcast(rates[step, k]))
     row += 2 * plates
@@ -290,7 +290,7 @@ def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors
         count, sensors: numbers of dampers and of sensors.
     """
     plates = rates.shape[1] // 4
-    row, forces = r.direct, 2 * count + r.groups
+    row, forces = r.direct, 2 * count + len(r.groups)
     for i in range(sensors):
         value = load(t, r.sensors + i)
         for k in range(forces):
@@ -330,7 +330,7 @@ def advance(
         step: index of the step.
     """
     count, plates = len(dampers), rates.shape[1] // 4
-    size, width, kept, solved = len(inputs), len(sums), changes.shape[0] > 0, count + r.groups
+    size, width, kept, solved = len(inputs), len(sums), changes.shape[0] > 0, count + len(r.groups)
     pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
     set_inputs(t, r, feedback, rates, laws, step, dampers)
     for i in range(width):

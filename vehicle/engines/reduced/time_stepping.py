@@ -41,7 +41,7 @@ def add_damper_outputs(t: Any, r: TableRows, feedback: Feedback, y: Any, row: in
         force = half * load(t, r.inputs + i)
         store(y, row + count + i, load(y, row + count + i) - force)
         store(y, row + 2 * count + i, load(y, row + 2 * count + i) + force)
-    for group in range(r.groups):
+    for group in range(len(r.groups)):
         i, force = feedback.owners[group], half * load(t, r.inputs + 2 * count + group)
         store(y, row + count + i, load(y, row + count + i) - force)
         store(y, row + 2 * count + i, load(y, row + 2 * count + i) + force)
@@ -122,7 +122,7 @@ def step_cars(
     """
     count, plates = len(dampers), rates.shape[1] // 4
     poles = 2 * r.pairs + r.reals
-    forces = 2 * count + r.groups
+    forces = 2 * count + len(r.groups)
     states = poles + forces + plates
     weights = (states + plates) * TILE
     positions = TILE * (reading.positions.shape[0] // weights)
