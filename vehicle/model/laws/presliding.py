@@ -11,13 +11,11 @@ The default curve has s_j = 1 - p_(j-1) in four steps: a polygon of dF/dx = K (1
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.compiler import jitable
-from vehicle.model.laws.friction import Friction
+from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.jenkins import Jenkins
 from vehicle.model.parameters.force_elements import Damper
 
@@ -25,22 +23,8 @@ Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Presliding(Friction):
-    """L = Fd in sliding.
-
-    Source: Bommer 2006, equation 2.4.
-    """
-
-    @staticmethod
-    @jitable
-    def limit_at(velocity: Any, numbers: Any) -> Any:
-        """Return Fd [N]."""
-        return numbers["friction_limit"]
-
-    @staticmethod
-    def fall_at(velocity: Any, numbers: Any) -> Any:
-        """Return v dL/dv = 0 [N]."""
-        return 0.0
+class Presliding(Coulomb):
+    """L = Fd in sliding, as Coulomb friction."""
 
 
 def presliding_elements(damper: Damper) -> Vector:
