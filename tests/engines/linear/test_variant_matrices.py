@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
 from dataclasses import fields, is_dataclass
 
 import numpy as np
@@ -194,3 +196,17 @@ def test_a_varied_car_can_be_varied_and_has_a_model_where_one_is_asked_for(car):
     same(twice.static.tyre_load, Car.load(None, twice.overrides).model.static.tyre_load, "tyre load")
     assert twice.model.static.tyre_load == pytest.approx(twice.static.tyre_load, rel=1e-9)
     assert twice.model.vehicle is twice.vehicle
+
+
+def test_a_variant_is_freed_without_the_garbage_collector():
+    reference = Car.load("focus_road")
+    reference.with_({"front.damper.viscous": 1400.0}).check("reduced")
+    gc.disable()
+    try:
+        varied = reference.with_({"front.damper.viscous": 1500.0})
+        varied.check("reduced")
+        freed = weakref.ref(varied)
+        del varied
+        assert freed() is None
+    finally:
+        gc.enable()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -75,7 +75,7 @@ class Car:
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._base: Car | None = None
-        self._variants = VehicleVariants(self.vehicle, folder or Path(), self._anew)
+        self._compose_anew: Callable[[Iterable[str]], Vehicle] | None = None
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
@@ -96,9 +96,7 @@ class Car:
         car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._variants = VehicleVariants(
-            car.vehicle, car.folder or Path(), lambda more: load_vehicle(file, [*changes, *more])
-        )
+        car._compose_anew = lambda more: load_vehicle(file, [*changes, *more])
         return car
 
     def with_(self, overrides: Overrides) -> Car:
@@ -120,6 +118,12 @@ class Car:
         car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
         car._base = self
         return car
+
+    # Made by the first variant of this car: the reference back to the car is a cycle, and the thousands of cars of a
+    # sweep, a megabyte each, must be freed without waiting for the garbage collector.
+    @cached_property
+    def _variants(self) -> VehicleVariants:
+        return VehicleVariants(self.vehicle, self.folder or Path(), self._compose_anew or self._anew)
 
     def _anew(self, overrides: Iterable[str]) -> Vehicle:
         """Return the parameters of this car with other values, composed again from the vehicle table."""
