@@ -53,7 +53,7 @@ def coupled_law(
         the directions as rows, shape (3, 3).
 
     Raises:
-        ConfigurationError: the law is a table over displacement.
+        ConfigurationError: the law has a table over displacement, or rubber friction.
     """
     values, vectors = np.linalg.eigh(flexibility)
     attachment = vectors @ np.diag(np.maximum(values, _STIFFEST)) @ vectors.T
@@ -62,13 +62,16 @@ def coupled_law(
     if law is None:
         stiffness = 1.0 / np.maximum(values, _STIFFEST)
         return stiffness, STRUCTURAL_LOSS_TIME * stiffness, none, none, vectors.T
-    for name in AXES:
-        if getattr(law, f"table_{name}", None) is not None:
-            raise ConfigurationError(
-                f"{connection.path}.table_{name}: found a table in series with an attachment whose residual "
-                "flexibility couples the axes; remove the table, use a model with one stiffness for each axis, or "
-                "body.attachment_flexibility = false"
-            )
+    nonlinear = {f"table_{name}": "a table" for name in AXES if getattr(law, f"table_{name}", None) is not None}
+    if any(law.friction_force):
+        nonlinear["friction_force"] = f"{list(law.friction_force)} N"
+    if nonlinear:
+        key, shown = next(iter(nonlinear.items()))
+        raise ConfigurationError(
+            f"{connection.path}.{key}: found {shown} in series with an attachment whose residual flexibility couples "
+            f"the axes; remove {key}, use a model with one stiffness for each axis, or "
+            "body.attachment_flexibility = false"
+        )
     axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
     bushing_stiffness = (axes.T * law.stiffness) @ axes
     share = np.linalg.inv(np.eye(3) + attachment @ bushing_stiffness)

@@ -1,4 +1,4 @@
-"""Force elements: bushings, hydromount, main spring, stabilizer, damper."""
+"""Force elements: bushings with rubber friction, hydromount, main spring, stabilizer, damper."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from vehicle.model.parameters.curves import require_curve
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
 from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
+from vehicle.names import AXES
 
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
@@ -46,8 +47,49 @@ class ForceTable:
         require_curve("ForceTable", "displacement", self.displacement, self.force)
 
 
+NO_FRICTION: Point = (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Bushing:
+class RubberFriction:
+    """Amplitude-dependent part of a rubber element: friction parallel to its elastic and viscous part on each axis.
+
+    Law of first loading: F = Fmax r / (x2 + r), with the displacement r of the moving part relative to the carrier, in
+    the axes of the law; see `vehicle.model.laws.amplitude`. Its tangent at rest Fmax / x2 adds to the stiffness of
+    small vibrations; large ones have the stiffness without it. An axis with Fmax = 0 has no such part.
+    """
+
+    friction_force: Point = quantity(
+        "N", "Fmax on each axis: friction force of rubber at large displacements; 0 for none", at_least=0.0,
+        at_most=1e6, length=3, why="a suspension bushing has 10 to 1000 N", default=NO_FRICTION,
+    )  # fmt: skip
+    friction_stroke: Point = quantity(
+        "m", "x2 on each axis: displacement from rest at which this friction is Fmax / 2", at_least=0.0, at_most=0.1,
+        length=3, why="rubber mounts of cars have 1e-4 to 2e-3 m", default=NO_FRICTION,
+    )  # fmt: skip
+
+
+SHORTEST_STROKE = 1e-6
+"""Minimum friction stroke [m] of an axis with friction: shorter strokes are a hundredth of those of thin rubber."""
+
+
+def _require_stroke(law: RubberFriction) -> None:
+    """Check that each axis with rubber friction has a stroke.
+
+    Raises:
+        ConfigurationError: the stroke is missing or too short.
+    """
+    for axis, force, stroke in zip(AXES, law.friction_force, law.friction_stroke, strict=True):
+        if force > 0.0 and stroke < SHORTEST_STROKE:
+            raise ConfigurationError(
+                f"{type(law).__name__}.friction_stroke.{axis}: found {stroke!r} m with friction_force.{axis} = "
+                f"{force!r} N, must be at least {SHORTEST_STROKE:g} m; set the displacement at which the friction is "
+                "half its maximum, or that friction_force to 0"
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bushing(RubberFriction):
     """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle.
 
     A table of an axis replaces its K: force over the displacement of the moving part, without load at F = 0.
@@ -69,6 +111,14 @@ class Bushing:
                 f"{type(self).__name__}.one_sided: found true together with table_z; a one-sided contact "
                 "needs a stiffness; remove one of both"
             )
+        _require_stroke(self)
+        for axis, force in zip(AXES, self.friction_force, strict=True):
+            if force > 0.0 and (self.one_sided or getattr(self, f"table_{axis}") is not None):
+                other = "one_sided" if self.one_sided else f"table_{axis}"
+                raise ConfigurationError(
+                    f"{type(self).__name__}.friction_force.{axis}: found {force!r} N together with {other}; rubber "
+                    "friction needs a two-sided element with a stiffness; remove one of both"
+                )
 
 
 SLIPPING: dict[str, Any] = {"at_least": 1e3, "at_most": 1e7, "why": "a car tyre has 2e4 to 2e5 per unit of slip"}
@@ -104,9 +154,17 @@ class Tyre(Bushing):
         at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
     )  # fmt: skip
 
+    def __post_init__(self) -> None:
+        Bushing.__post_init__(self)
+        if any(self.friction_force):
+            raise ConfigurationError(
+                f"Tyre.friction_force: found {list(self.friction_force)} N, must be 0: only bushings and hydromounts "
+                "have an amplitude-dependent law; remove it"
+            )
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Hydromount:
+class Hydromount(RubberFriction):
     """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s."""
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
@@ -121,6 +179,7 @@ class Hydromount:
 
     def __post_init__(self) -> None:
         validate(self)
+        _require_stroke(self)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
