@@ -17,7 +17,7 @@ from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Hydromount, LinearBushing, Tyre
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
@@ -110,15 +110,15 @@ def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
     )
 
 
-def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> ElementLaw:
+def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -> ElementLaw:
     """Return the law of a bushing in exact series with the local stiffness of its attachment point."""
     stiffness = np.array(parameters.stiffness)
     damping = np.array(parameters.damping)
     branch = np.zeros((2, 3))  # K2 [N/m] and tau [s]
-    friction = [
-        friction_elements(force, stroke) if force > 0.0 else None
-        for force, stroke in zip(parameters.friction_force, parameters.friction_stroke, strict=True)
-    ]
+    friction: list[Jenkins | None] = [None, None, None]
+    if isinstance(parameters, Bushing | Hydromount):
+        pairs = zip(parameters.friction_force, parameters.friction_stroke, strict=True)
+        friction = [friction_elements(force, stroke) if force > 0.0 else None for force, stroke in pairs]
     if isinstance(parameters, Hydromount) and parameters.maxwell_stiffness > 0.0 and parameters.maxwell_damping > 0.0:
         time = parameters.maxwell_damping / parameters.maxwell_stiffness
         branch[:, 2] = parameters.maxwell_stiffness, time

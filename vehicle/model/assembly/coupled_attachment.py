@@ -18,7 +18,7 @@ from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.force_elements import Bushing, Hydromount
+from vehicle.model.parameters.force_elements import Hydromount, LinearBushing
 from vehicle.names import AXES
 
 STRUCTURAL_LOSS_TIME = 1e-4
@@ -63,8 +63,8 @@ def coupled_law(
         stiffness = 1.0 / np.maximum(values, _STIFFEST)
         return stiffness, STRUCTURAL_LOSS_TIME * stiffness, none, none, vectors.T
     nonlinear = {f"table_{name}": "a table" for name in AXES if getattr(law, f"table_{name}", None) is not None}
-    if any(law.friction_force):
-        nonlinear["friction_force"] = f"{list(law.friction_force)} N"
+    if any(friction := getattr(law, "friction_force", ())):
+        nonlinear["friction_force"] = f"{list(friction)} N"
     if nonlinear:
         key, shown = next(iter(nonlinear.items()))
         raise ConfigurationError(
@@ -97,7 +97,7 @@ def coupled_law(
     )
 
 
-def _branch(law: Bushing | Hydromount) -> Maxwell | None:
+def _branch(law: LinearBushing | Hydromount) -> Maxwell | None:
     if not isinstance(law, Hydromount) or law.maxwell_stiffness <= 0.0 or law.maxwell_damping <= 0.0:
         return None
     return Maxwell(
