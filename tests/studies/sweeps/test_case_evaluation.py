@@ -109,3 +109,14 @@ def test_a_measure_of_single_runs(cases):
     (result,) = evaluate(cases[:1], Peak())
     run = Car.load(None, cases[0].overrides).run(cases[0].source.signal(), engine="reduced")
     assert result.values["peak"] == pytest.approx(float(abs(run["seat_rail_acc_z"]).max()), rel=1e-9)
+
+
+def test_cars_with_rubber_friction_are_run_with_mujoco():
+    rubber = ("front.bushings.arm_rear.friction_force=[0,50,0]", "front.bushings.arm_rear.friction_stroke=[0,2e-4,0]")
+    cases = [
+        Case(source=ROADS[0], overrides=overrides, engine=engine)
+        for overrides, engine in (((), "auto"), (rubber, "auto"), (rubber, "reduced"))
+    ]
+    plain, stepped, rejected = evaluate(cases, MEASURE)
+    assert (plain.engine, stepped.engine) == ("reduced", "mujoco") and math.isfinite(stepped.values["unweighted"])
+    assert "rubber friction" in rejected.reason

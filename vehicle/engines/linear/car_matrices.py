@@ -15,10 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.damper_elements import (
+    RubberElements,
     SideRows,
     SliderElements,
+    no_rubber,
     no_side_forces,
     no_sliders,
+    rubber_elements,
     side_rows,
     slider_elements,
 )
@@ -78,6 +81,7 @@ class CarMatrices:
         spinning: bodies that rotate with a rolling wheel; their angle is not a state.
         carried_by: body to which each body is fixed; the body itself if it can move on its parent.
         sliders: Jenkins elements of the dampers; their forces are not in the matrices.
+        rubber: Jenkins elements of the bushings; their tangent at rest is in the stiffness matrix.
         sides: side forces of the dampers whose friction depends on them.
         slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
@@ -100,6 +104,7 @@ class CarMatrices:
     carried_by: dict[str, str]
     modal: slice
     sliders: SliderElements = field(default_factory=no_sliders)
+    rubber: RubberElements = field(default_factory=no_rubber)
     sides: SideRows = field(default_factory=no_side_forces)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
@@ -212,6 +217,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
             "viscous": viscous,
             "segments": _segments(rows, jacobian),
             "sliders": slider_elements(rows),
+            "rubber": rubber_elements(rows, jacobian),
             "sides": side_rows(rows, jacobian, preload),
             "tyre_rows": vertical,
             **{f"tyre_{term}": values for term, values in tyres.items()},
@@ -246,7 +252,11 @@ def _segments(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
 
 
 def _tangent_stiffness(rows: Rows, compiled: bool) -> Vector:
-    """Return K = -dF/du of all static forces, by central differences."""
+    """Return K = -dF/du of all static forces, by central differences; rubber friction without its limits."""
+    rubber = rows.layout.rubber
+    if rubber.elements.size:
+        rows = rows.anew()
+        rows.layout = rows.layout._replace(rubber=rubber._replace(limit=np.full_like(rubber.limit, np.inf)))
     return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied, compiled=compiled)
 
 

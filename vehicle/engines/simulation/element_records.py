@@ -28,7 +28,7 @@ class Bushings(NamedTuple):
     Attributes:
         rows: constraint rows of the translations; (n, 3).
         carriers: id of the body in whose axes the law acts; (n,).
-        stiffness, damping: K [N/m] and B [N s/m]; (n, 3).
+        stiffness, damping: K, with rubber friction the tangent at rest [N/m], and B [N s/m]; (n, 3).
         branch_stiffness, branch_time: Maxwell branch K2 [N/m] and tau [s]; (n, 3).
         further: further numbers of the laws, padded with zeros; (n, those of the longest law).
         averaged: 1 for a stiffness averaged over three steps; (n,).
@@ -118,6 +118,23 @@ class Presliding(NamedTuple):
     dampers: Index
     stiffness: Vector
     share: Vector
+
+
+class RubberFriction(NamedTuple):
+    """Jenkins elements of the bushings with rubber friction (`vehicle.model.laws.amplitude`), m of them.
+
+    The displacement of an element is the residual r of its bushing along its axis; the stiffness of the record of the
+    bushing is the tangent at rest, elastic part and all k together.
+
+    Attributes:
+        elements, axes: index of the bushing, and axis; (m,).
+        stiffness: k [N/m]; (m,). limit: largest force [N]; (m,).
+    """
+
+    elements: Index
+    axes: Index
+    stiffness: Vector
+    limit: Vector
 
 
 class SideForces(NamedTuple):
@@ -277,8 +294,8 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rotations, springs, dampers, presliding, sides, controls, tables, modes, space, rolling, round:
-            records of the elements.
+        bushings, rubber, rotations, springs, dampers, presliding, sides, controls, tables, modes, space, rolling,
+            round: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -286,6 +303,7 @@ class Layout(NamedTuple):
     """
 
     bushings: Bushings
+    rubber: RubberFriction
     rotations: Rotations
     springs: Springs
     dampers: Dampers

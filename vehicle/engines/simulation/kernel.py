@@ -42,6 +42,7 @@ from vehicle.engines.simulation.modal_space import advance_modes, modal_forces
 from vehicle.engines.simulation.rolling_tyres import headings, rolling_forces, rolling_rows
 from vehicle.engines.simulation.rotations import rotations
 from vehicle.engines.simulation.round_tyres import round_rows
+from vehicle.engines.simulation.rubber_friction import advance_rubber, rubber_forces
 from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
 from vehicle.model.laws.curve import curve_force
 from vehicle.model.laws.damper import friction_limit
@@ -207,6 +208,7 @@ def elements(d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -> None:
         if t.kinds[k] == 0:
             n, i = t.elements[k], t.axes[k]
             s.force[n, i] -= bent(k, s.residual[n, i], b.stiffness[n, i], t, s)
+    rubber_forces(e, s)
     for k in range(b.one_sided.shape[0]):
         n = b.one_sided[k]
         s.contact[0, k] = max(0.0, s.force[n, 2] + b.damping[n, 2] * s.rate[n, 2])
@@ -367,6 +369,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     headings(time, d, e, s)
     control(time, d, e, s)
     advance_sliders(time, d, e, s)
+    advance_rubber(time, e, s)
     advance_branches(time, c, s)
     elements(d, efc, e, c, s)
     springs(d, efc, e, c, s)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from vehicle.engines.simulation.element_records import Layout, Tables, Vector
+from vehicle.engines.simulation.element_records import Layout, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, TURNING
 from vehicle.model.laws.control_laws import in_steps
@@ -90,12 +90,14 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
         Layout, with operating points of curves at zero displacement.
     """
     laws, present = laws_of(names, numbers), laws_of(names, numbers)[:, 6:9] > 0.0
+    stiffness, rubber = laws[:, 0:3].copy(), _rubber(names, numbers)
+    np.add.at(stiffness, (rubber.elements, rubber.axes), rubber.stiffness)
     rolling = [numbers[f"rolling/{name}"] for name in names.bushings if f"rolling/{name}" in numbers]
     rolling_numbers = np.reshape(rolling, (-1, 5)).astype(float)
     controls = [numbers[f"control/{name}"] for name in names.dampers if f"control/{name}" in numbers]
     return layout._replace(
         bushings=layout.bushings._replace(
-            stiffness=laws[:, 0:3].copy(),
+            stiffness=stiffness,
             damping=laws[:, 3:6].copy(),
             branch_stiffness=laws[:, 6:9].copy(),
             branch_time=np.divide(laws[:, 9:12], laws[:, 6:9], out=np.zeros((len(laws), 3)), where=present),
@@ -107,6 +109,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
                 [numbers[f"directions/{name}"] for name in names.bushings if f"directions/{name}" in numbers]
             ).reshape(-1, 9),
         ),
+        rubber=rubber,
         rotations=layout.rotations._replace(stiffness=laws[laws[:, TURNING] > 0.0, TURNING].copy()),
         springs=layout.springs._replace(
             stiffness=np.array([float(numbers[f"law/{name}"][0]) for name in names.springs])
@@ -135,6 +138,20 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             ),
         ),
     )
+
+
+def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:
+    """Return the Jenkins elements of all bushings with rubber friction."""
+    indices, elements_of_axes = list[tuple[int, int]](), [np.zeros((0, 2))]
+    for index, name in enumerate(names.bushings):
+        for column, axis in enumerate(AXES):
+            field = numbers.get(f"friction/{name}/{axis}")
+            if field is not None:
+                elements_of_axes.append(field.reshape(-1, 2))
+                indices += [(index, column)] * len(elements_of_axes[-1])
+    elements, axes = (np.ascontiguousarray(column) for column in _integers(indices).reshape(-1, 2).T)
+    stiffness, limit = (column.copy() for column in np.concatenate(elements_of_axes).T)
+    return RubberFriction(elements=elements, axes=axes, stiffness=stiffness, limit=limit)
 
 
 def _elements(names: LawNames, numbers: Numbers) -> Vector:

@@ -87,6 +87,7 @@ class Recorder:
             load_bodies=joints[:0, 0].copy() if self.loads is None else self.loads.bodies,
             load_springs=joints[:0] if self.loads is None else joints,
             contact=rows.state.contact,
+            rubber=rows.state.rubber,
             heading=rows.state.heading,
             push=rows.state.push,
             space=e.space,
@@ -119,6 +120,7 @@ class Recorder:
         self.last_powers: tuple[float, float] | None = None
         self.lowest_load = dict.fromkeys(self.wheels, (np.inf, 0.0))
         self.energy_at_start: float | None = None
+        self.rubber_at_end = 0.0
 
     def before_step(self) -> None:
         """Store the present pose, which the step will overwrite."""
@@ -163,7 +165,7 @@ class Recorder:
         return self.rows.whole(self.new_poses[new], self.buffers.modal_position[self.pose_index[index] - self.done])
 
     def _stored_energy(self, half: float) -> float:
-        """Return the kinetic, elastic and gravity energy [J] at the present time."""
+        """Return the kinetic, elastic and gravity energy [J] at the present time; store that of the rubber friction."""
         # Use the generated model: the armature of the integration is not a mass of the car.
         model, rows = self.car.model, self.rows
         e, state, preload = rows.layout, rows.state, rows.weights.preload
@@ -197,6 +199,9 @@ class Recorder:
             if law_type < 2:
                 tangent = b.stiffness[element, axis] if law_type == 0 else springs.stiffness[element]
                 elastic -= float(curve.force(at)) * (x - at) + 0.5 * tangent * (x - at) ** 2
+        rubber, (friction, strain) = e.rubber.stiffness, state.rubber[:2]
+        self.rubber_at_end = 0.5 * float(np.sum(friction**2 / rubber))
+        elastic += self.rubber_at_end - 0.5 * np.sum(rubber * strain**2)
         branch = self._branch_force(self.data.efc_force[None, :], state.branch_past[None])[0]
         present = b.branch_stiffness > 0.0
         elastic += 0.5 * np.sum(branch[present] ** 2 / b.branch_stiffness[present])
@@ -263,6 +268,8 @@ class Recorder:
         ground = bushings.one_sided
         losses[:, ground, 2] = (b.contact - total[:, bushings.rows[ground, 2]]) * true_rate[:, ground, 2]
         loss = np.sum(losses, axis=(1, 2))
+        # Work of the Jenkins elements of rubber, with the energy that their springs hold.
+        loss = loss + np.sum(b.rubber * true_rate[:, e.rubber.elements, e.rubber.axes], axis=1)
         branch = self._branch_force(b.solved, b.branch)
         # Rolling car: power of slope, moments and course control on all velocities, and of side slip on V psi.
         power_in = power_in + b.pushed
@@ -316,7 +323,7 @@ class Recorder:
         assert self.energy_at_start is not None
         return Energies(
             work_in=self.work_in + self.lifting,
-            dissipated=self.dissipated,
+            dissipated=self.dissipated - self.rubber_at_end,
             stored=self.energy_at_end - self.energy_at_start,
         )
 

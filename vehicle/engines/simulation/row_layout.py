@@ -21,6 +21,7 @@ from vehicle.engines.simulation.element_records import (
     Rolling,
     Rotations,
     RoundTyres,
+    RubberFriction,
     Springs,
     Table,
     Vector,
@@ -104,6 +105,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             oblique=whole_numbers([]),
             directions=np.zeros((0, 9)),
         ),
+        rubber=RubberFriction(whole_numbers([]), whole_numbers([]), none, none),
         rotations=Rotations(
             sites=whole_numbers([ends[name] for name in rotational], 2),
             stiffness=np.zeros(0),

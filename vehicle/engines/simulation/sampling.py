@@ -55,6 +55,7 @@ class Sources(NamedTuple):
     load_bodies: Index
     load_springs: Indices
     contact: Table
+    rubber: Table
     heading: Table
     push: Vector
     space: ModalSpace
@@ -83,6 +84,7 @@ class Samples(NamedTuple):
     load_frames: Table
     load_springs: Table
     contact: Table
+    rubber: Table
     heading: Table
     pushed: Vector
 
@@ -106,6 +108,7 @@ def empty_samples(count: int, s: Sources) -> Samples:
         "load_frames": (12 * len(s.load_bodies),),
         "load_springs": (2 * len(s.load_springs),),
         "contact": s.contact.shape[1:],
+        "rubber": s.rubber.shape[1:],
         "heading": s.heading.shape[1:],
         "pushed": (),
     }
@@ -191,6 +194,7 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
         copy_row(b.rate[row, element], s.rate[element])
         copy_row(b.branch[row, element], s.branch[element])
     copy_row(b.contact[row], s.contact[0])
+    copy_row(b.rubber[row], s.rubber[0])
     copy_row(b.heading[row], s.heading[0])
     b.pushed[row] = 0.0
     for dof in range(s.push.shape[0]):

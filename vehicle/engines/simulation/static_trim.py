@@ -202,7 +202,10 @@ def _row_stiffness(rows: Rows) -> Vector:
     e, b = rows.layout, rows.layout.bushings
     ground = ground_contacts(rows)
     diagonal = np.zeros(e.row_count)
-    diagonal[b.rows] = b.stiffness
+    # Rubber relaxes under a static load: its friction carries none.
+    elastic = b.stiffness.copy()
+    np.subtract.at(elastic, (e.rubber.elements, e.rubber.axes), e.rubber.stiffness)
+    diagonal[b.rows] = elastic
     rolling = e.rolling.tyres
     diagonal[b.rows[rolling, :2]] = b.branch_stiffness[rolling, :2]
     diagonal[b.rows[ground, :2]] *= SLIDING_SHARE
@@ -212,7 +215,7 @@ def _row_stiffness(rows: Rows) -> Vector:
     for index, way in rows.directions.items():
         if index in ground:
             element_rows, back = b.rows[index], np.linalg.inv(way)
-            level = slide @ (way.T * b.stiffness[index]) @ way @ slide
+            level = slide @ (way.T * elastic[index]) @ way @ slide
             whole[np.ix_(element_rows, element_rows)] = back.T @ level @ back
     return whole
 

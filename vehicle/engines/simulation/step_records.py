@@ -83,6 +83,8 @@ class State(NamedTuple):
         slope: explicit force along x [N] and moment [N m] on the hubs; (w, 4).
         push: generalised force of all explicit forces of a rolling car; (nv,), empty on a shaker.
         contact: elastic force of one-sided elements [N], and r' at the last evaluation [m/s]; (2, k).
+        rubber: forces of the Jenkins elements of the bushings [N] and their displacements [m], at the present time and
+            then at the previous time; (4, m).
         slider: forces of the Jenkins elements of the dampers at the present and the previous time [N]; (2, m).
         stroke, limit: displacement [m] and friction limit [N] of the dampers at the present time; (w,).
         coefficient: damping coefficient c of the dampers [N s/m]; (w,).
@@ -117,6 +119,7 @@ class State(NamedTuple):
     slope: Table
     push: Vector
     contact: Table
+    rubber: Table
     slider: Table
     stroke: Vector
     limit: Vector

@@ -10,12 +10,14 @@ import numpy.typing as npt
 
 from vehicle.model.assembly.coupled_attachment import STRUCTURAL_LOSS_TIME, coupled_law, is_coupled
 from vehicle.model.flexbody.superelement import Superelement, attached_nodes
+from vehicle.model.laws.amplitude import behind_spring, friction_elements
+from vehicle.model.laws.jenkins import Jenkins
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.force_elements import Bushing, Hydromount, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Hydromount, LinearBushing, Tyre
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
@@ -31,7 +33,7 @@ def _rigid() -> Vector:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ElementLaw:
-    """f = -K r - B r' - f2 along each axis, with f2' = K2 r' - f2 / tau (Maxwell branch); torque = -K_rot angle.
+    """f = -K r - B r' - f2 - t along each axis, with f2' = K2 r' - f2 / tau (Maxwell branch); torque = -K_rot angle.
 
     Attributes:
         stiffness: K [N/m], shape (3,).
@@ -43,6 +45,7 @@ class ElementLaw:
             (Newmark with beta 1/4); False for the fourth-order average (beta 1/12).
         local: stiffness of the attachment [N/m] in series with a table, shape (3,).
         directions: rows are the directions that replace the axes, shape (3, 3); None for the axes of the carrier.
+        friction: Jenkins elements over r whose forces add to t [N], of each axis; None for an axis without friction.
     """
 
     stiffness: Vector
@@ -53,6 +56,7 @@ class ElementLaw:
     averaged: bool = False
     local: Vector = field(default_factory=_rigid)
     directions: Vector | None = None
+    friction: tuple[Jenkins | None, ...] = (None, None, None)
 
 
 def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> ElementLaw | None:
@@ -106,11 +110,15 @@ def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
     )
 
 
-def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> ElementLaw:
+def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -> ElementLaw:
     """Return the law of a bushing in exact series with the local stiffness of its attachment point."""
     stiffness = np.array(parameters.stiffness)
     damping = np.array(parameters.damping)
     branch = np.zeros((2, 3))  # K2 [N/m] and tau [s]
+    friction: list[Jenkins | None] = [None, None, None]
+    if isinstance(parameters, Bushing | Hydromount):
+        pairs = zip(parameters.friction_force, parameters.friction_stroke, strict=True)
+        friction = [friction_elements(force, stroke) if force > 0.0 else None for force, stroke in pairs]
     if isinstance(parameters, Hydromount) and parameters.maxwell_stiffness > 0.0 and parameters.maxwell_damping > 0.0:
         time = parameters.maxwell_damping / parameters.maxwell_stiffness
         branch[:, 2] = parameters.maxwell_stiffness, time
@@ -121,9 +129,15 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
                 continue
             # A dashpot parallel to the branch (Dz1, zero in the source) stays outside the series.
             elastomer = float(branch[0, axis]), float(branch[0, axis] * branch[1, axis])
-            element = (float(stiffness[axis]), *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
+            elastic, rubber = float(stiffness[axis]), friction[axis]
+            # Branch and damper are in series with the tangent at rest, so that small vibrations are exact.
+            tangent = elastic if rubber is None else elastic + float(rubber.stiffness.sum())
+            element = (tangent, *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
             damping[axis] = damping[axis] if elastomer[0] > 0.0 else 0.0
             stiffness[axis], joined, time = _in_series(float(local[axis]), element)
+            if rubber is not None:
+                friction[axis] = behind_spring(rubber, elastic, float(local[axis]))
+                stiffness[axis] = elastic * local[axis] / (elastic + local[axis])
             if time > 0.0:
                 branch[:, axis] = joined, time
     return ElementLaw(
@@ -133,6 +147,7 @@ def _bushing_law(parameters: Bushing | Hydromount, local: Vector | None) -> Elem
         branch_time=branch[1],
         rotational_stiffness=parameters.rotational_stiffness,
         local=_rigid() if local is None else local,
+        friction=tuple(friction),
     )
 
 

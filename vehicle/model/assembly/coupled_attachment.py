@@ -18,7 +18,7 @@ from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.series import in_series
 from vehicle.model.parameters.composition import PlacedConnection
-from vehicle.model.parameters.force_elements import Bushing, Hydromount
+from vehicle.model.parameters.force_elements import Hydromount, LinearBushing
 from vehicle.names import AXES
 
 STRUCTURAL_LOSS_TIME = 1e-4
@@ -53,7 +53,7 @@ def coupled_law(
         the directions as rows, shape (3, 3).
 
     Raises:
-        ConfigurationError: the law is a table over displacement.
+        ConfigurationError: the law has a table over displacement, or rubber friction.
     """
     values, vectors = np.linalg.eigh(flexibility)
     attachment = vectors @ np.diag(np.maximum(values, _STIFFEST)) @ vectors.T
@@ -62,13 +62,16 @@ def coupled_law(
     if law is None:
         stiffness = 1.0 / np.maximum(values, _STIFFEST)
         return stiffness, STRUCTURAL_LOSS_TIME * stiffness, none, none, vectors.T
-    for name in AXES:
-        if getattr(law, f"table_{name}", None) is not None:
-            raise ConfigurationError(
-                f"{connection.path}.table_{name}: found a table in series with an attachment whose residual "
-                "flexibility couples the axes; remove the table, use a model with one stiffness for each axis, or "
-                "body.attachment_flexibility = false"
-            )
+    nonlinear = {f"table_{name}": "a table" for name in AXES if getattr(law, f"table_{name}", None) is not None}
+    if any(friction := getattr(law, "friction_force", ())):
+        nonlinear["friction_force"] = f"{list(friction)} N"
+    if nonlinear:
+        key, shown = next(iter(nonlinear.items()))
+        raise ConfigurationError(
+            f"{connection.path}.{key}: found {shown} in series with an attachment whose residual flexibility couples "
+            f"the axes; remove {key}, use a model with one stiffness for each axis, or "
+            "body.attachment_flexibility = false"
+        )
     axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
     bushing_stiffness = (axes.T * law.stiffness) @ axes
     share = np.linalg.inv(np.eye(3) + attachment @ bushing_stiffness)
@@ -94,7 +97,7 @@ def coupled_law(
     )
 
 
-def _branch(law: Bushing | Hydromount) -> Maxwell | None:
+def _branch(law: LinearBushing | Hydromount) -> Maxwell | None:
     if not isinstance(law, Hydromount) or law.maxwell_stiffness <= 0.0 or law.maxwell_damping <= 0.0:
         return None
     return Maxwell(

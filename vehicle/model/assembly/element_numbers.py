@@ -42,6 +42,9 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
     name, numbers = connection_name(connection), Numbers()
     for axis, local in zip(AXES, law.local, strict=True):
         numbers |= _table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
+    for axis, friction in zip(AXES, law.friction, strict=True):
+        if friction is not None:
+            numbers[f"friction/{name}/{axis}"] = np.column_stack([friction.stiffness, friction.limit]).ravel()
     if getattr(connection.law, "one_sided", False):
         numbers[f"one_sided/{name}"] = np.ones(1)
     # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.

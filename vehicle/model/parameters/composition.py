@@ -14,10 +14,10 @@ from typing import Any, Self, TypeVar
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes
 from vehicle.model.parameters.force_elements import (
-    Bushing,
     Damper,
     ForceTable,
     Hydromount,
+    LinearBushing,
     MainSpring,
     SlideSpring,
     Stabilizer,
@@ -142,7 +142,7 @@ class PlacedConnection(_WithLaw):
     carrier: str
     at: Point
     point: str
-    law: Bushing | Hydromount | None
+    law: LinearBushing | Hydromount | None
     ground: bool
     path: str
     axes: Axes | None = None

@@ -1,4 +1,4 @@
-"""Force elements: bushings, hydromount, main spring, stabilizer, damper."""
+"""Force elements: bushings with rubber friction, hydromount, main spring, stabilizer, damper."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from vehicle.model.parameters.curves import require_curve
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
 from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
+from vehicle.names import AXES
 
 STIFFEST: dict[str, Any] = {"at_most": 1e10, "why": "a block of steel of 5 cm has 1e10 N/m"}
 STRONGEST: dict[str, Any] = {"at_most": 1e6, "why": "a truck's damper has 1e5 N s/m"}
@@ -47,8 +48,8 @@ class ForceTable:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Bushing:
-    """Linear bushing: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle.
+class LinearBushing:
+    """Bushing without rubber friction: f = -K r - D r' in the axes of the body that carries it, torque = -K_rot angle.
 
     A table of an axis replaces its K: force over the displacement of the moving part, without load at F = 0.
     """
@@ -71,12 +72,55 @@ class Bushing:
             )
 
 
+NO_FRICTION: Point = (0.0, 0.0, 0.0)
+SHORTEST_STROKE = 1e-6
+"""Minimum friction stroke [m] of an axis with friction: shorter strokes are a hundredth of those of thin rubber."""
+
+
+def _friction_force() -> Any:
+    return quantity(
+        "N", "Fmax on each axis: friction force of rubber at large displacements; 0 for none", at_least=0.0,
+        at_most=1e6, length=3, why="a suspension bushing has 10 to 1000 N", default=NO_FRICTION,
+    )  # fmt: skip
+
+
+def _friction_stroke() -> Any:
+    return quantity(
+        "m", "x2 on each axis: displacement from rest at which this friction is Fmax / 2", at_least=0.0, at_most=0.1,
+        length=3, why="rubber mounts of cars have 1e-4 to 2e-3 m", default=NO_FRICTION,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bushing(LinearBushing):
+    """Bushing with rubber friction, which is parallel to its elastic and viscous part on each axis.
+
+    On first loading the friction is Fmax r / (x2 + r), with the displacement r of the moving part relative to the
+    carrier, in the axes of the law; see `vehicle.model.laws.amplitude`. Its tangent at rest Fmax / x2 adds to the
+    stiffness of small vibrations; large ones have the stiffness without it. With Fmax = 0 an axis has no friction.
+    """
+
+    friction_force: Point = _friction_force()
+    friction_stroke: Point = _friction_stroke()
+
+    def __post_init__(self) -> None:
+        LinearBushing.__post_init__(self)
+        _require_stroke(self)
+        for axis, force in zip(AXES, self.friction_force, strict=True):
+            if force > 0.0 and (self.one_sided or getattr(self, f"table_{axis}") is not None):
+                other = "one_sided" if self.one_sided else f"table_{axis}"
+                raise ConfigurationError(
+                    f"{type(self).__name__}.friction_force.{axis}: found {force!r} N together with {other}; rubber "
+                    "friction needs a two-sided element with a stiffness; remove one of both"
+                )
+
+
 SLIPPING: dict[str, Any] = {"at_least": 1e3, "at_most": 1e7, "why": "a car tyre has 2e4 to 2e5 per unit of slip"}
 CARCASS: dict[str, Any] = {"at_least": 1e4, "at_most": 1e7, "why": "a car tyre has 5e4 to 8e5 N/m"}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Tyre(Bushing):
+class Tyre(LinearBushing):
     """Tyre between hub and plate: a bushing at rest; if it rolls, its horizontal force comes from slip.
 
     K and D along x and y and the rotational stiffness describe the tyre at rest and do not act on a rolling tyre.
@@ -107,7 +151,8 @@ class Tyre(Bushing):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Hydromount:
-    """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s."""
+    """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s; with rubber friction
+    as that of `Bushing`."""
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
     damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3, **STRONGEST)
@@ -118,9 +163,27 @@ class Hydromount:
     maxwell_damping: float = quantity(
         "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, **STRONGEST
     )
+    friction_force: Point = _friction_force()
+    friction_stroke: Point = _friction_stroke()
 
     def __post_init__(self) -> None:
         validate(self)
+        _require_stroke(self)
+
+
+def _require_stroke(law: Bushing | Hydromount) -> None:
+    """Check that each axis with rubber friction has a stroke.
+
+    Raises:
+        ConfigurationError: the stroke is missing or too short.
+    """
+    for axis, force, stroke in zip(AXES, law.friction_force, law.friction_stroke, strict=True):
+        if force > 0.0 and stroke < SHORTEST_STROKE:
+            raise ConfigurationError(
+                f"{type(law).__name__}.friction_stroke.{axis}: found {stroke!r} m with friction_force.{axis} = "
+                f"{force!r} N, must be at least {SHORTEST_STROKE:g} m; set the displacement at which the friction is "
+                "half its maximum, or that friction_force to 0"
+            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

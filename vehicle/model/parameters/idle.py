@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable
 
-from vehicle.model.parameters.force_elements import Hydromount
+from vehicle.model.parameters.force_elements import Bushing, Hydromount
 from vehicle.model.parameters.paths import meant
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.model.parameters.vehicle import Vehicle
@@ -34,6 +34,9 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
             off[f"{path}.control.{name}"] = (passive, f"{path}.control.law = skyhook or another law")
         off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
     for connection in vehicle.composition.connections:
+        if isinstance(connection.law, Bushing | Hydromount):
+            frictionless = not any(connection.law.friction_force)
+            off[f"{connection.path}.friction_stroke"] = (frictionless, f"{connection.path}.friction_force above zero")
         if isinstance(connection.law, Hydromount):
             none = connection.law.maxwell_stiffness * connection.law.maxwell_damping == 0.0
             off[f"{connection.path}.maxwell_"] = (none, "both of its values above zero")

@@ -17,7 +17,14 @@ from vehicle.model.parameters.composition import (
     PlacedWheel,
     Rolling,
 )
-from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, SlideSpring, Stabilizer
+from vehicle.model.parameters.force_elements import (
+    Damper,
+    Hydromount,
+    LinearBushing,
+    MainSpring,
+    SlideSpring,
+    Stabilizer,
+)
 from vehicle.model.parameters.instance import Instance, elements
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.names import SIDE_SIGN
@@ -113,7 +120,7 @@ def _rolling(i: Instance, side: str | None) -> Rolling | None:
     return Rolling(speed=i.driving.speed, arm=arm)
 
 
-def _law_kind(i: Instance, e: topology.Connection) -> type[Bushing] | type[Hydromount]:
+def _law_kind(i: Instance, e: topology.Connection) -> type[LinearBushing] | type[Hydromount]:
     return law_kind(i.numbers.get("bushings", {}).get(e.name, {}), plate=e.carrier == "plate")
 
 

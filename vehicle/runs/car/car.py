@@ -20,7 +20,7 @@ from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
-from vehicle.engines.reduced.pole_model import PoleModel, pole_model
+from vehicle.engines.reduced.pole_model import PoleModel, only_in_mujoco, pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
@@ -216,6 +216,11 @@ class Car:
         """Modal form of the same matrices, one scalar equation per pole, for the reduced engine."""
         return pole_model(self.matrices)
 
+    @property
+    def needs_mujoco(self) -> str:
+        """Return why the reduced engine cannot compute the car; an empty text if it can."""
+        return only_in_mujoco(self.matrices)
+
     @cached_property
     @one_blas_thread()
     def load_rows(self) -> LoadRows:
@@ -230,11 +235,12 @@ class Car:
             engine: engine of the run, see `run`; the time step is checked for "mujoco" only.
 
         Raises:
-            ConfigurationError: the car cannot be built, is unstable, or its time step is too large.
+            ConfigurationError: the car cannot be built, is unstable, its time step is too large, or the reduced engine
+                does not contain an element of it.
         """
         if engine in self._checked:
             return
-        if engine == "mujoco":
+        if engine == "mujoco" or (engine == "auto" and self.needs_mujoco):
             self.stepped()
         elif np.any(grows(self.poles.poles)):
             require_stable(self.model, self.matrices, self.poles.poles)
@@ -304,7 +310,7 @@ class Car:
                 road("C", 80), on which the tyres roll.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
             engine: "mujoco"; "reduced", hundreds of times faster, linear except for the dampers; "auto": "reduced",
-                and "mujoco" if the motion leaves the valid range or numba is missing.
+                and "mujoco" if the motion leaves the valid range, an element of the car needs it, or numba is missing.
             channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
                 them; by default all but those.
             skip: time at the beginning that comfort and slip shares leave out [s]; by default 0, on a road until the
@@ -314,8 +320,9 @@ class Car:
             The run; `run.recording.statistics.engine` is the engine, `run.engine_reason` the reason for its choice.
 
         Raises:
-            ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range, a
-                the car is unstable, or the time step of MuJoCo is too large.
+            ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range,
+                the car is unstable, the time step of MuJoCo is too large, or the reduced engine was asked for and
+                does not contain an element of the car.
             DataError: a file cannot be read or holds bad data.
             MissingPartError: the reduced engine was asked for and numba is not installed.
             SimulationError: the run could not be carried through.
@@ -346,7 +353,9 @@ class Car:
         loads = [name for name in more if name in self.vehicle.load_channels]
         require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
-        if engine != "mujoco":
+        if engine == "auto" and self.needs_mujoco:
+            reason = self.needs_mujoco
+        elif engine != "mujoco":
             self.check("reduced")
             recording = simulate_reduced(
                 self.poles,

@@ -91,11 +91,11 @@ def _varied(vehicle: Path | None, changed: int, shared: tuple[str, ...], overrid
 
 
 def _car_of(case: Case) -> Car:
-    """Return the car of a case, modified from the reference car of the study and checked for the reduced engine."""
+    """Return the car of a case, modified from the reference car of the study and checked for its engine."""
     changed = _changed(case.vehicle)
     with _ONE_AT_A_TIME:
         car = _varied(case.vehicle, changed, case.overrides[: case.shared], case.overrides[case.shared :])
-        car.check("reduced")
+        car.check(case.engine)
     return car
 
 
@@ -128,6 +128,9 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
             _require(cars[number].vehicle, signal, measure)
         except OF_A_RUN as error:
             found[number] = _failed(error)
+            continue
+        if case.engine != "reduced" and cars[number].needs_mujoco:
+            found[number] = None
         else:
             groups.setdefault((case.source, case.engine, batch_key(cars[number])), []).append(number)
     for group in groups.values():
