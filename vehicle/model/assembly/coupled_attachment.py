@@ -53,7 +53,7 @@ def coupled_law(
         the directions as rows, shape (3, 3).
 
     Raises:
-        ConfigurationError: the law is a table over displacement.
+        ConfigurationError: the law is a table over displacement, or has an inertia track.
     """
     values, vectors = np.linalg.eigh(flexibility)
     attachment = vectors @ np.diag(np.maximum(values, _STIFFEST)) @ vectors.T
@@ -69,6 +69,12 @@ def coupled_law(
                 "flexibility couples the axes; remove the table, use a model with one stiffness for each axis, or "
                 "body.attachment_flexibility = false"
             )
+    if isinstance(law, Hydromount) and law.chamber_stiffness:
+        raise ConfigurationError(
+            f"{connection.path}.chamber_stiffness: found an inertia track in series with an attachment whose residual "
+            "flexibility couples the axes of the mount; remove the axes, use a model with one stiffness for each axis, "
+            "or body.attachment_flexibility = false"
+        )
     axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
     bushing_stiffness = (axes.T * law.stiffness) @ axes
     share = np.linalg.inv(np.eye(3) + attachment @ bushing_stiffness)
@@ -95,11 +101,9 @@ def coupled_law(
 
 
 def _branch(law: Bushing | Hydromount) -> Maxwell | None:
-    if not isinstance(law, Hydromount) or law.maxwell_stiffness <= 0.0 or law.maxwell_damping <= 0.0:
+    if not isinstance(law, Hydromount) or law.maxwell is None:
         return None
-    return Maxwell(
-        stiffness=law.stiffness[2], branch_stiffness=law.maxwell_stiffness, branch_damping=law.maxwell_damping
-    )
+    return Maxwell(stiffness=law.stiffness[2], branch_stiffness=law.maxwell[0], branch_damping=law.maxwell[1])
 
 
 def _diagonalised(

@@ -105,22 +105,58 @@ class Tyre(Bushing):
     )  # fmt: skip
 
 
+TRACKED: dict[str, Any] = {"at_least": 0.01, "at_most": 1e4, "why": "mount tracks have 1 to 300 kg at the rubber"}
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Hydromount:
-    """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s."""
+    """Bushing whose z axis is an elastomer, a fluid with an inertia track, or both in parallel.
+
+    K(s) = Kz1 + Dz1 s + Kz2 Dz2 s / (Dz2 s + Kz2) + Kb Z / (Kb + Z) with Z = mt s^2 + ct s. A decoupler with a gap
+    puts its membrane Ks in series with Kb while the displaced fluid is within the gap.
+    """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
     damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3, **STRONGEST)
     rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
-    maxwell_stiffness: float = quantity(
-        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, **STIFFEST
+    maxwell_stiffness: float | None = quantity(
+        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, default=None, **STIFFEST
     )
-    maxwell_damping: float = quantity(
-        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, **STRONGEST
+    maxwell_damping: float | None = quantity(
+        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, default=None, **STRONGEST
+    )
+    chamber_stiffness: float | None = quantity(
+        "N/m", "Kb, bulge stiffness of the upper chamber against the displaced fluid", above=0.0, default=None,
+        **STIFFEST,
+    )  # fmt: skip
+    track_mass: float | None = quantity(
+        "kg", "mt, mass of the fluid in the track at the rubber: rho L Ap^2/At", default=None, **TRACKED
+    )
+    track_damping: float | None = quantity(
+        "N s/m", "ct, linear flow resistance of the track at the rubber", at_least=0.0, default=None, **STRONGEST
     )
 
     def __post_init__(self) -> None:
         validate(self)
+        for keys in (MAXWELL, TRACK):
+            missing = [key for key in keys if getattr(self, key) is None]
+            if 0 < len(missing) < len(keys):
+                given = next(key for key in keys if key not in missing)
+                raise ConfigurationError(f"Hydromount.{missing[0]}: missing; {given} needs {' and '.join(missing)}")
+
+    @property
+    def maxwell(self) -> tuple[float, float] | None:
+        """Spring Kz2 [N/m] and dashpot Dz2 [N s/m] of the Maxwell branch; None without a branch."""
+        if not self.maxwell_stiffness or not self.maxwell_damping:
+            return None
+        return self.maxwell_stiffness, self.maxwell_damping
+
+
+MAXWELL, TRACK = (
+    ("maxwell_stiffness", "maxwell_damping"),
+    ("chamber_stiffness", "track_mass", "track_damping"),
+)
+"""Parameters of the Maxwell branch and of the inertia track of a hydromount; each group is complete or absent."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
