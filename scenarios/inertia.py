@@ -250,9 +250,8 @@ def moment_about_cog(car: Car) -> float:
 
 def loss_angle(mount: Hydromount, frequency: float) -> float:
     """Return the angle [deg] of K(i w) = K1 + K2 D2 i w/(D2 i w + K2) in z at a frequency [Hz] (equation 2.13)."""
-    rate = 2j * np.pi * frequency
-    branch = mount.maxwell_stiffness * mount.maxwell_damping * rate
-    stiffness = mount.stiffness[2] + branch / (mount.maxwell_damping * rate + mount.maxwell_stiffness)
+    rate, (spring, dashpot) = 2j * np.pi * frequency, mount.maxwell or (0.0, 0.0)
+    stiffness = mount.stiffness[2] + spring * dashpot * rate / (dashpot * rate + spring)
     return float(np.degrees(np.angle(stiffness + mount.damping[2] * rate)))
 
 

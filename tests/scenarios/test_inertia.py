@@ -70,7 +70,7 @@ def test_the_moment_about_the_centre_of_gravity_is_the_printed_one_where_nothing
 
 
 def test_the_loss_angle_is_that_of_a_spring_beside_a_spring_and_damper():
-    mount: Any = SimpleNamespace(stiffness=(0, 0, 3e5), damping=(0, 0, 0.0), maxwell_stiffness=1e5, maxwell_damping=1e3)
+    mount: Any = SimpleNamespace(stiffness=(0, 0, 3e5), damping=(0, 0, 0.0), maxwell=(1e5, 1e3))
     # At K2/D2 = 100 rad/s the branch is K2 (1 + i)/2: tan = 0.5e5 / 3.5e5.
     assert loss_angle(mount, 100.0 / (2.0 * np.pi)) == pytest.approx(np.degrees(np.arctan(0.5 / 3.5)))
 

@@ -32,9 +32,13 @@ from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
+from vehicle.model.assembly.element_numbers import FLUID
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
+
+COORDINATES = ("mode_", FLUID)
+"""Beginnings of the names of coordinates that are not parts: modes of the body, fluids of hydromounts."""
 
 DIFFERENCE_STEP = 1e-6
 """Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
@@ -86,6 +90,7 @@ class CarMatrices:
         slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
+        fluids: velocity coordinate of the fluid of each hydromount with a track, by the name of the mount.
     """
 
     system: LinearSystem
@@ -103,6 +108,7 @@ class CarMatrices:
     body_centres: dict[str, Vector]
     carried_by: dict[str, str]
     modal: slice
+    fluids: dict[str, int] = field(default_factory=dict)
     sliders: SliderElements = field(default_factory=no_sliders)
     rubber: RubberElements = field(default_factory=no_rubber)
     sides: SideRows = field(default_factory=no_side_forces)
@@ -166,6 +172,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
             str(model.body(i).name): str(model.body(int(root)).name) for i, root in enumerate(model.body_weldid)
         },
         modal=e.modes.velocities,
+        fluids={
+            name.removeprefix(FLUID): int(model.joint(name).dofadr[0]) for name in rows.names if name.startswith(FLUID)
+        },
     )
 
 
@@ -325,7 +334,7 @@ def _outputs(model: mujoco.MjModel, data: mujoco.MjData, modes: slice) -> dict[s
 def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
     velocity_rows = {}
     for body in range(1, model.nbody):
-        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
+        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith(COORDINATES):
             rows = np.zeros((6, model.nv))
             mujoco.mj_jacBodyCom(model, data, rows[:3], rows[3:], body)
             velocity_rows[model.body(body).name] = rows
@@ -335,7 +344,7 @@ def _body_rows(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
 def _body_masses(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, Vector]:
     mass_matrices = {}
     for body in range(1, model.nbody):
-        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith("mode_"):
+        if model.body_mocapid[body] < 0 and not model.body(body).name.startswith(COORDINATES):
             matrix = np.zeros((6, 6))
             matrix[:3, :3] = model.body_mass[body] * np.eye(3)
             frame = data.ximat[body].reshape(3, 3)

@@ -113,7 +113,13 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
             if oblique_axes is not None:
                 static, terms = oblique_axes.T @ static, {key: oblique_axes.T @ term for key, term in terms.items()}
         for axis, letter in enumerate("xyz"):
-            terms_of[f"{name}_force_{letter}"] = float(static[axis]), {key: term[axis] for key, term in terms.items()}
+            # A hydromount has the forces of rubber and fluid.
+            channel = f"{name}_force_{letter}"
+            before, others = terms_of.get(channel, (0.0, {}))
+            terms_of[channel] = (
+                before + float(static[axis]),
+                {key: term[axis] + others.get(key, 0.0) for key, term in terms.items()},
+            )
     for (name, row), stiffness in zip(load_places.springs, rows.layout.springs.stiffness, strict=True):
         terms_of[f"{name}_force"] = float(preload[row]), {"displacement": -stiffness * jacobian[row]}
     coordinates = spring_coordinates(car, model)

@@ -208,6 +208,11 @@ class VariantTerms:
                 mass = mass + rows.T @ added @ rows
                 weight = weight + gravity * added[0, 0] * rows[2]
                 geometric = geometric + added[0, 0] * change.displaced_matrix(self.weight_terms[name])
+        for values in element_values:
+            for name, (inertia, _) in _fields(values, "inertia/"):
+                dof = int(self.car.model.joint(name).dofadr[0])
+                mass = mass.copy()
+                mass[dof, dof] = inertia
         if change.hanging is not None:
             geometric = geometric + change.displaced_matrix(gravity * masses["body"][0, 0] * change.hanging)
         return _Masses(masses=masses, rows=body_rows, mass=mass, weight=weight, geometric=geometric)

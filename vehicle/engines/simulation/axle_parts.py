@@ -12,6 +12,7 @@ import numpy.typing as npt
 from vehicle.engines.simulation.law_arrays import model_numbers
 from vehicle.engines.simulation.row_layout import numeric
 from vehicle.errors import ConfigurationError
+from vehicle.model.assembly.element_numbers import FLUID
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import unpack
 from vehicle.names import AXES
@@ -151,7 +152,8 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     ends = {
         name: (int(model.eq_obj1id[index]), int(model.eq_obj2id[index]))
         for index, name in enumerate(names)
-        if kinds[index] == connect
+        # A fluid carries no static force.
+        if kinds[index] == connect and not name.startswith(FLUID)
     }
     rotational = [name for name in ends if laws[name].size and laws[name][12] > 0.0]
     torques = dict(zip(rotational, preload[preload.size - 3 * len(rotational) :].reshape(-1, 3), strict=True))
@@ -160,7 +162,7 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
     standing, ties, springs, treads = np.zeros((len(numbers), 6)), [], [], set()
     for index, name in enumerate(names):
         law = laws[name]
-        if kinds[index] == connect:
+        if name in ends:
             moving, carrier = (int(model.site_bodyid[site]) for site in ends[name])
             force, torque = preload[rows[index] : rows[index] + 3], torques.get(name, np.zeros(3))
             if not bodies & {moving, carrier}:

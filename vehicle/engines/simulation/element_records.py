@@ -290,12 +290,27 @@ class RoundTyres(NamedTuple):
     dofs: Indices
 
 
+class Fluids(NamedTuple):
+    """Displacements of fluids in the extensions of hydromounts along z: two for each fluid, rubber and chamber.
+
+    Attributes:
+        elements: indices of the elements among the bushings; (k,).
+        dofs, places: velocity and position coordinates of the fluids; (k,).
+        factors: extension per displacement of the fluid [-]; (k,).
+    """
+
+    elements: Index
+    dofs: Index
+    places: Index
+    factors: Vector
+
+
 class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
         bushings, rubber, rotations, springs, dampers, presliding, sides, controls, tables, modes, space, rolling,
-            round: records of the elements.
+            round, fluids: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -315,6 +330,7 @@ class Layout(NamedTuple):
     space: ModalSpace
     rolling: Rolling
     round: RoundTyres
+    fluids: Fluids
     joints: Indices
     tyres: Index
     reach: Indices

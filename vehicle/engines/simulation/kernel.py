@@ -37,6 +37,7 @@ import numpy as np
 from vehicle.compiler import jitable
 from vehicle.engines.simulation.damper_control import control
 from vehicle.engines.simulation.element_records import Layout, Tables
+from vehicle.engines.simulation.fluid_rows import fluid_rows
 from vehicle.engines.simulation.modal_rows import modal_rows
 from vehicle.engines.simulation.modal_space import advance_modes, modal_forces
 from vehicle.engines.simulation.rolling_tyres import headings, rolling_forces, rolling_rows
@@ -365,6 +366,7 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
     oblique_rows(d, efc, e)
     rolling_rows(d, efc, e)
     round_rows(d, efc, e)
+    fluid_rows(d, efc, e)
     local_axes(d, efc, e, s)
     headings(time, d, e, s)
     control(time, d, e, s)

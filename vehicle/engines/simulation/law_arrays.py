@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.engines.simulation.element_records import Layout, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
-from vehicle.model.assembly.element_numbers import AVERAGED, TURNING
+from vehicle.model.assembly.element_numbers import AVERAGED, FLUID, TURNING
 from vehicle.model.laws.control_laws import in_steps
 from vehicle.model.laws.damper import unpack
 from vehicle.names import AXES
@@ -131,6 +131,16 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             trails=rolling_numbers[:, 1].copy(),
             arms=rolling_numbers[:, 2:].copy(),
             hold=np.array(numbers.get("hold/body", np.zeros(0))),
+        ),
+        fluids=layout.fluids._replace(
+            factors=np.array(
+                [
+                    factor
+                    for name in names.bushings
+                    if name.startswith(FLUID)
+                    for factor in (-1.0, float(numbers[f"inertia/{name}"][1]))
+                ]
+            ),
         ),
         round=layout.round._replace(
             radii=np.array(

@@ -91,7 +91,10 @@ class LoadPlaces:
                 force = total[:, rows] @ self.oblique[int(rows[0])]
             else:
                 force = np.einsum("nji,nj->ni", frames_by_body[carrier][:, 3:].reshape(-1, 3, 3), total[:, rows])
-            channels |= {f"{name}_force_{axis}": force[:, column] for column, axis in enumerate(AXES)}
+            for column, axis in enumerate(AXES):
+                # A hydromount has the forces of rubber and fluid.
+                channel = f"{name}_force_{axis}"
+                channels[channel] = channels.get(channel, 0.0) + force[:, column]
         channels |= {f"{name}_force": total[:, row] for name, row in self.springs}
         for number, (name, stiffness, damping, unstrained) in enumerate(self.joints):
             position, velocity = springs[:, 2 * number], springs[:, 2 * number + 1]

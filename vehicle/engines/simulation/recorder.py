@@ -83,7 +83,7 @@ class Recorder:
             sites=self.sites,
             dampers=e.dampers.dofs,
             origins=data.xpos,
-            spring_rates=joints[:, 1].copy(),
+            spring_rates=np.concatenate([joints[:, 1], np.unique(e.fluids.dofs)]),
             load_bodies=joints[:0, 0].copy() if self.loads is None else self.loads.bodies,
             load_springs=joints[:0] if self.loads is None else joints,
             contact=rows.state.contact,

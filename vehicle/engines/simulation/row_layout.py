@@ -13,6 +13,7 @@ from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows,
 from vehicle.engines.simulation.element_records import (
     Bushings,
     Controls,
+    Fluids,
     Index,
     Indices,
     Layout,
@@ -33,7 +34,7 @@ from vehicle.engines.simulation.law_arrays import (
     model_numbers,
     with_numbers,
 )
-from vehicle.model.assembly.element_numbers import TURNING
+from vehicle.model.assembly.element_numbers import FLUID, TURNING
 from vehicle.model.laws.control_laws import in_steps
 
 
@@ -73,13 +74,17 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     rolling = [name for name in names if f"rolling/{name}" in numbers]
     spins = {name: _spin(model, ends[name]) for name in rolling}
 
+    fluids = [name for name in names if name.startswith(FLUID)]
+    moved = [(name, fluid) for fluid in fluids for name in (fluid, f"bushing/{fluid.removeprefix(FLUID)}")]
+    further = {**spins, **{name: (int(model.joint(fluid).dofadr[0]),) for name, fluid in moved}}
+
     def modal_at(name: str) -> range:
         return range(0) if numeric(model, f"shape/{name}") is None else modal
 
     nonzero = [
         run
         for name, sites in ends.items()
-        for run in _reach(model, sites, (*modal_at(name), *spins.get(name, ())), equalities[name], first_rows)
+        for run in _reach(model, sites, (*modal_at(name), *further.get(name, ())), equalities[name], first_rows)
     ]
 
     def rows_of(chosen: Sequence[str]) -> Index:
@@ -131,6 +136,12 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         space=ModalSpace(none, none, none, none, spread=np.zeros((0, 0))),
         rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
         round=_round_tyres(model, [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]),
+        fluids=Fluids(
+            elements=whole_numbers([names.index(name) for name, _ in moved]),
+            dofs=whole_numbers([model.joint(fluid).dofadr[0] for _, fluid in moved]),
+            places=whole_numbers([model.joint(fluid).qposadr[0] for _, fluid in moved]),
+            factors=np.zeros(0),
+        ),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=whole_numbers(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=whole_numbers(nonzero, 4),

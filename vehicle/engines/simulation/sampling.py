@@ -31,7 +31,7 @@ class Sources(NamedTuple):
     Attributes:
         sites: ids of the sites of the measurement points; (p,).
         dampers: velocity coordinates of the dampers; (w,).
-        spring_rates: velocity coordinates of the joints with a spring, for the energy; (j,).
+        spring_rates: velocity coordinates of the joints with a spring and of fluids, for the energy; (j,).
         load_bodies: ids of the bodies whose frames the loads need; none in a run without loads; (b,).
         load_springs: position and velocity coordinates of the joints with a spring; none without loads; (j, 2).
     """

@@ -7,6 +7,7 @@ import numpy as np
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.static_trim import StaticTrim, ground_contacts
 from vehicle.errors import ConfigurationError
+from vehicle.model.assembly.element_numbers import FLUID
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.superelement_checks import LOWEST_FIRST_MODE
 from vehicle.model.parameters.vehicle import Vehicle
@@ -26,7 +27,9 @@ def element_parameter(vehicle: Vehicle, name: str, parameter: str, axis: str) ->
         axis: component of the parameter, or "".
     """
     group, _, element = name.partition("/")
-    if group != "bushing":
+    if f"{group}/" == FLUID and parameter == "stiffness":
+        parameter, axis = "chamber_stiffness", ""
+    elif group != "bushing":
         return f"the attachment stiffness of {element} in body.superelement"
     path = next(connection.path for connection in vehicle.composition.connections if connection.name == element)
     return ".".join(word for word in (path, parameter, axis) if word)

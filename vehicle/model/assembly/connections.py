@@ -74,26 +74,64 @@ def element_law(connection: PlacedConnection, body: TrimmedBody, superelement: S
     """
     if connection.rolling is not None and isinstance(connection.law, Tyre):
         return _rolling_law(connection.law, connection.rolling.speed)
-    local = None
-    if body.attachment_flexibility and "body" in (connection.moving, connection.carrier):
-        node = attached_nodes(superelement, {connection.point: connection.at}).get(connection.at, "")
-        flexibility = superelement.residual.get(node)
-        if flexibility is not None and (connection.axes is not None or is_coupled(flexibility)):
-            stiffness, damping, branch, time, directions = coupled_law(connection, flexibility)
-            return ElementLaw(
-                stiffness=stiffness,
-                damping=damping,
-                branch_stiffness=branch,
-                branch_time=time,
-                rotational_stiffness=0.0 if connection.law is None else connection.law.rotational_stiffness,
-                averaged=connection.law is None,
-                directions=directions,
-            )
-        local = None if flexibility is None else 1.0 / np.diag(flexibility)
+    flexibility = _flexibility(connection, body, superelement)
+    if flexibility is not None and (connection.axes is not None or is_coupled(flexibility)):
+        stiffness, damping, branch, time, directions = coupled_law(connection, flexibility)
+        return ElementLaw(
+            stiffness=stiffness,
+            damping=damping,
+            branch_stiffness=branch,
+            branch_time=time,
+            rotational_stiffness=0.0 if connection.law is None else connection.law.rotational_stiffness,
+            averaged=connection.law is None,
+            directions=directions,
+        )
+    local = None if flexibility is None else 1.0 / np.diag(flexibility)
     if connection.law is not None:
         law = _bushing_law(connection.law, local)
         return law if connection.axes is None else replace(law, directions=np.array(connection.axes))
     return None if local is None else ElementLaw(stiffness=local, damping=STRUCTURAL_LOSS_TIME * local, averaged=True)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FluidLaw:
+    """Fluid of a hydromount: f = -Kb (z - x) along the z axis of the mount, and mt x'' + ct x' = Kb (z - x).
+
+    x is the displacement of the fluid in the track, at the rubber. If the attachment has a spring K0, the force balance
+    K0 (z - y) = Z y + Kb (y - x) of its point y, Z being the rubber, eliminates y exactly: a spring K0 Kb / (K0 + Kb)
+    on z - x, and the rubber in series with K0 + Kb, times K0^2 / (K0 + Kb)^2, on z + x Kb / K0.
+
+    Attributes:
+        law: spring on z - x as a law along three axes.
+        mass, damping: mt [kg] and ct [N s/m].
+        share: Kb / K0; 0 for a rigid attachment.
+    """
+
+    law: ElementLaw
+    mass: float
+    damping: float
+    share: float
+
+
+def fluid_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> FluidLaw | None:
+    """Return the law of the fluid of a connection; None without a track. Arguments: see `element_law`."""
+    parameters = connection.law
+    if not isinstance(parameters, Hydromount) or not _chamber(parameters):
+        return None
+    axes = np.eye(3) if connection.axes is None else np.array(connection.axes)
+    flexibility = _flexibility(connection, body, superelement)
+    share = 0.0 if flexibility is None else _chamber(parameters) * float(flexibility[2, 2])
+    stiffness = np.array([0.0, 0.0, _chamber(parameters) / (1.0 + share)])
+    law = ElementLaw(stiffness=stiffness, damping=_zeros(), directions=None if connection.axes is None else axes)
+    return FluidLaw(law=law, mass=parameters.track_mass or 0.0, damping=parameters.track_damping or 0.0, share=share)
+
+
+def _flexibility(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> Vector | None:
+    """Return the residual flexibility of the body at a connection [m/N], (3, 3); None for a rigid attachment."""
+    if not body.attachment_flexibility or "body" not in (connection.moving, connection.carrier):
+        return None
+    node = attached_nodes(superelement, {connection.point: connection.at}).get(connection.at, "")
+    return superelement.residual.get(node)
 
 
 def _rolling_law(tyre: Tyre, speed: float) -> ElementLaw:
@@ -119,9 +157,9 @@ def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -
     if isinstance(parameters, Bushing | Hydromount):
         pairs = zip(parameters.friction_force, parameters.friction_stroke, strict=True)
         friction = [friction_elements(force, stroke) if force > 0.0 else None for force, stroke in pairs]
-    if isinstance(parameters, Hydromount) and parameters.maxwell_stiffness > 0.0 and parameters.maxwell_damping > 0.0:
-        time = parameters.maxwell_damping / parameters.maxwell_stiffness
-        branch[:, 2] = parameters.maxwell_stiffness, time
+    if isinstance(parameters, Hydromount) and parameters.maxwell is not None:
+        spring, dashpot = parameters.maxwell
+        branch[:, 2] = spring, dashpot / spring
     if local is not None:
         for axis, name in enumerate(AXES):
             if getattr(parameters, f"table_{name}", None) is not None:
@@ -134,12 +172,16 @@ def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -
             tangent = elastic if rubber is None else elastic + float(rubber.stiffness.sum())
             element = (tangent, *(elastomer if elastomer[0] > 0.0 else (float(damping[axis]),)))
             damping[axis] = damping[axis] if elastomer[0] > 0.0 else 0.0
-            stiffness[axis], joined, time = _in_series(float(local[axis]), element)
+            # A chamber shares the spring of the attachment: see `FluidLaw`.
+            chamber = _chamber(parameters) if axis == 2 else 0.0
+            share = (local[axis] / (local[axis] + chamber)) ** 2
+            stiffness[axis], joined, time = _in_series(float(local[axis]) + chamber, element)
+            stiffness[axis], damping[axis] = share * stiffness[axis], share * damping[axis]
             if rubber is not None:
                 friction[axis] = behind_spring(rubber, elastic, float(local[axis]))
                 stiffness[axis] = elastic * local[axis] / (elastic + local[axis])
             if time > 0.0:
-                branch[:, axis] = joined, time
+                branch[:, axis] = share * joined, time
     return ElementLaw(
         stiffness=stiffness,
         damping=damping,
@@ -149,6 +191,11 @@ def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -
         local=_rigid() if local is None else local,
         friction=tuple(friction),
     )
+
+
+def _chamber(parameters: Bushing | Hydromount) -> float:
+    """Return the stiffness Kb of the upper chamber of a connection [N/m]; 0 without a fluid."""
+    return (parameters.chamber_stiffness or 0.0) if isinstance(parameters, Hydromount) else 0.0
 
 
 # Both sides of a car, and all cars of a sweep with an unchanged axis, need the same values.

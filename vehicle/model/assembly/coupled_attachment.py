@@ -53,7 +53,7 @@ def coupled_law(
         the directions as rows, shape (3, 3).
 
     Raises:
-        ConfigurationError: the law has a table over displacement, or rubber friction.
+        ConfigurationError: the law has a table over displacement, rubber friction, or an inertia track.
     """
     values, vectors = np.linalg.eigh(flexibility)
     attachment = vectors @ np.diag(np.maximum(values, _STIFFEST)) @ vectors.T
@@ -65,6 +65,8 @@ def coupled_law(
     nonlinear = {f"table_{name}": "a table" for name in AXES if getattr(law, f"table_{name}", None) is not None}
     if any(friction := getattr(law, "friction_force", ())):
         nonlinear["friction_force"] = f"{list(friction)} N"
+    if isinstance(law, Hydromount) and law.chamber_stiffness:
+        nonlinear["chamber_stiffness"] = "an inertia track"
     if nonlinear:
         key, shown = next(iter(nonlinear.items()))
         raise ConfigurationError(
@@ -98,11 +100,9 @@ def coupled_law(
 
 
 def _branch(law: LinearBushing | Hydromount) -> Maxwell | None:
-    if not isinstance(law, Hydromount) or law.maxwell_stiffness <= 0.0 or law.maxwell_damping <= 0.0:
+    if not isinstance(law, Hydromount) or law.maxwell is None:
         return None
-    return Maxwell(
-        stiffness=law.stiffness[2], branch_stiffness=law.maxwell_stiffness, branch_damping=law.maxwell_damping
-    )
+    return Maxwell(stiffness=law.stiffness[2], branch_stiffness=law.maxwell[0], branch_damping=law.maxwell[1])
 
 
 def _diagonalised(

@@ -13,6 +13,7 @@ from vehicle.model.assembly.element_numbers import (
     connection_name,
     connection_numbers,
     damper_numbers,
+    fluid_name,
     hold_numbers,
     joint_numbers,
     mass_numbers,
@@ -36,7 +37,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 Vector = npt.NDArray[np.float64]
 
 MODAL_BODY_MASS = 1e-9
-"""Mass [kg] of the bodies of the modal coordinates, required by MuJoCo; the armature of 1 is the modal mass."""
+"""Mass [kg] of the bodies of modal and fluid coordinates, required by MuJoCo; the armature is the actual mass."""
 
 JOINT_TIME_STEPS = 4.0
 """Time constant of the ideal joints in steps; below 2 MuJoCo's reference would be unstable."""
@@ -118,16 +119,19 @@ class ElementBuilder:
         if not self.vehicle.body.flexible:
             return
         for field, (stiffness, damping) in mode_numbers(self.vehicle.body, self.superelement).items():
-            name = field.removeprefix("joint/")
-            # Along x, so that gravity does not act on the mass.
-            self._add(name, "world", np.zeros(3), MODAL_BODY_MASS, np.full(3, MODAL_BODY_MASS)).add_joint(
-                name=name,
-                type=mujoco.mjtJoint.mjJNT_SLIDE,
-                axis=[1.0, 0.0, 0.0],
-                armature=1.0 - MODAL_BODY_MASS,
-                stiffness=stiffness,
-                damping=damping,
-            )
+            self._add_coordinate(field.removeprefix("joint/"), 1.0, stiffness, damping)
+
+    def _add_coordinate(self, name: str, mass: float, stiffness: float, damping: float) -> None:
+        """Add a scalar coordinate that is not the motion of a part, as a slide with the mass as armature."""
+        # Along x, so that gravity does not act on the mass.
+        self._add(name, "world", np.zeros(3), MODAL_BODY_MASS, np.full(3, MODAL_BODY_MASS)).add_joint(
+            name=name,
+            type=mujoco.mjtJoint.mjJNT_SLIDE,
+            axis=[1.0, 0.0, 0.0],
+            armature=mass - MODAL_BODY_MASS,
+            stiffness=stiffness,
+            damping=damping,
+        )
 
     def add_part(self, part: PlacedPart) -> None:
         """Add a rigid part with its joints."""
@@ -153,13 +157,26 @@ class ElementBuilder:
         self.bodies[wheel.plate] = self.spec.worldbody.add_body(name=wheel.plate, pos=wheel.patch, mocap=True)
 
     def connect(self, connection: PlacedConnection) -> None:
-        """Add the rows of a bushing or of a loop-closing ball joint, and the constants of its law."""
-        on_body = "body" in (connection.moving, connection.carrier)
+        """Add the rows of a bushing or of a loop-closing ball joint, and the constants of its law.
+
+        The fluid of a hydromount is a further coordinate, with rows between the same sites.
+        """
         numbers = connection_numbers(connection, self.vehicle.body, self.superelement)
         name = connection_name(connection)
         sites = (f"{name}/moving", f"{name}/carrier")
         self._site(sites[0], connection.moving, connection.at)
         self._site(sites[1], connection.carrier, connection.at)
+        self._numerics(numbers)
+        self._connect_rows(name, sites, connection, ideal=not numbers)
+        if "body" in (connection.moving, connection.carrier) and numbers and numbers[f"law/{name}"][TURNING] > 0.0:
+            self._node_rotation(name, connection.at)
+        fluid = fluid_name(connection)
+        if f"law/{fluid}" in numbers:
+            self._add_coordinate(fluid, float(numbers[f"inertia/{fluid}"][0]), *numbers[f"joint/{fluid}"].tolist())
+            self._connect_rows(fluid, sites, connection, ideal=False)
+
+    def _connect_rows(self, name: str, sites: tuple[str, str], connection: PlacedConnection, *, ideal: bool) -> None:
+        """Add three rows between two sites, with the shape of the body node at the connection."""
         row = self.spec.add_equality(
             name=name,
             type=mujoco.mjtEq.mjEQ_CONNECT,
@@ -167,18 +184,15 @@ class ElementBuilder:
             name1=sites[0],
             name2=sites[1],
         )
-        if not numbers:
+        if ideal:
             # Ideal joint: the reference acceleration of MuJoCo, critically damped, as stiff as the step allows.
             row.solref = [JOINT_TIME_STEPS * self.vehicle.solver.step, 1.0]
             row.solimp = [JOINT_IMPEDANCE, JOINT_IMPEDANCE, 0.001, 0.5, 2.0]
         else:
             # Only for a viewer without the callbacks: stiffer than the default, so that the car sags by 4 mm.
             row.solimp = [VIEWER_IMPEDANCE, VIEWER_IMPEDANCE, 0.001, 0.5, 2.0]
-            self._numerics(numbers)
-        if on_body:
+        if "body" in (connection.moving, connection.carrier):
             self._node_shape(name, connection.at)
-            if numbers and numbers[f"law/{name}"][TURNING] > 0.0:
-                self._node_rotation(name, connection.at)
 
     def add_spring(self, spring: PlacedSpring) -> None:
         """Add a spring as a tendon between its ends, with an equality row whose law the callback sets."""

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.assembly.connections import element_law
+from vehicle.model.assembly.connections import ElementLaw, element_law, fluid_law
 from vehicle.model.flexbody.rigid_body import rigid_body
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws import control_laws
@@ -28,6 +28,9 @@ from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
+
+FLUID = "fluid/"
+"""Beginning of the names of the fluids of hydromounts in the model."""
 
 TURNING, AVERAGED = 12, 13
 """Indices of the rotational stiffness, and of the mark of an averaged stiffness, in the field of a law along three
@@ -47,17 +50,33 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
             numbers[f"friction/{name}/{axis}"] = np.column_stack([friction.stiffness, friction.limit]).ravel()
     if getattr(connection.law, "one_sided", False):
         numbers[f"one_sided/{name}"] = np.ones(1)
-    # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
-    branch_damping = law.branch_stiffness * law.branch_time
-    constants = [law.stiffness, law.damping, law.branch_stiffness, branch_damping]
     if connection.rolling is not None and isinstance(connection.law, Tyre):
         numbers[f"rolling/{name}"] = np.array([connection.rolling.speed, connection.law.trail, *connection.rolling.arm])
     if connection.radius > 0.0:
         numbers[f"round/{name}"] = np.array([connection.radius])
-    numbers[f"law/{name}"] = np.concatenate([*constants, [law.rotational_stiffness, float(law.averaged)]])
+    numbers |= _law_numbers(name, law)
+    fluid = fluid_law(connection, body, superelement)
+    if fluid is not None:
+        name = fluid_name(connection)
+        numbers |= _law_numbers(name, fluid.law)
+        numbers |= {f"joint/{name}": np.array([0.0, fluid.damping])}
+        numbers[f"inertia/{name}"] = np.array([fluid.mass, fluid.share])
+    return numbers
+
+
+def _law_numbers(name: str, law: ElementLaw) -> Numbers:
+    """Return the numbers of a law along three axes."""
+    # The damper of a branch, not its time: MJCF text keeps six digits but drops numbers below 1e-5.
+    constants = [law.stiffness, law.damping, law.branch_stiffness, law.branch_stiffness * law.branch_time]
+    numbers = {f"law/{name}": np.concatenate([*constants, [law.rotational_stiffness, float(law.averaged)]])}
     if law.directions is not None:
         numbers[f"directions/{name}"] = law.directions.ravel()
     return numbers
+
+
+def fluid_name(connection: PlacedConnection) -> str:
+    """Return the name of the fluid of a hydromount in the model: of its rows, its body and its joint."""
+    return f"{FLUID}{connection.name}"
 
 
 def connection_name(connection: PlacedConnection) -> str:

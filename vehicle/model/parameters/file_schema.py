@@ -16,7 +16,9 @@ from typing import Any
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.driving import Driving
 from vehicle.model.parameters.force_elements import (
+    MAXWELL,
     NUMBERS,
+    TRACK,
     Bushing,
     Damper,
     Hydromount,
@@ -203,8 +205,8 @@ def _tables(template: Template, required: Template | None) -> Schema:
 
 
 def _bushing(parameters: type, lowest_stiffness: float, whole: bool) -> Schema:
-    """Return the schema of a connection: a hydromount if a number of the Maxwell branch is given."""
-    branch = {"anyOf": [{"required": [key]} for key in ("maxwell_stiffness", "maxwell_damping")]}
+    """Return the schema of a connection: a hydromount if a number of its branches is given."""
+    branch = {"anyOf": [{"required": [key]} for key in (*MAXWELL, *TRACK)]}
     schema = {"if": branch, "then": _reference(Hydromount, whole), "else": _reference(parameters, whole)}
     return (
         {**schema, "properties": {"stiffness": {"items": {"minimum": lowest_stiffness}}}}
@@ -232,7 +234,10 @@ def _table(parameters: type[Any], complete: bool = True) -> Schema:
         if entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
     ]
     if parameters not in WITH_FILES:
-        return _object(properties, needed if complete else [])
+        schema = _object(properties, needed if complete else [])
+        if parameters is Hydromount and complete:
+            schema["dependencies"] = {key: [*keys] for keys in (MAXWELL, TRACK) for key in keys}
+        return schema
     # Numbers may be in a file.
     schema = _object({**properties, "curve": {**TEXT, "description": "file with the curve, or property file"}})
     if parameters is Damper:

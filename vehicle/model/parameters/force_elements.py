@@ -149,19 +149,36 @@ class Tyre(LinearBushing):
     )  # fmt: skip
 
 
+TRACKED: dict[str, Any] = {"at_least": 0.01, "at_most": 1e4, "why": "mount tracks have 1 to 300 kg at the rubber"}
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Hydromount:
-    """Bushing whose z axis is an elastomer: K(s) = Kz1 + Kz2 Dz2 s / (Dz2 s + Kz2), plus Dz1 s; with rubber friction
-    as that of `Bushing`."""
+    """Bushing whose z axis is an elastomer, a fluid with an inertia track, or both in parallel.
+
+    K(s) = Kz1 + Dz1 s + Kz2 Dz2 s / (Dz2 s + Kz2) + Kb Z / (Kb + Z) with Z = mt s^2 + ct s. A decoupler with a gap
+    puts its membrane Ks in series with Kb while the displaced fluid is within the gap. Rubber friction acts as
+    that of `Bushing`.
+    """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
     damping: Point = quantity("N s/m", "Dx, Dy, Dz1", at_least=0.0, length=3, **STRONGEST)
     rotational_stiffness: float = quantity("N m/rad", "stiffness about each axis", at_least=0.0, **TWISTED)
-    maxwell_stiffness: float = quantity(
-        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, **STIFFEST
+    maxwell_stiffness: float | None = quantity(
+        "N/m", "Kz2, spring of the Maxwell branch; 0 takes it out", at_least=0.0, default=None, **STIFFEST
     )
-    maxwell_damping: float = quantity(
-        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, **STRONGEST
+    maxwell_damping: float | None = quantity(
+        "N s/m", "Dz2, dashpot of the Maxwell branch; 0 takes the branch out", at_least=0.0, default=None, **STRONGEST
+    )
+    chamber_stiffness: float | None = quantity(
+        "N/m", "Kb, bulge stiffness of the upper chamber against the displaced fluid", above=0.0, default=None,
+        **STIFFEST,
+    )  # fmt: skip
+    track_mass: float | None = quantity(
+        "kg", "mt, mass of the fluid in the track at the rubber: rho L Ap^2/At", default=None, **TRACKED
+    )
+    track_damping: float | None = quantity(
+        "N s/m", "ct, linear flow resistance of the track at the rubber", at_least=0.0, default=None, **STRONGEST
     )
     friction_force: Point = _friction_force()
     friction_stroke: Point = _friction_stroke()
@@ -169,6 +186,24 @@ class Hydromount:
     def __post_init__(self) -> None:
         validate(self)
         _require_stroke(self)
+        for keys in (MAXWELL, TRACK):
+            missing = [key for key in keys if getattr(self, key) is None]
+            if 0 < len(missing) < len(keys):
+                given = next(key for key in keys if key not in missing)
+                raise ConfigurationError(f"Hydromount.{missing[0]}: missing; {given} needs {' and '.join(missing)}")
+        # In series with an attachment both share its spring; no formula here covers that.
+        if self.chamber_stiffness is not None and self.friction_force[2] > 0.0:
+            raise ConfigurationError(
+                f"Hydromount.friction_force.z: found {self.friction_force[2]:g} N with an inertia track; rubber "
+                "friction along the axis of the fluid is not modelled: set friction_force.z to 0, or remove the track"
+            )
+
+    @property
+    def maxwell(self) -> tuple[float, float] | None:
+        """Spring Kz2 [N/m] and dashpot Dz2 [N s/m] of the Maxwell branch; None without a branch."""
+        if not self.maxwell_stiffness or not self.maxwell_damping:
+            return None
+        return self.maxwell_stiffness, self.maxwell_damping
 
 
 def _require_stroke(law: Bushing | Hydromount) -> None:
@@ -184,6 +219,13 @@ def _require_stroke(law: Bushing | Hydromount) -> None:
                 f"{force!r} N, must be at least {SHORTEST_STROKE:g} m; set the displacement at which the friction is "
                 "half its maximum, or that friction_force to 0"
             )
+
+
+MAXWELL, TRACK = (
+    ("maxwell_stiffness", "maxwell_damping"),
+    ("chamber_stiffness", "track_mass", "track_damping"),
+)
+"""Parameters of the Maxwell branch and of the inertia track of a hydromount; each group is complete or absent."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -38,8 +38,7 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
             frictionless = not any(connection.law.friction_force)
             off[f"{connection.path}.friction_stroke"] = (frictionless, f"{connection.path}.friction_force above zero")
         if isinstance(connection.law, Hydromount):
-            none = connection.law.maxwell_stiffness * connection.law.maxwell_damping == 0.0
-            off[f"{connection.path}.maxwell_"] = (none, "both of its values above zero")
+            off[f"{connection.path}.maxwell_"] = (connection.law.maxwell is None, "both of its values above zero")
     paths = {text: meant(vehicle.table, text.partition("=")[0].strip()) for text in overrides}
     return tuple(
         f"{override.strip()}: without effect; it belongs to {needed}"

@@ -1,0 +1,210 @@
+"""Hydromount with an inertia track: by its closed form in a run, and in the matrices, runs and variants of the car."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
+from tests.validation import validated
+from vehicle.engines.linear.dynamic_stiffness import steady_motion
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.rows import Rows
+from vehicle.errors import ConfigurationError
+from vehicle.model.assembly import connections
+from vehicle.model.assembly.connections import ElementLaw, FluidLaw
+from vehicle.model.parameters.force_elements import Hydromount
+from vehicle.model.parameters.shipped import FOCUS_FILE
+from vehicle.model.parameters.toml_file import read_table
+from vehicle.model.parameters.vehicle import vehicle_of
+from vehicle.runs.car import Car
+
+RUBBER, DRAG, CHAMBER, MASS, FLOW = 2.0e5, 150.0, 4.0e5, 80.0, 1200.0
+TRACK = {
+    "hydromount.maxwell_stiffness": 0.0,
+    "hydromount.chamber_stiffness": CHAMBER,
+    "hydromount.track_mass": MASS,
+    "hydromount.track_damping": FLOW,
+}
+CHANNELS = ["engine_acc_z", "hydromount_force_z"]
+SOURCE = "closed form: Kr + i w cr + Kb Z / (Kb + Z), Z = -w^2 mt + i w ct"
+
+
+def fluid_stiffness(omega, chamber=CHAMBER, mass=MASS, flow=FLOW):
+    """Dynamic stiffness of the fluid, Kb Z / (Kb + Z)."""
+    track = -(omega**2) * mass + 1j * omega * flow
+    return chamber * track / (chamber + track)
+
+
+def add_fluid(spec, name, moving, *, points=None):
+    """The fluid of a mount between a body and the world, as the generator writes it."""
+    fluid = f"fluid/{name}"
+    moving.add_site(name=f"{fluid}/moving")
+    spec.worldbody.add_site(name=f"{fluid}/carrier")
+    spec.add_equality(
+        name=fluid, type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_SITE,
+        name1=f"{fluid}/moving", name2=f"{fluid}/carrier",
+    )  # fmt: skip
+    spec.add_numeric(name=f"law/{fluid}", data=element_law([0.0, 0.0, CHAMBER]))
+    spec.add_numeric(name=f"inertia/{fluid}", data=[MASS, 0.0])
+    if points is not None:
+        spec.add_numeric(name=f"table/{fluid}/z", data=np.ravel(points))
+    body = spec.worldbody.add_body(name=fluid)
+    body.explicitinertial = True
+    body.mass, body.inertia, body.ipos = 1e-9, [1e-9] * 3, np.zeros(3)
+    body.add_joint(
+        name=fluid, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0], armature=MASS - 1e-9, damping=FLOW
+    )
+
+
+def dynamic_stiffness(frequency, step=1e-4, mass=5.0):
+    """K(jw) = F / X + m w^2 of a mount on the ground in the steady state under F = cos(w t) on its mass."""
+    spec = empty_spec(step)
+    body = add_free_body(spec, "engine", mass, [10.0] * 3)
+    add_bushing(spec, "hydromount", body, spec.worldbody, element_law([RUBBER] * 3, [DRAG] * 3))
+    add_fluid(spec, "hydromount", body)
+    run, omega, steps = Stepper(spec), 2.0 * np.pi * frequency, round(1.0 / (frequency * step))
+    # The rows average their forces over three steps, 1, 10, 1; the load must be averaged alike.
+    average = (10.0 + 2.0 * np.cos(omega * step)) / 12.0
+
+    def push(time):
+        run.data.xfrc_applied[1, 2] = average * np.cos(omega * time)
+
+    settle = steps * round(1.6 * frequency)
+    x = run.step(settle + 2 * steps, run.position, push)[settle:, 2]
+    amplitude = 2.0 * np.mean(x * np.exp(-1j * omega * step * (settle + np.arange(len(x)))))
+    return 1.0 / amplitude + mass * omega**2
+
+
+@pytest.mark.parametrize("frequency", [5.0, 10.0, 20.0])
+def test_a_run_has_the_closed_form(frequency):
+    omega = 2.0 * np.pi * frequency
+    exact = RUBBER + 1j * omega * DRAG + fluid_stiffness(omega)
+    validated(
+        "Bushings, springs and stops", f"dynamic stiffness of a mount with inertia track in a run, {frequency:g} Hz",
+        dynamic_stiffness(frequency), exact, rel=1e-5, unit="N/m", source=SOURCE,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def rubber():
+    """The car of Bommer 2006 without the Maxwell branch of its mount, on rigid attachments."""
+    return Car.load("focus", {"hydromount.maxwell_stiffness": 0.0, "body.attachment_flexibility": False})
+
+
+@pytest.fixture(scope="module")
+def tracked(rubber):
+    return rubber.with_(TRACK)
+
+
+def mount_row(car):
+    """Extension of the mount along z over the velocity coordinates."""
+    rows, data = Rows(car.model.model, car.static.preload), mujoco.MjData(car.model.model)
+    with installed(rows):
+        mujoco.mj_forward(car.model.model, data)
+    jacobian = data.efc_J.reshape(-1, car.model.model.nv)
+    return jacobian[rows.layout.bushings.rows[rows.names.index("bushing/hydromount"), 2]].copy()
+
+
+def test_the_matrices_are_those_of_the_car_with_the_closed_form_in_place_of_the_fluid(rubber, tracked):
+    frequency = np.array([2.0, 7.0, 11.0, 14.0, 25.0, 45.0])
+    steady = steady_motion(tracked.matrices.system, frequency, [1.0, 0.0], stuck=True)
+    system, row = rubber.matrices.system, mount_row(rubber)
+    rail = {name: car.matrices.system.output("seat_rail_acc_z")[0] for name, car in (("with", tracked), ("no", rubber))}
+    found, exact = rail["with"] @ steady.motion, []
+    for s, f in zip(steady.s, frequency, strict=True):
+        held = np.vstack([system.constraints, system.slide_rows])
+        basis = np.linalg.svd(held)[2][np.linalg.matrix_rank(held) :].T
+        dynamic = s**2 * system.mass + s * system.damping + system.stiffness
+        dynamic = dynamic + fluid_stiffness(2.0 * np.pi * f) * np.outer(row, row)
+        load = (s * system.input_damping + system.input_stiffness)[:, 0]
+        motion = basis @ np.linalg.solve(basis.T @ dynamic @ basis, basis.T @ load)
+        exact.append(rail["no"] @ motion)
+    validated(
+        "Linear system", "seat rail over plate, car with an inertia track in its hydromount, 2 to 45 Hz", found,
+        np.array(exact), rel=1e-7, source="second derivation: matrices without track plus its closed form",
+    )  # fmt: skip
+    assert np.max(np.abs(np.array(exact) / (rail["no"] @ steady_motion(
+        system, frequency, [1.0, 0.0], stuck=True).motion) - 1.0)) > 0.02  # fmt: skip
+
+
+def test_both_engines_agree_and_the_energy_balances(tracked, high_piece):
+    run = {engine: tracked.run(high_piece, engine=engine, channels=CHANNELS) for engine in ("mujoco", "reduced")}
+    for channel, limit in zip(CHANNELS, (2e-2, 1e-2), strict=True):
+        whole, reduced = (np.asarray(run[engine][channel]) for engine in ("mujoco", "reduced"))
+        error = np.sqrt(np.mean((whole - reduced) ** 2)) / np.std(whole)
+        validated(
+            "Reduced engine", f"car with an inertia track, RMS error of {channel} against MuJoCo", error, 0.0,
+            abs=limit, source="second derivation: MuJoCo at its default step",
+        )  # fmt: skip
+    validated(
+        "Integration in MuJoCo", "energy balance of a run of the car with an inertia track",
+        run["mujoco"].recording.statistics.energies.residual, 0.0, abs=1e-3,
+        source="conservation: work of the plates, losses and stored energy",
+    )  # fmt: skip
+
+
+def test_a_changed_track_changes_the_matrices_as_a_new_model_does(tracked):
+    change = {"hydromount.track_mass": 30.0, "hydromount.track_damping": 700.0, "hydromount.chamber_stiffness": 3e5}
+    varied, built = tracked.with_(change).matrices.system, Car.load("focus", {
+        "body.attachment_flexibility": False, **TRACK, **change}).matrices.system  # fmt: skip
+    for name in ("mass", "damping", "stiffness"):
+        scale = np.max(np.abs(getattr(built, name)))
+        np.testing.assert_allclose(getattr(varied, name), getattr(built, name), rtol=1e-6, atol=1e-9 * scale)
+
+
+def test_the_track_names_its_mode_and_carries_no_weight(rubber, tracked):
+    modes = tracked.modes(highest=30.0)
+    shares = [mode.energy["fluid of hydromount"] for mode in modes]
+    assert 0.3 < max(shares) < 1.0 and "fluid of hydromount" in modes[int(np.argmax(shares))].description
+    assert tracked.static.tyre_load == pytest.approx(rubber.static.tyre_load, rel=1e-9)
+
+
+def test_rubber_and_fluid_share_the_spring_of_the_attachment():
+    car = Car.load("focus", {**TRACK, "hydromount.damping.z": 300.0})
+    mount = next(each for each in car.vehicle.composition.connections if each.name == "hydromount")
+    main, fluid = (
+        law(mount, car.vehicle.body, car.trimmed_body) for law in (connections.element_law, connections.fluid_law)
+    )
+    assert isinstance(main, ElementLaw) and isinstance(fluid, FluidLaw) and isinstance(mount.law, Hydromount)
+    omega, local = 2.0 * np.pi * np.linspace(2.0, 50.0, 97), 1.0 / car.trimmed_body.residual["hydromount"][2, 2]
+    track, turn = -(omega**2) * fluid.mass + 1j * omega * fluid.damping, 1j * omega * main.branch_time[2]
+    # Rows of rubber and chamber over the extension and the displacement of the fluid, which has no load.
+    rubber = main.stiffness[2] + 1j * omega * main.damping[2] + main.branch_stiffness[2] * turn / (1.0 + turn)
+    chamber = fluid.law.stiffness[2]
+    cross, own = rubber * fluid.share - chamber, rubber * fluid.share**2 + chamber + track
+    found = rubber + chamber - cross**2 / own
+    exact = 1.0 / (1.0 / local + 1.0 / (mount.law.stiffness[2] + 300j * omega + fluid_stiffness(omega)))
+    validated(
+        "Bushings, springs and stops", "mount with an inertia track behind a flexible attachment, 2 to 50 Hz", found,
+        exact, rel=1e-9, unit="N/m", source="closed form: 1 / (1 / K0 + 1 / K(iw))",
+    )  # fmt: skip
+
+
+def test_a_track_is_refused_where_the_attachment_couples_the_axes():
+    mount: dict[str, Any] = {
+        "moving": "engine",
+        "carrier": "body",
+        "at": "hydromount",
+        "axes": ["engine_cog", "linear_mount"],
+    }
+    mount |= {"stiffness": [1e5] * 3, "damping": [0.0] * 3, "rotational_stiffness": 0.0}
+    mount |= {"chamber_stiffness": 1e5, "track_mass": 20.0, "track_damping": 100.0}
+    table = read_table(FOCUS_FILE) | {"connection": {"extra": mount}}
+    with pytest.raises(ConfigurationError, match=r"connection\.extra\.chamber_stiffness: found an inertia track"):
+        Car(vehicle_of(table, FOCUS_FILE.parent), folder=FOCUS_FILE.parent).model  # noqa: B018
+
+
+def test_an_incomplete_track_is_refused():
+    with pytest.raises(ConfigurationError, match=r"hydromount\.track_damping: missing; chamber_stiffness needs"):
+        Car.load("focus", {"hydromount.chamber_stiffness": 4e5, "hydromount.track_mass": 50.0})
+
+
+def test_rubber_friction_along_the_fluid_is_refused():
+    with pytest.raises(ConfigurationError, match=r"friction_force\.z: found 100 N with an inertia track"):
+        Car.load(
+            "focus", {"hydromount.friction_force": [0, 0, 100], "hydromount.friction_stroke": [0, 0, 1e-3], **TRACK}
+        )
