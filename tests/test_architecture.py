@@ -22,7 +22,7 @@ WINGS = {
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "linear", "reduced", "lumped"),
     "drawing": ("rendering", "notebook"),
-    "runs": ("car", "fmu", "comparison", "output", "report"),
+    "runs": ("car", "fmu", "comparison", "output", "report", "bench"),
     "studies": ("design", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
@@ -52,6 +52,7 @@ ROOMS: dict[str, set[str]] = {
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
+    "bench": {"analysis", "car", "excitation", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},

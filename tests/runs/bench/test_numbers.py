@@ -1,0 +1,91 @@
+"""Numbers of the bench: those of a run, FRFs of the linear car, excerpts and roads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.validation import validated
+from vehicle import Car, read_signal, road
+from vehicle.errors import ConfigurationError
+from vehicle.runs.bench.drive import bench_drive, excerpt
+from vehicle.runs.bench.numbers import numbers
+from vehicle.signals.excitation.input_files import find_input
+
+
+@pytest.fixture(scope="module")
+def high():
+    return read_signal(find_input("high.csv"), wheel="fr")
+
+
+@pytest.fixture(scope="module")
+def drive(car, high):
+    return bench_drive(car, high, seconds=8.0)
+
+
+def test_numbers_are_those_of_the_run(car, high, drive):
+    found = numbers(car, drive)
+    run = car.run(excerpt(high, 0.0, 8.0)[0], engine="reduced")
+    assert drive.skip == 0.0 and run.signal.duration == 8.0
+    # Rounding alone: a run with fewer channels is summed in another order.
+    assert found.comfort.values == pytest.approx(run.comfort().values, rel=1e-9)
+    assert found.slip == {wheel: run.slip_share(wheel) for wheel in ("fr", "fl")}
+    np.testing.assert_allclose(found.acceleration, run["seat_rail_acc_z"], atol=1e-9)
+    np.testing.assert_allclose(found.damper_force["fr"], run["damper_fr_force"], atol=1e-6)
+    np.testing.assert_allclose(found.spectra[0].density, run.psd("seat_rail_acc_z").channels[0].density, rtol=1e-6)
+    assert found.table()["slip fr"] == (100.0 * run.slip_share("fr"), "%")
+    assert found.seconds > 0.0
+
+
+def test_frf_of_the_car_without_friction_is_that_of_its_matrices(car, drive):
+    sliding = car.with_({"damper.coulomb_friction": 0.0})
+    found = numbers(sliding, drive)
+    inside = found.frf.frequency >= 2.0
+    exact = car.matrix_frf(found.names, found.frf.frequency[inside], damper="sliding", wheel="fr")
+    # The transient of the input before is left over, see `phase_averages.LEAD`.
+    for name, computed, expected in zip(found.names, found.frf.response[:, inside], exact, strict=True):
+        validated(
+            "FRF estimation and spectra",
+            f"{name.replace('_', ' ')} of the car without friction, periodic inputs of the bench: RMS error over |H|",
+            np.linalg.norm(computed - expected) / np.linalg.norm(expected),
+            0.0,
+            abs=5e-4,
+            source="second derivation: FRF of the matrices",
+        )
+
+
+def test_friction_makes_an_error_band(car, drive):
+    found = numbers(car, drive)
+    band = np.median(found.frf.random_error / np.abs(found.frf.response), axis=1)
+    assert np.all((band > 0.02) & (band < 0.3))
+
+
+def test_excerpt_from_the_middle_rises_before_it(high):
+    part, skip = excerpt(high, 20.0, 6.0)
+    assert (skip, part.duration) == (2.0, 8.0)
+    z = high.displacement["fr"][18000:26001]
+    assert part.displacement["fr"][0] == 0.0
+    np.testing.assert_allclose(part.displacement["fr"][2000:], (z - z.mean())[2000:], atol=1e-12)
+    with pytest.raises(ConfigurationError, match=r"--from 58: .* has 60 s, and 5 s are needed"):
+        excerpt(high, 58.0, 6.0)
+
+
+def test_a_road_rolls_and_delays_the_rear_axle():
+    car = Car.load("focus_road")
+    drive = bench_drive(car, road("C", 80), seconds=6.0)
+    assert drive.overrides == (f"driving.speed={80 / 3.6!r}",)
+    assert drive.record.duration == drive.skip + 6.0
+    front, rear = (drive.inputs.periods(drive.probe.displacement[name][None])[0, 0] for name in ("fr", "rr"))
+    wheels = {wheel.name: wheel.center[0] for wheel in car.vehicle.composition.wheels}
+    delay = (wheels["rr"] - wheels["fr"]) * 3.6 / 80
+    lag = np.fft.irfft(np.fft.rfft(rear) * np.conj(np.fft.rfft(front)))
+    assert np.argmax(lag) * 1e-3 == pytest.approx(delay, abs=1e-3)
+    found = numbers(car.with_(drive.overrides), drive)
+    assert set(found.slip) == {"fr", "fl", "rr", "rl"} and found.comfort.unweighted.overall > 0.5
+    recorded = replace(road("C", 80), speed="channel:V")
+    with pytest.raises(ConfigurationError, match="recorded over time"):
+        bench_drive(car, recorded)
+    with pytest.raises(ConfigurationError, match=r"--seconds 100: must be 5 to 60 s"):
+        bench_drive(car, road("C", 80), seconds=100.0)

@@ -1,0 +1,103 @@
+"""Values of a car on a short input, from two runs of the reduced engine, for the bench, for pages and for tests."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.names import AXES
+from vehicle.runs.bench.drive import BenchDrive
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.ride_comfort import RunComfort
+from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
+from vehicle.threads import one_blas_thread
+
+Vector = npt.NDArray[np.float64]
+
+RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
+"""Channels of the seat rail."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class BenchNumbers:
+    """Values of a car on the input of a bench.
+
+    Attributes:
+        comfort: comfort of the excerpt, as `Run.comfort`.
+        slip: wheel to slip share of its damper, as `Run.slip_share` [-].
+        spectra: spectra of the vertical seat rail, unweighted and weighted, as `Run.psd`.
+        names: channels of `frf`.
+        frf: FRFs [m/s2 per m] to the first plate at the level of the excerpt, with standard error.
+        time: times of the evaluated excerpt [s]; (n,).
+        acceleration: vertical acceleration of the seat rail [m/s2]; (n,).
+        damper_velocity, damper_force: damper to velocity [m/s] and force [N]; (n,) each.
+        warnings: exceeded limits of the reduced engine.
+        seconds: processor time of this thread for all of this [s].
+    """
+
+    comfort: RunComfort
+    slip: Mapping[str, float]
+    spectra: tuple[ChannelSpectrum, ...]
+    names: tuple[str, ...]
+    frf: FrequencyResponse
+    time: Vector
+    acceleration: Vector
+    damper_velocity: Mapping[str, Vector]
+    damper_force: Mapping[str, Vector]
+    warnings: tuple[str, ...]
+    seconds: float
+
+    def table(self) -> dict[str, tuple[float, str]]:
+        """Return the numbers of the table: name to value and unit."""
+        rows = {
+            "comfort, unweighted": (self.comfort.unweighted.overall, "m/s2"),
+            "comfort, weighted": (self.comfort.weighted.overall, "m/s2"),
+        }
+        if self.comfort.cushion is not None:
+            rows["comfort on the seat, weighted"] = (self.comfort.cushion.weighted.overall, "m/s2")
+        if self.comfort.seat_value is not None:
+            rows["SEAT value"] = (self.comfort.seat_value, "-")
+        return rows | {f"slip {wheel}": (100.0 * share, "%") for wheel, share in self.slip.items()}
+
+
+@one_blas_thread()
+def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
+    """Run a car on the input of a bench with the reduced engine, and evaluate the runs.
+
+    Args:
+        car: the car, with the overrides of the drive; fastest as `Car.with_` of a car whose matrices exist.
+        drive: the input.
+
+    Raises:
+        ConfigurationError: the car is unstable or cannot be built.
+        SimulationError: the run could not be carried through.
+    """
+    started = clock.thread_time()
+    vehicle = car.vehicle
+    wheels = [name for name in vehicle.wheels if f"damper_{name}_velocity" in vehicle.channels]
+    seat = tuple(f"seat_acc_{axis}" for axis in AXES) if vehicle.seated else ()
+    dampers = [f"damper_{wheel}_{quantity}" for wheel in wheels for quantity in ("velocity", "force")]
+    run = replace(car.run(drive.record, engine="reduced", channels=[*RAIL, *seat, *dampers]), skip=drive.skip)
+    shown = ("seat_rail_acc_z", f"knuckle_{next(iter(drive.inputs.samples))}_acc_z")
+    names = tuple(name for name in shown if name in vehicle.channels)
+    probe = car.run(drive.probe, engine="reduced", channels=names)
+    frf = drive.inputs.response(np.array([probe[name] for name in names]))
+    part = run.evaluated
+    return BenchNumbers(
+        comfort=run.comfort(),
+        slip={wheel: run.slip_share(wheel) for wheel in wheels},
+        spectra=run.psd(["seat_rail_acc_z"]).channels,
+        names=names,
+        frf=frf,
+        time=run.time[part],
+        acceleration=run["seat_rail_acc_z"][part],
+        damper_velocity={wheel: run[f"damper_{wheel}_velocity"][part] for wheel in wheels},
+        damper_force={wheel: run[f"damper_{wheel}_force"][part] for wheel in wheels},
+        warnings=run.recording.statistics.warnings,
+        seconds=clock.thread_time() - started,
+    )
