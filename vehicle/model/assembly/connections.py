@@ -193,7 +193,7 @@ def _bushing_law(parameters: LinearBushing | Hydromount, local: Vector | None) -
     )
 
 
-def _chamber(parameters: Bushing | Hydromount) -> float:
+def _chamber(parameters: LinearBushing | Hydromount) -> float:
     """Return the stiffness Kb of the upper chamber of a connection [N/m]; 0 without a fluid."""
     return (parameters.chamber_stiffness or 0.0) if isinstance(parameters, Hydromount) else 0.0
 
