@@ -119,7 +119,7 @@ def _single(case: Case, measure: Measure, engine: str | None = None) -> Result:
 def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]:
     """Run a batch with the reduced engine; rerun cases outside its valid range with MuJoCo if the case allows it."""
     started = clock.perf_counter()
-    found: dict[int, Result | None] = {}
+    finished: dict[int, Result | None] = {}
     cars: dict[int, Car] = {}
     groups: dict[Hashable, list[int]] = {}
     for number, case in enumerate(cases):
@@ -127,10 +127,10 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
             cars[number], signal = _car_of(case), signal_of(case.source)
             _require(cars[number].vehicle, signal, measure)
         except OF_A_RUN as error:
-            found[number] = _failed(error)
+            finished[number] = _failed(error)
             continue
         if case.engine != "reduced" and cars[number].needs_mujoco:
-            found[number] = None
+            finished[number] = None
         else:
             groups.setdefault((case.source, case.engine, batch_key(cars[number])), []).append(number)
     for group in groups.values():
@@ -141,9 +141,9 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
             batch = group[first : first + size]
             accept = case.engine == "reduced"
             runs = measured_batch([cars[number] for number in batch], signal, measure, accept_invalid=accept)
-            found |= zip(batch, runs, strict=True)
+            finished |= zip(batch, runs, strict=True)
     seconds = (clock.perf_counter() - started) / len(cases)
-    results = [found[number] or _single(case, measure, "mujoco") for number, case in enumerate(cases)]
+    results = [finished[number] or _single(case, measure, "mujoco") for number, case in enumerate(cases)]
     return [replace(result, seconds=result.seconds + seconds) for result in results]
 
 
