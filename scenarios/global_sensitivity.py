@@ -146,7 +146,7 @@ def _job(options: argparse.Namespace) -> None:
         executor=make,
         folder=folder,
         retry_failed=options.retry_failed,
-        progress=ProgressLine("sensitivity"),
+        progress=ProgressLine("sensitivity", runs=len(cases)),
     )
     seconds = clock.perf_counter() - started
     caption = (

@@ -57,7 +57,7 @@ ROOMS: dict[str, set[str]] = {
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
-    | {"reduced", "rendering", "report", "simulation", "threads", "version"},
+    | {"reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
     | {"report", "threads"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},

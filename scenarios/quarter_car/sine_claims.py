@@ -60,8 +60,8 @@ def _low_claims(runs: Runs) -> list[Claim]:
             ratio,
             2.5,
             "'about': 25 %; a stuck strut damps nothing, so its vibration of 4.8 Hz is that of the start, which is not "
-            f"told. No start gives 10: a stuck strut passes at most Fd (Km + Kd)/(Kd Mb) = {bound:.4f} m/s2, which is "
-            f"{bound / sliding:.2f} times the {sliding:.4f} m/s2 of the sliding one; after a step of the road it is "
+            f"printed. No start gives 10: a stuck strut passes at most Fd (Km + Kd)/(Kd Mb) = {bound:.4f} m/s2, which "
+            f"is {bound / sliding:.2f} times the {sliding:.4f} m/s2 of the sliding one; after a step of the road it is "
             f"{stepped:.2f}, the largest of {started.shape[1]} starts {reached / sliding:.2f}",
         ),
         OWN_CHECK.statement(

@@ -41,6 +41,18 @@ def test_the_time_left_is_that_of_the_work_that_goes_on(monkeypatch, capsys):
     assert capsys.readouterr().err.splitlines() == ["work: 1 %", "work: 11 %, 276 s left", "work: 21 %, 245 s left"]
 
 
+def test_the_line_of_many_runs_counts_them(monkeypatch, capsys):
+    clock = iter([0.0, 31.0, 62.0])
+    monkeypatch.setattr("time.monotonic", lambda: next(clock))
+    line = ProgressLine("sweep", runs=400)
+    for done in (7, 14):
+        line(done / 400)
+    assert capsys.readouterr().err.splitlines() == [
+        "sweep: 2 %, 7 of 400 runs",
+        "sweep: 4 %, 14 of 400 runs, 1709 s left",
+    ]
+
+
 class Terminal(io.StringIO):
     """Standard error of a terminal."""
 

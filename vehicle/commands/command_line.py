@@ -197,10 +197,12 @@ class ProgressLine:
     Args:
         work: name of the computation.
         enabled: False prints nothing.
+        runs: number of runs of the computation; the line then has the number of finished runs too.
     """
 
-    def __init__(self, work: str, *, enabled: bool = True) -> None:
+    def __init__(self, work: str, *, enabled: bool = True, runs: int = 0) -> None:
         self.what = work
+        self.runs = runs
         self.enabled = enabled
         self.moving = sys.stderr.isatty()
         self.started = time.monotonic()
@@ -231,7 +233,8 @@ class ProgressLine:
             self._draw(now)
         else:
             left = "" if math.isnan(self.end) else f", {self.end - now:.0f} s left"
-            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{left}\n")
+            counted = f", {self._counted()}" if self.runs else ""
+            sys.stderr.write(f"{self.what.strip()}: {100 * fraction:.0f} %{counted}{left}\n")
             sys.stderr.flush()
         if fraction >= 1.0:
             self.stop()
@@ -254,8 +257,13 @@ class ProgressLine:
         newline = "\n" if self.fraction >= 1.0 else ""
         elapsed = f"after {now - self.started:.0f} s"
         remark = elapsed if math.isnan(self.end) else f"{max(self.end - now, 0.0):.0f} s left"
-        sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %  {remark:>12} {newline}")
+        counted = f"  {self._counted()}" if self.runs else ""
+        sys.stderr.write(f"\r{self.what} [{bar:<30}] {100 * self.fraction:3.0f} %{counted}  {remark:>12} {newline}")
         sys.stderr.flush()
+
+    def _counted(self) -> str:
+        """Return the number of finished runs of all."""
+        return f"{round(self.fraction * self.runs)} of {self.runs} runs"
 
 
 _moving_lines: set[ProgressLine] = set()

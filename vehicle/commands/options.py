@@ -107,6 +107,30 @@ def figures_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def head_options(parser: argparse._ActionsContainer) -> None:
+    """Add --author and --project, the names in the head of a report."""
+    parser.add_argument("--author", default="", metavar="NAME", help="author in the head of the report")
+    parser.add_argument("--project", default="", metavar="NAME", help="project in the head of the report")
+
+
+def report_option(parser: Parser, content: str, folder: str) -> None:
+    """Add --report, a report beside the results, with --author and --project of its head.
+
+    Args:
+        parser: parser of the command.
+        content: content of the report, for the help.
+        folder: name of the folder of the results, for the help.
+    """
+    parser.add_argument(
+        "--report",
+        nargs="?",
+        const="",
+        metavar="FILE.html",
+        help=f"write a report too: {content}; report.html in the folder of {folder} by default",
+    )
+    head_options(parser.scoped_group("a report", needs="--report", active=lambda options: options.report is not None))
+
+
 def film_name(value: str, default: str) -> Path:
     """Return the path of a film.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import REPORT, output_file_of
-from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.options import command_parser, head_options, message_options, output_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
@@ -22,8 +22,7 @@ def parser() -> Parser:
         metavar="RUN",
         help="folder of a run, as runs/low; the others are compared with the first",
     )
-    parser.add_argument("--author", default="", metavar="NAME", help="author in the head of the report")
-    parser.add_argument("--project", default="", metavar="NAME", help="project in the head of the report")
+    head_options(parser)
     output_options(
         parser, None, default=f"{REPORT} in the folder of a single run, and here for several,", metavar="FILE.html"
     )

@@ -29,6 +29,7 @@ from vehicle.commands.options import (
     film_name,
     message_options,
     output_options,
+    report_option,
     skip_option,
     vehicle_options,
 )
@@ -99,14 +100,7 @@ def parser() -> Parser:
     film.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
     film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     measured_options(parser)
-    parser.add_argument(
-        "--report",
-        nargs="?",
-        const="",
-        metavar="FILE.html",
-        help="write a report too: one HTML file with findings, figures, moving modes and tables; report.html in the "
-        "folder of the run by default",
-    )
+    report_option(parser, "one HTML file with findings, figures, moving modes and tables", "the run")
     message_options(parser, quiet=True)
     return parser
 
@@ -203,10 +197,9 @@ def _job(options: argparse.Namespace) -> None:
             from vehicle.runs.report.page import report_page
 
             progress = ProgressLine("report    ", enabled=not options.quiet)
-            path.write_text(
-                report_page([read_run(folder, final_path=output, car=car, recording=run.recording)], progress),
-                encoding="utf-8",
-            )
+            finished = read_run(folder, final_path=output, car=car, recording=run.recording)
+            page = report_page([finished], progress, author=options.author, project=options.project)
+            path.write_text(page, encoding="utf-8")
 
         summary = write_run(
             folder,

@@ -20,6 +20,7 @@ from vehicle.commands.options import (
     jobs_option,
     message_options,
     output_options,
+    report_option,
     resume_options,
     skip_option,
     time_limit_option,
@@ -59,14 +60,7 @@ def parser() -> Parser:
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
-    parser.add_argument(
-        "--report",
-        nargs="?",
-        const="",
-        metavar="FILE.html",
-        help="write a report too: best and base car, picture, tables, how to repeat the sweep; report.html in the "
-        "folder of the sweep by default",
-    )
+    report_option(parser, "best and base car, picture, tables, how to repeat the sweep", "the sweep")
     message_options(parser, quiet=True)
     return parser
 
@@ -74,7 +68,6 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
-    from vehicle.model.parameters.paths import unit_of_override
     from vehicle.runs.car import Car
     from vehicle.runs.output.folder import write_text, write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
@@ -95,7 +88,8 @@ def _job(options: argparse.Namespace) -> None:
     make = executor_factory(options.executor, options.jobs)
     folder = prepared_folder_of(options, options.output, rows=ROWS)
     report = None if options.report is None else report_path(options, folder)
-    for text in () if options.quiet else plan.notes:
+    notes = (*plan.notes, *plan.engine_notes())
+    for text in () if options.quiet else notes:
         print(f"note        {text}")
     try:
         table = plan.run(
@@ -103,7 +97,7 @@ def _job(options: argparse.Namespace) -> None:
             folder=folder,
             retry_failed=options.retry_failed,
             time_limit=options.time_limit,
-            progress=ProgressLine("sweep     ", enabled=not options.quiet),
+            progress=ProgressLine("sweep     ", enabled=not options.quiet, runs=len(plan.cases)),
             notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
         )
     except KeyboardInterrupt:
@@ -112,12 +106,12 @@ def _job(options: argparse.Namespace) -> None:
     cars = ranked_cars(table)
     drawn = cars is not None and can_be_drawn(cars)
     caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
-    units = {} if cars is None else {path: unit_of_override(car.vehicle, path) for path in cars.paths}
     if cars is not None and drawn:
-        write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, units, caption))
+        write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, caption))
     if report is not None:
         command = f"python -m vehicle sweep {shlex.join(options.words)}"
-        page = sweep_page(table, car.vehicle.name, units=units, caption=caption, command=command, notes=plan.notes)
+        head = {"author": options.author, "project": options.project}
+        page = sweep_page(table, car.vehicle.name, caption=caption, command=command, notes=notes, **head)
         write_text(folder / report if report.parent == Path() else report, page)
     if not options.quiet:
         more = "" if report is None else f"{report}, "
@@ -128,7 +122,7 @@ def _job(options: argparse.Namespace) -> None:
             f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
         if cars is not None:
-            print("\n".join(ranking_lines(cars, units)))
+            print("\n".join(ranking_lines(cars)))
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:

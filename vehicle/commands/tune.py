@@ -17,6 +17,7 @@ from vehicle.commands.options import (
     CAR_HELP,
     command_parser,
     engine_option,
+    head_options,
     message_options,
     output_options,
     set_option,
@@ -127,6 +128,7 @@ def parser() -> Parser:
     )
     engine_option(parser, "mujoco")
     output_options(parser, OUTPUT)
+    head_options(parser)
     parser.add_argument("--json", action="store_true", help="print the content of tune.json")
     message_options(parser, quiet=True)
     return parser
@@ -175,7 +177,14 @@ def _job(options: argparse.Namespace) -> None:
     posteriors = _posteriors(options, car, parameters, targets) if options.posterior else []
     line(1.0)
     with output_folder(folder, force=options.force, protect=(*files, *protect)) as work:
-        names = write_tuning(work, tuned, f"python -m vehicle tune {shlex.join(options.words)}", posteriors)
+        names = write_tuning(
+            work,
+            tuned,
+            f"python -m vehicle tune {shlex.join(options.words)}",
+            posteriors,
+            author=options.author,
+            project=options.project,
+        )
     if options.json:
         content = (folder / NUMBERS).read_text(encoding="utf-8")
         print(json.dumps(json.loads(content), indent=2, allow_nan=False))

@@ -224,7 +224,8 @@ def test_a_fit_finds_the_mounts_from_the_same_file(measured, tmp_path):
     arguments += ["--set", "shaker_wheel='fr'"]  # the wheel of the measurement
     arguments += ["--set", f"{MOUNT}=6.5e5", "--set", f"{ENGINE}=5.5e5"]
     arguments += ["--parameters", f"{MOUNT}=4e5:9e5", f"{ENGINE}=3e5:8e5"]
-    assert tune([*arguments, "--output", str(tmp_path / "fit")]) == 0
+    assert tune([*arguments, "--output", str(tmp_path / "fit"), "--author", "A. Engineer", "--project", "Ride"]) == 0
+    assert "Ride, A. Engineer, 20" in (tmp_path / "fit" / "report.html").read_text(encoding="utf-8")
     fitted = json.loads((tmp_path / "fit" / "tune.json").read_text())["parameters"]
     assert [parameter["path"].removeprefix("front.") for parameter in fitted] == list(HIDDEN)
     for parameter, value in zip(fitted, HIDDEN.values(), strict=True):

@@ -39,6 +39,10 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
         "reduced",
         "--quiet",
         "--report",
+        "--author",
+        "A. Engineer",
+        "--project",
+        "Ride",
     ]
     assert main([*words, "--set", "damper.coulomb_friction=100"]) == 0
     return Reported(folder=folder, page=folder / "report.html")

@@ -128,6 +128,12 @@ def test_runs_stand_beside_each_other(reported, tmp_path, monkeypatch):
     assert page.stat().st_size < 6e6
 
 
+def test_author_and_project_are_in_the_head_of_the_report_of_a_run(reported, tmp_path, capsys):
+    assert "Ride, A. Engineer, 20" in unescape(reported.page.read_text(encoding="utf-8"))
+    assert shaker(["--input", "low.csv", "--output", str(tmp_path / "out"), "--author", "A. Engineer"]) == 2
+    assert "--author: belongs to --report" in capsys.readouterr().err
+
+
 def test_first_screen_answers_the_question(reported, tmp_path):
     """What changed, by how much, and where in frequency: a car with half the spring stiffness on the same signal."""
     summary = json.loads((reported.folder / "summary.json").read_text())

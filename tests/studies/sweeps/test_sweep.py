@@ -117,8 +117,8 @@ def test_finished_rows_are_not_computed_again(tmp_path):
     seen: list[float] = []
     first = sweep(cases[:2], Peak(), executor=in_threads, folder=tmp_path)
     whole = sweep(cases, Peak(), executor=in_threads, folder=tmp_path, progress=seen.append)
-    # The fraction refers to the runs of this call, so the remaining time can be extrapolated.
-    assert seen == [0.5, 1.0]
+    # Stored rows are finished runs.
+    assert seen == [0.75, 1.0]
     assert [r.values for r in whole.results[:2]] == [r.values for r in first.results]
     assert len((tmp_path / "rows.jsonl").read_text(encoding="utf-8").splitlines()) == 4
     # Another measure has other rows.

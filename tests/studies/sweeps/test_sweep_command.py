@@ -11,6 +11,9 @@ from vehicle.commands.sweep import every_combination, main
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep_table import read_variations
 
+HEAD = ("--author", "A. Engineer", "--project", "Ride")
+"""Names in the head of a report."""
+
 
 @pytest.fixture
 def signal(tmp_path):
@@ -122,10 +125,34 @@ def test_failed_rows_are_no_success(signal, tmp_path, capsys):
     printed = capsys.readouterr()
     assert "1 of 2 runs failed; the table is written" in printed.err and "2 runs, 1 failed" in printed.out
     assert [row["failed because"] != "" for row in table_of(tmp_path / "out")] == [True, False]
-    assert main([*arguments, "--output", str(tmp_path / "out"), "--resume", "--allow-failed", "--report"]) == 0
+    assert main([*arguments, "--output", str(tmp_path / "out"), "--resume", "--allow-failed", "--report", *HEAD]) == 0
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Ride, A. Engineer, 20" in page
     assert "1 failed runs" in page and "damper.viscous=-1" in page and "python -m vehicle sweep --input" in page
     assert "report.html" in capsys.readouterr().out
+
+
+def test_the_engine_and_its_reason_are_told_before_the_runs():
+    """On class C parts rotate beyond the valid range of the reduced engine; on class A they do not."""
+    car, change = Car.load("sedan"), {"front.damper.viscous": [1500.0]}
+    roads = [Road("A", speed=80.0, duration=4.0), Road("C", speed=50.0, duration=4.0)]
+    (note,) = plan_sweep(car, change, roads).engine_notes()
+    assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
+    assert "is valid up to 0.05 rad; --engine reduced is many times faster (on class C comfort within 0.4 %" in note
+    assert plan_sweep(car, change, roads[:1]).engine_notes() == ()
+    assert plan_sweep(car, change, roads, engine="reduced").engine_notes() == ()
+    # The stated difference, and the engine that the note names.
+    (chosen,), (reduced,) = (
+        plan_sweep(car, change, roads[1], engine=engine).run().results for engine in ("auto", "reduced")
+    )
+    assert chosen.engine == "mujoco" and reduced.engine == "reduced"
+    assert reduced.values["unweighted"] == pytest.approx(chosen.values["unweighted"], rel=0.004)
+
+
+def test_a_car_that_fails_has_no_note_on_the_engine():
+    changes = {"front.damper.coulomb_friction": [-1.0, 100.0]}
+    plan = plan_sweep(Car.load("sedan"), changes, Road("C", speed=50.0, duration=4.0))
+    assert plan.engine_notes() == ()
 
 
 def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):

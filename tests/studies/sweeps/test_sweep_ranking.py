@@ -43,8 +43,8 @@ def test_cars_are_ranked_by_the_mean_over_the_inputs():
     assert cars.paths == ["front.spring"] and cars.inputs == 2 and cars.point == "at the seat rail"
     assert cars.order == [0, 1, 2] and cars.weighted.tolist() == [2.0, 3.0, 4.0]
     assert cars.change(2) == pytest.approx(100.0) and cars.unweighted[1] == 6.0
-    lines = ranking_lines(cars, {"front.spring": "N/m"})
-    assert lines[0].split()[:2] == ["front.spring", "[N/m]"] and "[N/m]" not in ranking_lines(cars, {})[0]
+    lines = ranking_lines(cars)
+    assert lines[0].split()[:2] == ["front.spring", "weighted"]
     assert lines[1].split() == ["30", "2", "base", "4"] and lines[2].split() == ["10", "3", "+50.00", "%", "6"]
     assert lines[-1] == "most comfortable is the first car: front.spring = 30"
 
@@ -54,7 +54,7 @@ def test_a_failed_run_takes_its_car_out():
     failed = [replace(table.results[0], values={}, reason="stopped"), *table.results[1:]]
     cars = ranked(replace(table, results=failed))
     assert cars.order == [1, 2] and math.isnan(cars.weighted[0]) and math.isnan(cars.change(1))
-    assert ranking_lines(cars, {})[1].split() == ["10", "3", "-", "6"]
+    assert ranking_lines(cars)[1].split() == ["10", "3", "-", "6"]
     everything = [replace(result, values={}, reason="stopped") for result in table.results]
     assert ranked_cars(replace(table, results=everything)) is None
 
@@ -62,7 +62,7 @@ def test_a_failed_run_takes_its_car_out():
 def test_many_cars_are_cut_and_the_first_stays():
     table = table_of([(str(100 - i),) for i in range(30)], ["a"], inputs=("a.csv",))
     falling = [replace(r, values={k: 40.0 - v for k, v in r.values.items()}) for r in table.results]
-    lines = ranking_lines(ranked(replace(table, results=falling)), {})
+    lines = ranking_lines(ranked(replace(table, results=falling)))
     assert lines[1].split()[0] == "71" and lines[13].split()[:3] == ["100", "39", "base"]
     assert lines[14] == "and 17 more cars in table.csv" and lines[-1].startswith("most comfortable: a = 71 (-74.36 %")
 
@@ -72,7 +72,7 @@ def test_pictures(tmp_path, count):
     values = [tuple(str(v) for v in row) for row in np.array(np.meshgrid(*[[1, 2, 3]] * count)).reshape(count, -1).T]
     cars = ranked(table_of(values, ["a", "b", "c"][:count]))
     assert can_be_drawn(cars)
-    draw_ranked(tmp_path / "sweep.png", cars, {"a": "N"}, "tyres standing")
+    draw_ranked(tmp_path / "sweep.png", cars, "tyres standing")
     assert (tmp_path / "sweep.png").stat().st_size > 15_000
 
 
@@ -92,6 +92,19 @@ def test_the_report_names_best_and_base_with_the_numbers_of_the_table(tmp_path):
     with pytest.raises(ConfigurationError, match=r"sweep\.html"):
         table.report(tmp_path / "sweep.html")
     assert str(table).splitlines()[1].split() == ["20", "36", "-5.26", "%", "32"] and "\n" not in repr(table)
+
+
+def test_parameters_have_the_units_of_the_car(tmp_path):
+    """In Python as in the command: printed table, axes and report."""
+    pyplot.switch_backend("agg")
+    table = table_of([("1000", "soft"), ("1500", "hard")], ["front.damper.viscous", "law"])
+    assert str(table).splitlines()[0].split()[:5] == ["front.damper.viscous", "[N", "s/m]", "law", "weighted"]
+    numbers = table_of([("1000",), ("1500",)], ["front.damper.viscous"])
+    assert numbers.plot().get_xlabel() == "front.damper.viscous [N s/m]"
+    pyplot.close("all")
+    page = numbers.report(tmp_path / "sweep.html", author="A. Engineer", project="Ride").read_text(encoding="utf-8")
+    assert "Ride, A. Engineer, 20" in page
+    assert "<th>front.damper.viscous [N s/m]</th>" in page
 
 
 def test_a_sweep_draws_on_the_axes_of_the_user():

@@ -223,19 +223,20 @@ class Run:
         path: Path = _public("save_run")(self, folder, force=force)
         return path
 
-    def report(self, file: Path | str, *, force: bool = False) -> Path:
+    def report(self, file: Path | str, *, force: bool = False, author: str = "", project: str = "") -> Path:
         """Write the report of the run as one HTML file; `vehicle.write_report` compares several saved runs.
 
         Args:
             file: name of the report, with the ending .html.
             force: replace a report that was written there before.
+            author, project: names in the head of the report; may be empty.
 
         Raises:
             VehicleError: see `vehicle.save_run` and `vehicle.write_report`.
         """
         with TemporaryDirectory() as folder:
             saved = self.save(Path(folder) / Path(file).stem)
-            path: Path = _public("write_report")([saved], file, force=force)
+            path: Path = _public("write_report")([saved], file, force=force, author=author, project=project)
         return path
 
     def film(self, file: Path | str, take: Take | None = None, *, progress: Progress | None = None) -> Path:

@@ -1,4 +1,4 @@
-"""A measurement of any format compared with a run, a folder of a run, or the modes of a car."""
+"""A measurement of any format, or another run, compared with a run or the folder of a run."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from vehicle.runs.comparison.comparison import Comparison
 from vehicle.runs.comparison.frf_comparison import BANDS, FrfComparison, checked_edges, compare_responses
 from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
+from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import PARTS, clock_advice, response_faults, run_times, sign_and_unit
 from vehicle.signals.records.measured import Measured, read_measured
@@ -26,7 +27,7 @@ LARGEST_DRIFT = 0.1
 
 def compare(
     run: Run | Simulated | Path | str,
-    measured: Measured | Path | str,
+    measured: Measured | Run | Path | str,
     channels: Mapping[str, str] | None = None,
     *,
     choice: Choice | None = None,
@@ -36,11 +37,12 @@ def compare(
     window: float | None = None,
     bands: tuple[float, ...] | None = None,
 ) -> Comparison:
-    """Compare measured responses and time histories with those of a run.
+    """Compare measured responses and time histories, or those of another run, with those of a run.
 
     Args:
         run: a run, the folder of a run, or the result of `of_folder`.
-        measured: measurement file of any format, or the result of `read_measured`.
+        measured: measurement file of any format, or the result of `read_measured`; or the run that is the reference,
+            whose channels all have the names of the model.
         channels: channel of the model to channel of the file, as {"knuckle_fr_acc_z": "Dof 12 +Z"}: number, exact name,
             pattern with *, or place and direction; by default equal names.
         choice: units, rate and excerpt of the file.
@@ -55,7 +57,8 @@ def compare(
         FRAC, errors per band, RMS ratio, correlation, time shift and ISO 18571 rating, worst first; `print` shows them.
 
     Raises:
-        ConfigurationError: the file or channel does not exist, or a delay, drift or band is out of range.
+        ConfigurationError: the file or channel does not exist, a delay, drift or band is out of range, or channels,
+            units or signs are chosen for a run.
         DataError: bad data, or no common channel.
     """
     require_clock(delay, drift)
@@ -64,12 +67,55 @@ def compare(
         simulated = run
     else:
         simulated = of_run(run) if isinstance(run, Run) else of_folder(Path(run))
+    if isinstance(measured, Run):
+        if channels or choice is not None or inverted:
+            raise ConfigurationError(
+                "channels, choice, inverted: for a measurement file; a run has the channels of the model, so leave "
+                "them out"
+            )
+        if isinstance(run, Run):
+            simulated = replace(simulated, name=run_words(run))
+        measured = reference_of(measured, window)
     if not isinstance(measured, Measured):
         asked = choice or Choice()
         asked = replace(asked, channels={**asked.channels, **(channels or {})})
         names = tuple(simulated.record.channels)
         measured = read_measured(Path(measured), names, asked, inverted=inverted, window=window)
     return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
+
+
+def run_words(run: Run) -> str:
+    """Return car, input and changed parameters of a run, to distinguish runs on one input."""
+    return ", ".join([f"{run.car.vehicle.name} on {run.signal.source}", *run.car.overrides])
+
+
+def reference_of(run: Run, window: float | None = None) -> Measured:
+    """Return a run in place of a measurement.
+
+    Args:
+        run: the run.
+        window: length of Hann windows of its FRFs [s]; see `Run.frf`.
+
+    Returns:
+        Time histories of all channels and FRFs of all accelerations; no FRFs without recorded plates and, with a
+        notice, where a plate repeats another with a delay, as on a road.
+    """
+    simulated = of_run(run)
+    names = [name for name in run.car.vehicle.acceleration_channels if name in simulated.record.channels]
+    plates = [f"plate_{wheel}_displacement" for wheel in run.recording.excited]
+    frf, notices = None, tuple[str, ...]()
+    if names and all(plate in simulated.record.channels for plate in plates):
+        try:
+            frf = simulated.responses(names, window)
+        except DataError as error:
+            notices = (f"no FRFs: {error}",)
+    return Measured(
+        file=Measurement(path=Path(run_words(run).replace("/", "_")), format="run", channels=()),
+        frf=frf,
+        record=simulated.record,
+        notices=notices,
+        start=float(run.time[0]),
+    )
 
 
 @one_blas_thread()

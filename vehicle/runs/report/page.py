@@ -63,16 +63,20 @@ def report_page(
     first, others = runs[0].name, [run.name for run in runs[1:]]
     names = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} against {first}" if others else first
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
-    head = ", ".join(filter(None, (project, author, program_and_date())))
+    head = head_line(author, project)
     data = as_json(car_modes_of(runs, modes))
     page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data)
     done(1.0)
     return page
 
 
-def program_and_date() -> str:
-    """Return the date and the version of the program, for the head of a page."""
-    return f"{date.today().isoformat()}, {package_version()}"
+def head_line(author: str = "", project: str = "") -> str:
+    """Return project, author, date and version of the program, for the head of a page.
+
+    Args:
+        author, project: names; may be empty.
+    """
+    return ", ".join(filter(None, (project, author, date.today().isoformat(), package_version())))
 
 
 def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, BatchRuns, simulate_batch
 from vehicle.engines.reduced.table_layout import LANES
+from vehicle.engines.reduced.validity import REMEDY
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import SimulationError, VehicleError
@@ -65,6 +66,26 @@ def evaluate(cases: Sequence[Case], measure: Measure) -> list[Result]:
             batch = [number for car in numbers_by_car[first : first + BATCH_CARS] for number in car]
             results |= zip(batch, _batch_results([cases[number] for number in batch], measure), strict=True)
     return [results[number] if number in results else _single(case, measure) for number, case in enumerate(cases)]
+
+
+def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str:
+    """Return the reason why "auto" runs a case with MuJoCo, from a run with the reduced engine.
+
+    Args:
+        case: the run.
+        measure: measure of the run.
+
+    Returns:
+        The first warning of the reduced engine; empty inside its valid range, or if the run fails, whose row then has
+        the error message.
+    """
+    try:
+        car, signal = _car_of(case), signal_of(case.source)
+        _require(car.vehicle, signal, measure)
+        statistics = _simulated([car], signal, measure.channels, measure.timestep).statistics[0]
+    except OF_A_RUN:
+        return ""
+    return "" if statistics.within_validity else statistics.warnings[0].removesuffix(REMEDY)
 
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:

@@ -9,6 +9,7 @@ from operator import and_
 from pathlib import Path
 from typing import Any
 
+from vehicle.engines.reduced.validity import ERROR_ON_CLASS_C
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.idle import idle_parameters
@@ -16,10 +17,11 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
-from vehicle.studies.sweeps.case import Case, all_tyre_words
+from vehicle.studies.sweeps.case import all_tyre_words
+from vehicle.studies.sweeps.case_evaluation import reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import Notice
-from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
+from vehicle.studies.sweeps.measure import BatchMeasure, ComfortMeasure, Measure
 from vehicle.studies.sweeps.sweep import Progress
 from vehicle.studies.sweeps.sweep import sweep as run_cases
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
@@ -27,6 +29,9 @@ from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Variations = Mapping[str, Sequence[Any]] | Combinations | RowChanges | Sequence[Iterable[str] | Mapping[str, Any]]
 """Path to values, run in every combination; or a list of variations, each path to value or texts "path=value"."""
+
+MOST_NAMED = 3
+"""Maximum number of inputs named in a message."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -40,7 +45,7 @@ class SweepPlan:
         notes: messages on side effects of the varied parameters.
     """
 
-    cases: Sequence[Case]
+    cases: Cases
     measure: Measure
     skip: float
     notes: tuple[str, ...]
@@ -49,6 +54,24 @@ class SweepPlan:
     def tyres(self) -> str:
         """Return a description of the state of the tyres in all runs: standing or rolling at a speed."""
         return all_tyre_words(self.cases)
+
+    def engine_notes(self) -> tuple[str, ...]:
+        """Return a message on the inputs on which "auto" runs the first car with MuJoCo, with the reason.
+
+        For this the first car is run on each input with the reduced engine.
+        """
+        if self.cases[0].engine != "auto" or not isinstance(self.measure, BatchMeasure):
+            return ()
+        first_cases = [self.cases[number * len(self.cases.changes)] for number in range(len(self.cases.inputs))]
+        reasons = {case.source.name: reason_for_mujoco(case, self.measure) for case in first_cases}
+        outside = [name for name, reason in reasons.items() if reason]
+        if not outside:
+            return ()
+        names = ", ".join(outside[:MOST_NAMED]) + (" ..." if len(outside) > MOST_NAMED else "")
+        return (
+            f"engine mujoco on {names} ({len(outside)} of {len(reasons)} inputs), at least for the first car: "
+            f"{reasons[outside[0]]}; --engine reduced is many times faster (on class C {ERROR_ON_CLASS_C})",
+        )
 
     def run(
         self,

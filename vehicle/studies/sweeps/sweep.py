@@ -59,7 +59,7 @@ def sweep(
         time_limit: maximum computing time of a run [s], including its car and, for the first run of a worker, imports
             and compilation; the worker of a run that takes longer is ended, and the run is a failed row. None for no
             limit.
-        progress: called with the finished fraction of the runs computed by this call.
+        progress: called with the finished fraction of all runs, stored rows among them.
         notice: called with messages while the sweep is running, as that a cluster has no workers.
 
     Returns:
@@ -80,7 +80,7 @@ def sweep(
         rows = StoredRows(folder / ROWS if folder is not None else None, len(cases))
         rows.use_stored(cases, key_of)
         todo = np.flatnonzero(~rows.stored | rows.failed if retry_failed else ~rows.stored)
-        began, done = clock.perf_counter(), 0
+        began, done = clock.perf_counter(), len(cases) - len(todo)
 
         def keep(numbers: Indices, block: Block) -> None:
             nonlocal done
@@ -88,7 +88,7 @@ def sweep(
             if progress is not None:
                 for _ in numbers:
                     done += 1
-                    progress(done / len(todo))
+                    progress(done / len(cases))
 
         if len(todo):
             dispatcher = Dispatcher(

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Mapping, Sequence
-from datetime import date
+from collections.abc import Sequence
 
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
-from vehicle.runs.report.page import document
+from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import RankedCars, ranked_cars
 from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
-from vehicle.version import package_version
 
 MOST_ROWS = 2000
 """Maximum number of runs in the table of all runs; `table.csv` has all."""
@@ -24,31 +22,32 @@ def sweep_page(
     results: SweepTable,
     name: str,
     *,
-    units: Mapping[str, str],
     caption: str,
     command: str = "",
     notes: Sequence[str] = (),
+    author: str = "",
+    project: str = "",
 ) -> str:
     """Return the report of a sweep as one HTML document.
 
     Args:
         results: table of the sweep.
         name: name of the car.
-        units: parameter path to its unit; without unit if missing.
         caption: tyres and evaluated span.
         command: command line that made the sweep; empty for a sweep in Python.
-        notes: messages on side effects of the varied parameters.
+        notes: messages on side effects of the varied parameters and on the engine.
+        author, project: names in the head of the page; may be empty.
     """
     cars = ranked_cars(results)
     parts: list[tuple[str, str, Markup]] = []
     if cars is not None:
-        parts += [("Result", "result", _result(cars, units, caption)), ("Cars", "cars", _cars(cars, units))]
+        parts += [("Result", "result", _result(cars, caption)), ("Cars", "cars", _cars(cars))]
     parts.append(("All runs", "runs", _runs(results)))
     parts.append(("How to repeat the sweep", "repeat", _repeating(cars, results, command, notes)))
     inputs = ", ".join(str(source) for source in results.made.get("inputs", {}))
     counts = f"{len(results.cases)} runs, {len(results.failed)} failed"
     head = f"{name} on {inputs}; {counts}; {caption}"
-    return document(f"Sweep of {name}", (head, f"{date.today().isoformat()}, {package_version()}"), parts)
+    return document(f"Sweep of {name}", (head, head_line(author, project)), parts)
 
 
 def best_sentences(cars: RankedCars) -> list[str]:
@@ -69,19 +68,19 @@ def best_sentences(cars: RankedCars) -> list[str]:
     return [f"Most comfortable of {len(cars.order)} cars: {parameters(cars.best)}: {values(cars.best)}{against}.", base]
 
 
-def _result(cars: RankedCars, units: Mapping[str, str], caption: str) -> Markup:
+def _result(cars: RankedCars, caption: str) -> Markup:
     over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
     definitions = "; ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
     parts: list[object] = [tag("p", text) for text in best_sentences(cars)]
     if can_be_drawn(cars):
         label = "Comfort over the varied parameters"
-        parts.append(drawing(lambda path: draw_ranked(path, cars, units, caption), label))
+        parts.append(drawing(lambda path: draw_ranked(path, cars, caption), label))
     parts.append(tag("p", f"{definitions}; {cars.point}{over}. Lower is better."))
     return joined(parts)
 
 
-def _cars(cars: RankedCars, units: Mapping[str, str]) -> Markup:
-    heads = cars.headings(units)
+def _cars(cars: RankedCars) -> Markup:
+    heads = cars.headings()
     count = len(heads)
     heads += [f"{cars.prefix}{WEIGHTED} [m/s²]", "change [%]", f"{cars.prefix}{UNWEIGHTED} [m/s²]"]
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]

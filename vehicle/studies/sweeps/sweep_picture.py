@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -34,17 +33,16 @@ def plotted(cars: RankedCars | None, ax: Any = None) -> Any:
     if cars is None or parameters is None:
         raise ConfigurationError("plot: needs two or more cars with comfort values whose varied parameters are numbers")
     axes = open_axes(ax, (7.6, 5.0))
-    draw_sweep(axes.item(), cars.paths, parameters, cars.weighted, cars.unweighted)
+    draw_sweep(axes.item(), cars.headings(), parameters, cars.weighted, cars.unweighted)
     return axes.item()
 
 
-def draw_ranked(path: Path, cars: RankedCars, units: Mapping[str, str], caption: str = "") -> None:
+def draw_ranked(path: Path, cars: RankedCars, caption: str = "") -> None:
     """Write the picture of ranked cars that can be drawn.
 
     Args:
         path: PNG or SVG file.
         cars: the cars.
-        units: parameter path to its unit; without unit if missing.
         caption: inputs, tyres and evaluated span.
     """
     parameters = cars.numbers()
@@ -53,7 +51,7 @@ def draw_ranked(path: Path, cars: RankedCars, units: Mapping[str, str], caption:
     over = f"mean of {cars.inputs} inputs" if cars.inputs > 1 else "one input"
     plot_sweep(
         path,
-        cars.headings(units),
+        cars.headings(),
         parameters,
         cars.weighted,
         cars.unweighted,

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.model.parameters.paths import unit_of_override
+from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
 
@@ -34,6 +36,7 @@ class RankedCars:
         seat_value: SEAT value [-]; (cars,), None for cars without a seat.
         order: cars with a value, most comfortable first.
         inputs: number of inputs.
+        units: varied parameter to its unit; empty for a text.
     """
 
     prefix: str
@@ -44,6 +47,7 @@ class RankedCars:
     seat_value: Vector | None
     order: Sequence[int]
     inputs: int
+    units: Mapping[str, str]
 
     @property
     def point(self) -> str:
@@ -59,13 +63,9 @@ class RankedCars:
         """Return the change of the weighted value from the first car [%]; NaN without a value of the first car."""
         return 100.0 * (float(self.weighted[car]) / float(self.weighted[0]) - 1.0)
 
-    def headings(self, units: Mapping[str, str]) -> list[str]:
-        """Return the varied parameters with their units.
-
-        Args:
-            units: parameter path to its unit; without unit if missing.
-        """
-        return [f"{path} [{units[path]}]" if units.get(path) else path for path in self.paths]
+    def headings(self) -> list[str]:
+        """Return the varied parameters with their units."""
+        return [f"{path} [{self.units[path]}]" if self.units[path] else path for path in self.paths]
 
     def numbers(self) -> Vector | None:
         """Return the parameters as numbers, (cars, paths); None if a value is a text or a vector."""
@@ -105,6 +105,8 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
     order = [int(car) for car in np.argsort(weighted, kind="stable") if math.isfinite(weighted[car])]
     if not order:
         return None
+    base = table.cases[0]
+    vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
     return RankedCars(
         prefix=prefix,
         paths=names,
@@ -114,20 +116,16 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
         seat_value=seat_values[0] if seat_values else None,
         order=order,
         inputs=len({case.source for case in table.cases}),
+        units={path: unit_of_override(vehicle, path) for path in names},
     )
 
 
-def ranking_lines(cars: RankedCars, units: Mapping[str, str]) -> list[str]:
-    """Return the printed table: parameters, comfort and change from the first car, most comfortable car first.
-
-    Args:
-        cars: the cars.
-        units: parameter path to its unit; without unit if missing.
-    """
+def ranking_lines(cars: RankedCars) -> list[str]:
+    """Return the printed table: parameters, comfort and change from the first car, most comfortable car first."""
     shown = list(cars.order[:SHOWN])
     if 0 in cars.order and 0 not in shown:
         shown.append(0)
-    heads = [*cars.headings(units), f"{cars.prefix}{WEIGHTED} [m/s2]", "change", f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
+    heads = [*cars.headings(), f"{cars.prefix}{WEIGHTED} [m/s2]", "change", f"{cars.prefix}{UNWEIGHTED} [m/s2]"]
     heads += [] if cars.seat_value is None else [f"{SEAT_VALUE} [-]"]
     rows = [
         [

@@ -110,7 +110,7 @@ class SweepTable:
         """Return the cars in the order of comfort, as the console shows them; without comfort, the line of `repr`."""
         ranking = _later("sweep_ranking")
         cars = ranking.ranked_cars(self)
-        return repr(self) if cars is None else "\n".join(ranking.ranking_lines(cars, {}))
+        return repr(self) if cars is None else "\n".join(ranking.ranking_lines(cars))
 
     def plot(self, ax: Any = None) -> Any:
         """Plot comfort over the varied parameters: a line for one, a map for two, parallel axes for more.
@@ -126,12 +126,13 @@ class SweepTable:
         """
         return _later("sweep_picture").plotted(_later("sweep_ranking").ranked_cars(self), ax)
 
-    def report(self, file: Path | str, *, force: bool = False) -> Path:
+    def report(self, file: Path | str, *, force: bool = False, author: str = "", project: str = "") -> Path:
         """Write the report of the sweep as one HTML file: best and base car, picture, tables.
 
         Args:
             file: name of the report, with the ending .html.
             force: replace a report that was written there before.
+            author, project: names in the head of the report; may be empty.
 
         Raises:
             ConfigurationError: another ending, or a file that exists without `force`.
@@ -141,7 +142,8 @@ class SweepTable:
         check_file(path, ending=".html", force=force)
         evaluated = f"evaluated from {self.made.get('evaluated_from_s') or 0:g} s on"
         name = ", ".join(self.made.get("vehicles", ("car",)))
-        write_text(path, _later("sweep_page").sweep_page(self, name, units={}, caption=evaluated))
+        page = _later("sweep_page").sweep_page(self, name, caption=evaluated, author=author, project=project)
+        write_text(path, page)
         return path
 
     def _repr_html_(self) -> str:

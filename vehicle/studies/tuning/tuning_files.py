@@ -39,7 +39,13 @@ def figures_of(tuned: TunedCar, posteriors: Sequence[NamedPosterior] = ()) -> di
 
 
 def write_tuning(
-    folder: Path, tuned: TunedCar, command: str, posteriors: Sequence[NamedPosterior] = ()
+    folder: Path,
+    tuned: TunedCar,
+    command: str,
+    posteriors: Sequence[NamedPosterior] = (),
+    *,
+    author: str = "",
+    project: str = "",
 ) -> tuple[str, ...]:
     """Write the files of a fit.
 
@@ -48,6 +54,7 @@ def write_tuning(
         tuned: fitted car.
         command: command line of the fit.
         posteriors: see `posterior_lines`; empty without a posterior.
+        author, project: names in the head of the report; may be empty.
 
     Returns:
         Names of the files, the vehicle file first.
@@ -63,5 +70,6 @@ def write_tuning(
     figures = figures_of(tuned, posteriors)
     for name, draw in figures.items():
         write_whole(folder / f"{name}.png", draw)
-    write_text(folder / REPORT, tuning_page(tuned, figures, command, posteriors))
+    page = tuning_page(tuned, figures, command, posteriors, author=author, project=project)
+    write_text(folder / REPORT, page)
     return (VEHICLE, REPORT, NUMBERS, *(f"{name}.png" for name in figures), *copies.values())

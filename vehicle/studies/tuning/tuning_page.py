@@ -11,7 +11,7 @@ from vehicle.names import channel_words
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.differences import parameter_words
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
-from vehicle.runs.report.page import document, program_and_date
+from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
@@ -34,6 +34,9 @@ def tuning_page(
     figures: Mapping[str, Callable[[Path], None]],
     command: str,
     posteriors: Sequence[NamedPosterior] = (),
+    *,
+    author: str = "",
+    project: str = "",
 ) -> str:
     """Return the report of a fit as one HTML document.
 
@@ -42,6 +45,7 @@ def tuning_page(
         figures: name of each picture and the function that writes it.
         command: command line of the fit.
         posteriors: see `posterior_lines`; empty without a posterior.
+        author, project: names in the head of the page; may be empty.
     """
     names = ", ".join(each.target.name for each in tuned.measurements)
     vehicle = tuned.start.vehicle
@@ -55,7 +59,7 @@ def tuning_page(
         ("The fitted car", "car", car_section(tuned.fitted)),
         ("How to repeat the fit", "repeat", joined([tag("pre", command), tag("pre", tuned.settings)])),
     ]
-    subtitles = (f"tyres {_driving(tuned)}", program_and_date())
+    subtitles = (f"tyres {_driving(tuned)}", head_line(author, project))
     return document(f"{vehicle.name} fitted to {names}", subtitles, parts)
 
 
