@@ -80,6 +80,17 @@ def test_a_table_in_series_is_rejected():
         coupled_law(connection(table), flexibility())
 
 
+def test_rubber_friction_in_series_is_rejected():
+    rubber = replace(SOFT, friction_force=(0.0, 0.0, 50.0), friction_stroke=(0.0, 0.0, 1e-3))
+    with pytest.raises(ConfigurationError) as caught:
+        coupled_law(connection(rubber), flexibility())
+    assert str(caught.value) == (
+        "engine.bushings.mount.friction_force: found [0.0, 0.0, 50.0] N in series with an attachment whose residual "
+        "flexibility couples the axes; remove friction_force, use a model with one stiffness for each axis, or "
+        "body.attachment_flexibility = false"
+    )
+
+
 @pytest.fixture(scope="module")
 def truncated():
     """The Focus with modes to 35 Hz: those above answer statically, in the sheet metal of its attachments."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.amplitude import ELEMENTS, behind_spring, friction_elements
 from vehicle.model.parameters.force_elements import Bushing, ForceTable, Hydromount
+from vehicle.model.parameters.idle import idle_parameters
+from vehicle.model.parameters.vehicle import load_vehicle
 
 FORCE, STROKE = 240.0, 3e-4
 AMPLITUDES = STROKE * np.geomspace(0.02, 20.0, 40)
@@ -151,3 +154,13 @@ def test_bad_numbers(case):
 def test_a_table_on_another_axis():
     table = ForceTable(displacement=(-1.0, 1.0), force=(-1e5, 1e5))
     assert Bushing(**NUMBERS, **RUBBER, table_x=table).friction_force[2] == 100.0
+
+
+def test_overrides_without_effect():
+    changes = ["rear.bushings.damper_mount.friction_stroke=[0,0,2e-4]"]
+    path = changes[0].partition(".friction_stroke")[0]
+    assert idle_parameters(load_vehicle(Path("focus_road"), changes), changes) == (
+        f"{changes[0]}: without effect; it belongs to {path}.friction_force above zero",
+    )
+    changes += [f"{path}.friction_force=[0,0,40]"]
+    assert idle_parameters(load_vehicle(Path("focus_road"), changes), changes) == ()
