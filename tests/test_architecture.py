@@ -22,7 +22,7 @@ WINGS = {
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "linear", "reduced", "lumped"),
     "drawing": ("rendering", "notebook"),
-    "runs": ("car", "fmu", "comparison", "output", "report", "bench"),
+    "runs": ("car", "fmu", "trial", "comparison", "output", "report", "bench"),
     "studies": ("design", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
@@ -54,6 +54,7 @@ ROOMS: dict[str, set[str]] = {
     | {"rendering", "simulation", "threads"},
     "bench": {"analysis", "car", "excitation", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
+    "trial": {"analysis", "car", "excitation", "fmu", "reduced", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
@@ -63,7 +64,7 @@ ROOMS: dict[str, set[str]] = {
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
-    | {"simulation", "version"},
+    | {"simulation", "trial", "version"},
     "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "fmu", "linear"}
     | {"optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
     | {"sweeps", "threads", "tuning", "version"},

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -46,3 +48,35 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     ]
     assert main([*words, "--set", "damper.coulomb_friction=100"]) == 0
     return Reported(folder=folder, page=folder / "report.html")
+
+
+CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
+FLAGS = (
+    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
+    *("--window-size=1300,900", "--disable-dev-shm-usage"),
+)
+
+
+@pytest.fixture(scope="module")
+def browser(reported, tmp_path_factory) -> Iterator[Any]:
+    """The report, opened, with its trial run once."""
+    pytest.importorskip("selenium", reason="selenium is missing: pip install 'vehicle-on-shaker[browser]'")
+    if not (CHROMIUM.is_file() and DRIVER.is_file()):
+        pytest.skip("chromium and chromium-driver are not installed: tools/system-libraries.sh tests installs them")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = str(CHROMIUM)
+    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('browser')}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    driver = webdriver.Chrome(service=Service(str(DRIVER)), options=options)
+    try:
+        driver.get(reported.page.as_uri())
+        WebDriverWait(driver, 60).until(lambda driver: driver.find_element("id", "trial-time-used").text)
+        yield driver
+    finally:
+        driver.quit()

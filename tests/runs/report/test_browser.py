@@ -16,36 +16,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-selenium = pytest.importorskip("selenium", reason="selenium is missing: pip install 'vehicle-on-shaker[browser]'")
-
-CHROMIUM, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
-FLAGS = (
-    *("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
-    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
-    *("--window-size=1300,900", "--disable-dev-shm-usage"),
-)
-
-
-@pytest.fixture(scope="module")
-def browser(reported, tmp_path_factory) -> Iterator[Any]:
-    """The report, opened."""
-    if not (CHROMIUM.is_file() and DRIVER.is_file()):
-        pytest.skip("chromium and chromium-driver are not installed: tools/system-libraries.sh tests installs them")
-    from selenium import webdriver
-    from selenium.webdriver.chrome.service import Service
-
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(CHROMIUM)
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('browser')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(service=Service(str(DRIVER)), options=options)
-    try:
-        driver.get(reported.page.as_uri())
-        yield driver
-    finally:
-        driver.quit()
-
 
 def picture(browser) -> np.ndarray:
     """The canvas of the modes as it is seen."""

@@ -71,6 +71,7 @@ def test_the_page_is_whole_and_asks_nobody(reported, outline):
     wanted = [
         "Result",
         "This run",
+        "Try it",
         "Findings",
         "Car, signal, engine",
         "The car",

@@ -5,16 +5,13 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
-import numpy as np
-
 from vehicle.errors import VehicleError
 from vehicle.model.parameters.base_car import base_file
 from vehicle.model.parameters.shipped import CARS
 from vehicle.runs.car import Car
 from vehicle.runs.output.run_files import summarise
 from vehicle.runs.report.differences import changed_parameters, shipped_origin
-from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.signals.excitation.signal import Signal
+from vehicle.runs.report.finished_run import FinishedRun, recorded_signal
 
 LONGEST = 300.0
 """Maximum length of a record [s] that is simulated again for the report: the reduced engine needs some seconds."""
@@ -43,19 +40,7 @@ def base_run(run: FinishedRun) -> FinishedRun | None:
         car = _unchanged(run)
         if car is None or not _same_plates(run, car):
             return None
-        recording = run.recording
-        displacement = {
-            wheel: np.array(recording[f"plate_{wheel}_displacement"])
-            for wheel, rms in excitation["plate_rms_m"].items()
-            if rms > 0.0
-        }
-        signal = Signal(
-            time=recording.time,
-            displacement=displacement,
-            source=run.signal.source,
-            sha256=excitation["sha256"],
-            highest=excitation["highest_hz"],
-        )
+        signal = recorded_signal(run)
         simulated = car.run(signal, engine="reduced")
     except (VehicleError, KeyError):
         return None

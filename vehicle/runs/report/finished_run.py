@@ -16,6 +16,7 @@ from vehicle.names import wheel_words
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.frf_file import read_frf
 from vehicle.signals.records.reader import read_columns
 from vehicle.signals.records.run_summary import SUMMARY_FILE, ComfortSummary, FrfSummary, RunSummary, read_summary
@@ -98,6 +99,27 @@ class FinishedRun:
             f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
             f"{solver['engine']}"
         )
+
+
+def recorded_signal(run: FinishedRun) -> Signal:
+    """Return the recorded displacements of the plates of a run.
+
+    Raises:
+        KeyError: the run records no displacement of a moving plate.
+    """
+    excitation, recording = run.summary["input"], run.recording
+    displacement = {
+        wheel: np.array(recording[f"plate_{wheel}_displacement"])
+        for wheel, rms in excitation["plate_rms_m"].items()
+        if rms > 0.0
+    }
+    return Signal(
+        time=recording.time,
+        displacement=displacement,
+        source=run.signal.source,
+        sha256=excitation["sha256"],
+        highest=excitation["highest_hz"],
+    )
 
 
 def read_run(

@@ -24,6 +24,8 @@ from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, mov
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
+from vehicle.runs.report.trial_section import trial, trial_numbers
+from vehicle.runs.trial.trial_data import WORKER, script
 from vehicle.version import package_version
 
 Part = tuple[str, str, Markup]
@@ -56,8 +58,9 @@ def report_page(
     done = progress or (lambda fraction: None)
     modes = [modes_of(run) for run in runs]
     done(0.1)
+    numbers = trial_numbers(runs[0]) if len(runs) == 1 else ""
     if len(runs) == 1:
-        parts = _of_one(runs[0], modes[0])
+        parts = _of_one(runs[0], modes[0], trial(runs[0]) if numbers else None)
     else:
         parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share))
     first, others = runs[0].name, [run.name for run in runs[1:]]
@@ -65,7 +68,7 @@ def report_page(
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = head_line(author, project)
     data = as_json(car_modes_of(runs, modes))
-    page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data)
+    page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data, numbers=numbers)
     done(1.0)
     return page
 
@@ -94,8 +97,8 @@ def _explained() -> Markup:
     return tag("p", EXPLANATION, class_="about")
 
 
-def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
-    """Return the sections of the report of a single run."""
+def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup | None) -> list[Part]:
+    """Return the sections of the report of a single run, with the given section for trials."""
     base = base_run(run)
     single = joined([answer([run], [modes]), sections.tiles(run)])
     changed = None if base is None else answer([base, run], [modes_of(base), modes])
@@ -103,6 +106,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> list[Part]:
         ("Result", "result", joined([single if changed is None else changed, _explained()])),
         ("This run", "alone", None if changed is None else single),
         ("Film", "film", film(run)),
+        ("Try it", "trial", trial_part),
         ("Findings", "findings", sections.what_was_found(run, modes)),
         ("Car, signal, engine", "run", sections.what_was_run(run)),
         ("The car", "car", car_section(run.car)),
@@ -151,7 +155,7 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
     return [*parts, ("Each run", "runs", joined(details))]
 
 
-def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, str, Markup]], *, modes: str = "") -> str:
+def document(title: str, subtitles: Sequence[str], parts: Sequence[Part], *, modes: str = "", numbers: str = "") -> str:
     """Return an HTML document; its security policy blocks external content and scripts.
 
     Args:
@@ -159,15 +163,28 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, st
         subtitles: lines below the title.
         parts: title, anchor and content of each section.
         modes: moving modes as JSON; empty for a page without them.
+        numbers: numbers of the section for trials as JSON; empty for a page without it.
     """
-    script = _file("modes.js") if modes else ""
-    allowed = f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" if script else "'none'"
-    policy = f"default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; script-src {allowed}"
+    scripts = [_file("modes.js")] if modes else []
+    allowed, started = "", ""
+    if numbers:
+        scripts.append(script("trial.js"))
+        # Its worker is a script from the page itself, and runs a module of WebAssembly.
+        allowed, started = " 'wasm-unsafe-eval'", "; worker-src blob:"
+    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
+    hashes = " ".join(f"'sha256-{digest}'" for digest in digests) or "'none'"
+    policy = (
+        "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; "
+        f"script-src {hashes}{allowed}{started}"
+    )
     links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
     top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in subtitles))
     body = joined(section(name, anchor, content) for name, anchor, content in parts)
     data = f'<script type="application/json" id="mode-data">{modes}</script>\n' if modes else ""
-    run_script = f"<script>{script}</script>\n" if script else ""
+    if numbers:
+        data += f'<script type="application/json" id="trial-data">{numbers}</script>\n'
+        data += f'<script type="text/plain" id="trial-worker">{script(WORKER)}</script>\n'
+    run_scripts = "".join(f"<script>{text}</script>\n" for text in scripts)
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{escaped(policy)}">\n'
@@ -176,7 +193,7 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[tuple[str, st
         '<link rel="icon" href="data:,">\n'
         f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
         f"{top}\n{links}\n<main>{body}</main>\n"
-        f"{data}{run_script}</body>\n</html>\n"
+        f"{data}{run_scripts}</body>\n</html>\n"
     )
 
 

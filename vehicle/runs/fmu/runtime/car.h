@@ -113,6 +113,7 @@ typedef struct {
 } State;
 
 /* car_data.c */
+Car *car_from(const char *bytes, size_t size);
 Car *read_car(const char *path, char *message);
 void free_car(Car *car);
 

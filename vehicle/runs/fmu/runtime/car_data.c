@@ -20,13 +20,24 @@ static FILE *open_file(const char *path) {
 static FILE *open_file(const char *path) { return fopen(path, "rb"); }
 #endif
 
-static int read_sizes(FILE *file, Car *car) {
+/* Content that is not read yet. */
+typedef struct { const char *first; size_t size; } Rest;
+
+static int take(Rest *rest, void *destination, size_t size) {
+  if (rest->size < size) return 0;
+  memcpy(destination, rest->first, size);
+  rest->first += size;
+  rest->size -= size;
+  return 1;
+}
+
+static int take_sizes(Rest *rest, Car *car) {
   char magic[sizeof MAGIC];
   int64_t *sizes = (int64_t *)&car->n;
-  if (fread(magic, 1, sizeof magic, file) != sizeof magic || memcmp(magic, MAGIC, sizeof magic)) return 0;
-  if (fread(car->token, 1, TOKEN, file) != TOKEN || car->token[TOKEN - 1]) return 0;
-  if (fread(&car->step, sizeof(double), 1, file) != 1 || !(car->step > 0.0)) return 0;
-  if (fread(&car->n, sizeof(Sizes), 1, file) != 1) return 0;
+  if (!take(rest, magic, sizeof magic) || memcmp(magic, MAGIC, sizeof magic)) return 0;
+  if (!take(rest, car->token, TOKEN) || car->token[TOKEN - 1]) return 0;
+  if (!take(rest, &car->step, sizeof(double)) || !(car->step > 0.0)) return 0;
+  if (!take(rest, &car->n, sizeof(Sizes))) return 0;
   for (size_t k = 0; k < sizeof(Sizes) / sizeof(int64_t); k++)
     if (sizes[k] < 0 || sizes[k] > 10000) return 0;
   return car->n.pairs % LANES == 0 && car->n.reals % LANES == 0 && car->n.nodes > 1 && car->n.plates > 0;
@@ -87,14 +98,10 @@ static int is_consistent(const Car *car) {
   return 1;
 }
 
-Car *read_car(const char *path, char *message) {
-  FILE *file = open_file(path);
-  if (!file) {
-    snprintf(message, MESSAGE, "cannot open %.300s; the resources of the FMU must be unpacked there", path);
-    return NULL;
-  }
+Car *car_from(const char *bytes, size_t size) {
+  Rest rest = {bytes, size};
   Car *car = calloc(1, sizeof(Car));
-  int valid = car && read_sizes(file, car);
+  int valid = car && take_sizes(&rest, car);
   if (valid) {
     const Sizes *n = &car->n;
     car->sensors = n->tyres + 2 * n->controls;
@@ -105,25 +112,39 @@ Car *read_car(const char *path, char *message) {
     car->states = 2 * n->pairs + n->reals;
     int64_t count = place(car, NULL), names = (n->plates + n->dampers) * NAME;
     int64_t texts = names + n->watched * NOTICE;
-    valid = count < MOST && (car->content = malloc((size_t)(8 * count + texts + 8))) != NULL;
+    size_t length = (size_t)(8 * count + texts);
+    valid = count < MOST && rest.size == length && (car->content = malloc(length + 8)) != NULL;
     if (valid) {
       double *numbers = car->content;
-      char *text = (char *)(numbers + count), rest;
+      char *text = (char *)(numbers + count);
+      take(&rest, numbers, length);
       place(car, numbers);
       car->names = text;
       car->notice = text + names;
-      valid = fread(numbers, 8, (size_t)count, file) == (size_t)count &&
-              fread(text, 1, (size_t)texts, file) == (size_t)texts && fread(&rest, 1, 1, file) == 0 &&
-              is_consistent(car);
+      valid = is_consistent(car);
       for (int64_t k = NAME - 1; valid && k < names; k += NAME) valid = text[k] == 0;
       for (int64_t k = names + NOTICE - 1; valid && k < texts; k += NOTICE) valid = text[k] == 0;
     }
   }
-  fclose(file);
   if (valid) return car;
-  snprintf(message, MESSAGE, "%.300s is damaged or of another version of this library; write the FMU again", path);
   free_car(car);
   return NULL;
+}
+
+Car *read_car(const char *path, char *message) {
+  FILE *file = open_file(path);
+  if (!file) {
+    snprintf(message, MESSAGE, "cannot open %.300s; the resources of the FMU must be unpacked there", path);
+    return NULL;
+  }
+  long size = fseek(file, 0, SEEK_END) ? -1 : ftell(file);
+  char *bytes = size > 0 && !fseek(file, 0, SEEK_SET) ? malloc((size_t)size) : NULL;
+  Car *car = bytes && fread(bytes, 1, (size_t)size, file) == (size_t)size ? car_from(bytes, (size_t)size) : NULL;
+  free(bytes);
+  fclose(file);
+  if (!car)
+    snprintf(message, MESSAGE, "%.300s is damaged or of another version of this library; write the FMU again", path);
+  return car;
 }
 
 void free_car(Car *car) {

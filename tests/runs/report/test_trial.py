@@ -1,0 +1,243 @@
+"""The section "Try it" in a real browser: its numbers against the program, the sentence, the latest settings."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy
+
+from vehicle.errors import ConfigurationError
+from vehicle.names import AXES
+from vehicle.runs.car import Car, Road
+from vehicle.runs.report.finished_run import read_run, recorded_signal
+from vehicle.runs.trial.trial_data import CURVE_SCALES, LONGEST, page_signal, trial_data
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal_file import read_signal
+
+ASK = """
+const [data, task, settings, done] = arguments;
+const url = URL.createObjectURL(new Blob([document.getElementById("trial-worker").textContent]));
+if (data) { window.tested?.terminate(); window.tested = new Worker(url); }
+window.tested.onmessage = ({ data: { result, error } }) => done(error ?? JSON.stringify(result, (key, value) =>
+  ArrayBuffer.isView(value) ? Array.from(value) : value));
+window.tested.postMessage({ data: data && JSON.parse(data), task, settings });
+"""
+"""Script that runs a task of the worker of the page on other numbers."""
+
+
+class Page:
+    """Worker of the page for a car on plates.
+
+    Args:
+        browser: the report, opened.
+        car: the car.
+        signal: displacement of its plates, as the page has it.
+        options: see `trial_data`.
+    """
+
+    def __init__(self, browser: Any, car: Car, signal: Signal, **options: Any) -> None:
+        self.browser, self.text = browser, trial_data(car, signal, wheel=signal.wheels[0], **options)
+        self.sliders = {slider["id"]: slider for slider in json.loads(self.text)["sliders"]}
+        self.fresh = True
+
+    def ask(self, task: str, **settings: float) -> dict[str, Any]:
+        """Return the result of a task for settings; the others are those of the car."""
+        values = {name: slider["value"] for name, slider in self.sliders.items()} | settings
+        assert set(values) == set(self.sliders)
+        self.browser.set_script_timeout(120)
+        answer = self.browser.execute_async_script(ASK, self.text if self.fresh else None, task, values)
+        self.fresh = False
+        result: dict[str, Any] = json.loads(answer)
+        return result
+
+
+def deviations(result: dict[str, Any], car: Car, signal: Signal, skip: float = 0.0) -> dict[str, float]:
+    """Return the deviations of a record of the page from a run of the reduced engine: channels over their peak, RMS of
+    channels, comfort, slip shares."""
+    run = car.run(signal, engine="reduced", skip=skip)
+    wanted = [run[f"seat_rail_acc_{axis}"] for axis in AXES]
+    names = [damper.name for damper in car.vehicle.composition.dampers]
+    found = [*result["acceleration"], *(damper["velocity"] for damper in result["dampers"])]
+    wanted += [run[f"{name}_velocity"] for name in names]
+    pairs = [(np.array(a), b) for a, b in zip(found, wanted, strict=True)]
+    shares = [run.slip_share(name.removeprefix("damper_")) for name in names]
+    comfort = run.comfort().weighted
+    return {
+        "channel": max(float(np.max(np.abs(a - b)) / np.max(np.abs(b))) for a, b in pairs),
+        "rms": max(float(np.std(a - b) / np.std(b)) for a, b in pairs),
+        "comfort": abs(result["comfort"] / comfort.overall - 1.0),
+        "slip": max(abs(damper["slip"] - share) for damper, share in zip(result["dampers"], shares, strict=True)),
+    }
+
+
+def scaled(signal: Signal, level: float) -> Signal:
+    return dataclasses.replace(
+        signal, displacement={wheel: level * values for wheel, values in signal.displacement.items()}
+    )
+
+
+def random_states(page: Page, count: int, *, curve: bool) -> list[dict[str, float]]:
+    """Return random settings of all sliders; those of the curve only if `curve`."""
+    random = np.random.default_rng(20261123)
+    states = []
+    for _ in range(count):
+        state = {}
+        for name, slider in page.sliders.items():
+            value = float(random.uniform(slider["low"], slider["high"]))
+            state[name] = value if curve or not name.endswith("curve_scale") else 1.0
+        for name in state:
+            if name.endswith("static_friction"):
+                state[name] += state[name.replace("static", "coulomb")]
+        states.append(state)
+    return states
+
+
+PATHS = {
+    "coulomb_friction": "coulomb_friction",
+    "static_friction": "stribeck_friction",
+    "stribeck_velocity": "stribeck_velocity",
+    "stribeck_exponent": "stribeck_exponent",
+}
+"""Parameters of the sliders in the vehicle file."""
+
+
+def car_of(car: Car, state: dict[str, float]) -> Car:
+    """Return the car with the settings of the sliders."""
+    changes: dict[str, Any] = {}
+    for name, value in state.items():
+        axle, _, parameter = name.partition("-")
+        if parameter in PATHS:
+            changes[f"{axle}.damper.{PATHS[parameter]}"] = value
+        elif parameter == "curve_scale" and value != 1.0:
+            changes[f"{axle}.damper.viscous"] = value * car[f"{axle}.damper.viscous"].value
+    return car.with_(changes)
+
+
+def worst_of(page: Page, car: Car, signal: Signal, states: list[dict[str, float]]) -> dict[str, float]:
+    """Return the largest deviations over states."""
+    worst: dict[str, float] = {}
+    for state in states:
+        found = deviations(page.ask("record", **state), car_of(car, state), scaled(signal, state["level"]))
+        worst = {name: max(value, worst.get(name, 0.0)) for name, value in found.items()}
+    return worst
+
+
+def shipped(name: str, overrides: tuple[str, ...] = (), seconds: float = 12.0) -> tuple[Car, Signal]:
+    """Return the car of Bommer 2006 and the beginning of a shipped input, as the page has it."""
+    car = Car.load("focus", overrides)
+    whole = read_signal(find_input(name), wheel=car.vehicle.shaker_wheel)
+    count = round(seconds * 1000) + 1
+    piece = {wheel: values[:count] for wheel, values in whole.displacement.items()}
+    return car, page_signal(dataclasses.replace(whole, time=whole.time[:count], displacement=piece))
+
+
+STRIBECK = (
+    "front.damper.friction_law=stribeck",
+    "front.damper.coulomb_friction=60",
+    "front.damper.stribeck_friction=95",
+    "front.damper.stribeck_velocity=0.05",
+    "front.damper.stribeck_exponent=1.5",
+)
+
+
+@pytest.mark.parametrize("overrides", [(), STRIBECK], ids=["coulomb", "stribeck"])
+def test_friction_and_level_equal_the_reduced_engine(browser, overrides):
+    car, signal = shipped("high.csv", overrides)
+    page = Page(browser, car, signal)
+    worst = worst_of(page, car, signal, random_states(page, 6, curve=False))
+    assert worst["channel"] < 1e-9 and worst["comfort"] < 1e-6 and worst["slip"] == 0.0, worst
+
+
+def test_the_damper_curve_is_within_a_thousandth(browser):
+    car, signal = shipped("high.csv")
+    page = Page(browser, car, signal)
+    states = random_states(page, 4, curve=True)
+    states += [{**states[0], "front-curve_scale": end} for end in CURVE_SCALES]
+    worst = worst_of(page, car, signal, states)
+    assert 1e-9 < worst["rms"] < 1e-3 and worst["comfort"] < 1e-3, worst
+
+
+def test_a_road_and_its_class(browser):
+    """A class of ISO 8608 above is twice the height; the evaluation begins later than the record."""
+    car = Car.load("focus_road")
+    ride = Road("B", speed=80, duration=12.0).under(car.vehicle, car.overrides)
+    car, signal = car.with_(ride.overrides), page_signal(ride.signal())
+    page = Page(browser, car, signal, skip=ride.skip, road_class="B")
+    for level in (1.0, 2.0):
+        state = {"level": level, "front-coulomb_friction": 40.0}
+        run = car.with_({"front.damper.coulomb_friction": 40.0})
+        found = deviations(page.ask("record", **state), run, scaled(signal, level), ride.skip)
+        assert found["channel"] < 1e-9 and found["comfort"] < 1e-6 and found["slip"] == 0.0, found
+    better = Road("C", speed=80, duration=12.0).under(car.vehicle, car.overrides).signal()
+    whole = ride.signal()
+    assert np.allclose(better.displacement["fr"], 2.0 * whole.displacement["fr"], rtol=1e-9, atol=1e-12)
+
+
+def test_density_and_frf(browser):
+    """Without friction the car is linear, and its FRF is that of its matrices with sliding dampers."""
+    car, signal = shipped("high.csv", ("front.damper.coulomb_friction=0",))
+    page = Page(browser, car, signal)
+    record, response = page.ask("record"), page.ask("response")
+    _, density = scipy.signal.welch(np.array(record["acceleration"][2]), 1000.0, nperseg=4096)
+    assert np.allclose(record["density"], density, rtol=1e-9, atol=1e-9 * density.max())
+    found = np.array(response["re"]) + 1j * np.array(response["im"])
+    wheel = signal.wheels[0]
+    wanted = car.matrix_frf(["seat_rail_acc_z"], response["frequency"], damper="sliding", wheel=wheel)[0]
+    assert response["frequency"][0] < 1.3 and response["frequency"][-1] > 49.5
+    assert np.max(np.abs(found - wanted)) < 1e-4 * np.max(np.abs(wanted))
+    assert np.max(response["error"]) < 1e-4 * np.max(np.abs(wanted))
+    rubbing, signal = shipped("high.csv")
+    assert np.median(np.array(Page(browser, rubbing, signal).ask("response")["error"])) > 1e-3 * np.max(np.abs(wanted))
+
+
+def test_rounding_to_integers_does_not_move_the_comfort():
+    car, _ = shipped("low.csv")
+    whole = read_signal(find_input("low.csv"), wheel="fl")
+    count = round(LONGEST * 1000) + 1
+    piece = dataclasses.replace(
+        whole, time=whole.time[:count], displacement={wheel: z[:count] for wheel, z in whole.displacement.items()}
+    )
+    exact, rounded = (
+        car.run(signal, engine="reduced").comfort().weighted.overall for signal in (piece, page_signal(whole))
+    )
+    assert 0.0 < abs(rounded / exact - 1.0) < 1e-6
+
+
+def test_the_section_says_what_the_slider_did(browser, reported):
+    """The sentence, the table and the values of the run; many moves end with the last one."""
+    run = read_run(reported.folder)
+    words = browser.find_element("id", "trial-words").text
+    total = run.summary["comfort"]["seat_rail"]["iso2631"]["vector_sum"]["weighted_rms"]
+    assert words.startswith("Move a slider.") and f"{total:.3g} m/s²" in words
+    assert len(trial_data(run.car, recorded_signal(run), wheel="fl")) < 600_000
+    browser.execute_script(
+        "const slider = document.getElementById('trial-front-coulomb_friction');"
+        "for (let k = 1; k <= 30; k++) { slider.value = 100 - 2 * k; slider.dispatchEvent(new Event('input')); }"
+    )
+    state = {"front-coulomb_friction": 40.0}
+    signal = page_signal(recorded_signal(run))
+    now = car_of(run.car, state).run(signal, engine="reduced").comfort().weighted.overall
+    change = 100.0 * abs(now / total - 1.0)
+    for _ in range(100):
+        words = browser.find_element("id", "trial-words").text
+        if "100 N → 40 N" in words:
+            break
+        time.sleep(0.1)
+    assert words.startswith(f"{change:.2g} % {'more' if now < total else 'less'} comfort"), words
+    table = browser.find_element("id", "trial-table").text
+    assert f"{now:.4g}" in table and f"{total:.4g}" in table
+
+
+def test_a_car_that_the_page_cannot_run_has_no_section():
+    car, signal = shipped("low.csv")
+    with pytest.raises(ConfigurationError, match="must be at least 35 s"):
+        trial_data(car, signal, wheel="fl", skip=30.0)
+    slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
+    with pytest.raises(ConfigurationError, match="heights of the plates"):
+        trial_data(car, slopes, wheel="fl")

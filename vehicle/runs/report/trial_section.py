@@ -1,0 +1,66 @@
+"""Section of the report in which the reader changes the car of the run, which then runs in the page."""
+
+from __future__ import annotations
+
+from vehicle.errors import VehicleError
+from vehicle.runs.report.finished_run import FinishedRun, recorded_signal
+from vehicle.runs.report.markup import Markup, joined, tag
+from vehicle.runs.trial.trial_data import LONGEST, trial_data
+
+
+def trial_numbers(run: FinishedRun) -> str:
+    """Return the numbers of the script of the section as JSON; empty if the page cannot run this car on these plates.
+
+    Args:
+        run: the run.
+    """
+    begin, _ = run.summary.get("evaluated_s") or (0.0, 0.0)
+    road = run.summary["input"].get("road") or {}
+    if road.get("tyre_contact"):
+        # The slopes under the tyres are not in the record.
+        return ""
+    try:
+        signal = recorded_signal(run)
+        return trial_data(run.car, signal, wheel=run.wheel, skip=begin, road_class=road.get("class"))
+    except (VehicleError, KeyError):
+        return ""
+
+
+def trial(run: FinishedRun) -> Markup:
+    """Return sentence, plots, table and controls, which the script of the page fills."""
+    duration = min(float(run.recording.time[-1]), LONGEST)
+    engine = run.summary["solver"]["engine"]
+    other = "" if engine == "reduced" else " The run itself used the MuJoCo engine, so its numbers differ a little."
+    plots = {
+        "density": "Density of the acceleration of the seat rail",
+        "frf": "Frequency response of the seat rail",
+        "force": "Force of a damper over its velocity",
+        "time": "Acceleration of the seat rail over a second",
+    }
+    canvases = [
+        tag("canvas", id=f"trial-{name}", role="img", aria_label=f"{label}: A red, B grey")
+        for name, label in plots.items()
+    ]
+    return joined(
+        [
+            tag("p", "Computing ...", class_="answer", id="trial-words"),
+            tag("noscript", tag("p", "This section needs JavaScript; the others do not.")),
+            tag(
+                "div",
+                tag("div", tag("div", *canvases, class_="plots"), tag("table", id="trial-table")),
+                tag("div", id="trial-controls", class_="controls"),
+                class_="modes",
+            ),
+            tag(
+                "p",
+                f"Red: A, the car with these settings; grey: B, the reference. The page runs the first {duration:g} s "
+                "with the time steps of the reduced engine. Friction, Stribeck parameters and level are exact. A "
+                "factor on the damper curve acts as a force beside the poles of the car: exact to about 0.1 %. "
+                "Comfort is the weighted acceleration of the seat rail, vector sum of ISO 2631-1; less is more "
+                "comfort. The FRF is the mean of four multisines of random phase with the density of this input."
+                f"{other} ",
+                tag("span", id="trial-time-used"),
+                class_="about",
+            ),
+        ]
+    )

@@ -1,0 +1,223 @@
+"use strict";
+// Section "Try it": sliders, sentence, plots and table. The numbers come from trial_worker.js in a worker. A: the car with
+// the settings of the sliders, red; B: the reference, grey.
+(() => {
+  const data = JSON.parse(document.getElementById("trial-data").textContent);
+  const byId = (id) => document.getElementById(`trial-${id}`);
+  const RED = "#c0392b", GREY = "#8a949e", BAND = "rgba(192, 57, 43, .18)", LINE = "#d5dae0", INK = "#5a6672";
+  const CLASSES = "ABCDEFGH", PAUSE = 250, SECONDS = 3;
+  const source = URL.createObjectURL(new Blob([byId("worker").textContent], { type: "text/javascript" }));
+  const worker = new Worker(source);
+  const start = Object.fromEntries(data.sliders.map((slider) => [slider.id, slider.value]));
+  const inputs = new Map();
+  let settings = { ...start }, now = null, before = null, busy = false, waiting = null, timer = 0;
+
+  const short = (value, digits = 3) => String(Number(value.toPrecision(digits)));
+  const classOf = (level) => {
+    const place = CLASSES.indexOf(data.roadClass) + Math.round(Math.log2(level));
+    return CLASSES[place] ?? `${short(level)} times ${data.roadClass}`;
+  };
+  const words = (slider, value) => (slider.id === "level" && data.roadClass ? `class ${classOf(value)}` : `${short(value)} ${slider.unit}`.trim());
+  // A class of ISO 8608 has four times the density of the one before, so the slider of a road moves by factors of two.
+  const toSlider = (slider, value) => (slider.id === "level" ? Math.log2(value) : value);
+  const fromSlider = (slider, value) => (slider.id === "level" ? 2 ** value : value);
+
+  function controls() {
+    const box = byId("controls");
+    for (const slider of data.sliders) {
+      const label = document.createElement("label"), input = document.createElement("input");
+      const [low, high, value] = [slider.low, slider.high, slider.value].map((x) => toSlider(slider, x));
+      input.type = "range";
+      input.id = label.htmlFor = `trial-${slider.id}`;
+      input.min = low;
+      input.max = high;
+      input.step = slider.id === "level" ? (data.roadClass ? 1 : 0.05) : "any";
+      input.value = value;
+      input.addEventListener("input", () => {
+        settings = { ...settings, [slider.id]: fromSlider(slider, Number(input.value)) };
+        label.textContent = `${slider.words}: ${words(slider, settings[slider.id])}`;
+        request("record");
+      });
+      label.textContent = `${slider.words}: ${words(slider, slider.value)}`;
+      inputs.set(slider.id, [slider, input, label]);
+      box.append(label, input);
+    }
+    box.append(button("Back to the car of the run", () => move(start)), button("Keep as B", () => {
+      before = now;
+      show();
+    }));
+  }
+
+  function button(text, action) {
+    const element = Object.assign(document.createElement("button"), { type: "button", textContent: text });
+    element.addEventListener("click", action);
+    return element;
+  }
+
+  function move(values) {
+    settings = { ...values };
+    for (const [slider, input, label] of inputs.values()) {
+      input.value = toSlider(slider, settings[slider.id]);
+      label.textContent = `${slider.words}: ${words(slider, settings[slider.id])}`;
+    }
+    request("record");
+  }
+
+  // One task at a time: while the worker computes, only the latest settings wait.
+  function request(task) {
+    clearTimeout(timer);
+    if (busy) {
+      waiting = task;
+      return;
+    }
+    busy = true;
+    waiting = null;
+    worker.postMessage({ data: now ? undefined : data, task, settings });
+  }
+
+  worker.onmessage = ({ data: { task, settings: asked, result, error } }) => {
+    busy = false;
+    if (error) {
+      byId("words").textContent = `These settings cannot be run: ${error}.`;
+    } else if (task === "record") {
+      now = { settings: asked, record: result, response: null };
+      before ??= now;
+      show();
+    } else if (now.settings === asked || same(now.settings, asked)) {
+      now.response = result;
+      if (same(before.settings, asked)) before.response = result;
+      show();
+    }
+    if (waiting) request(waiting);
+    else if (task === "record" && data.frf && !error) timer = setTimeout(() => request("response"), PAUSE);
+  };
+  worker.onerror = () => { byId("words").textContent = "This browser does not run the car: it blocks workers or WebAssembly."; };
+
+  const same = (a, b) => Object.keys(a).every((key) => a[key] === b[key]);
+  const percent = (a, b) => 100 * (a / b - 1);
+
+  function sentence() {
+    const changed = data.sliders.filter(({ id }) => now.settings[id] !== before.settings[id]);
+    const damper = data.dampers[data.shown], slip = (run) => run.record.dampers[data.shown].slip;
+    const slipping = `the ${damper.name} damper slips ${short(100 * slip(now), 2)} % of the time`;
+    if (!changed.length) return `Move a slider. Now the weighted acceleration is ${short(now.record.comfort)} m/s², and ${slipping}.`;
+    const list = changed.map((slider) => `${slider.words} ${words(slider, before.settings[slider.id])} → ${words(slider, now.settings[slider.id])}`);
+    const change = percent(now.record.comfort, before.record.comfort);
+    const comfort = Math.abs(change) < 0.05 ? "Comfort as before" : `${short(Math.abs(change), 2)} % ${change < 0 ? "more" : "less"} comfort`;
+    return `${comfort}: weighted acceleration ${short(before.record.comfort)} → ${short(now.record.comfort)} m/s²; ${slipping}, before ${short(100 * slip(before), 2)} %. Changed: ${list.join(", ")}.`;
+  }
+
+  function table() {
+    const rows = [["a_v, weighted (ISO 2631-1) [m/s²]", (run) => run.record.comfort, 4]];
+    ["x", "y", "z"].forEach((axis, k) => rows.push([`a_w ${axis} [m/s²]`, (run) => run.record.axes[k], 4]));
+    data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.dampers[k].slip, 3]));
+    data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.dampers[k].highest, 4]));
+    const row = (name, cells) => {
+      const line = document.createElement("tr");
+      cells.forEach((text, k) => line.append(Object.assign(document.createElement(name), { textContent: text, className: k ? "number" : "" })));
+      return line;
+    };
+    const head = document.createElement("thead"), body = document.createElement("tbody");
+    head.append(row("th", ["seat rail and dampers", "B, before", "A, now", "change"]));
+    for (const [text, value, digits] of rows) {
+      const a = value(now), b = value(before);
+      body.append(row("td", [text, short(b, digits), short(a, digits), b ? `${percent(a, b).toFixed(1)} %` : "–"]));
+    }
+    byId("table").replaceChildren(head, body);
+  }
+
+  // Curves in a canvas: [x, y, colour, width]; bands: [x, low, high, colour].
+  function draw(id, title, curves, axes, bands = []) {
+    const canvas = byId(id), ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+    if (!width || !height) return;
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+    const pen = canvas.getContext("2d"), [left, right, top, bottom] = [52, width - 8, 22, height - 22];
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const scale = (log) => (log ? (value) => Math.log10(Math.max(value, 1e-30)) : (value) => value);
+    const [sx, sy] = [scale(axes.logX), scale(axes.logY)], [x0, x1] = axes.x.map(sx), [y0, y1] = axes.y.map(sy);
+    const across = (value) => left + (sx(value) - x0) / (x1 - x0) * (right - left);
+    const down = (value) => bottom - (sy(value) - y0) / (y1 - y0) * (bottom - top);
+    pen.font = "12px system-ui, sans-serif";
+    pen.fillStyle = INK;
+    pen.textAlign = "left";
+    pen.fillText(title, 4, 13);
+    pen.strokeStyle = LINE;
+    pen.lineWidth = 1;
+    pen.textAlign = "center";
+    for (const mark of marks(axes.x, axes.logX, [1, 2, 5])) {
+      pen.beginPath(); pen.moveTo(across(mark), top); pen.lineTo(across(mark), bottom); pen.stroke();
+      pen.fillText(short(mark), across(mark), height - 7);
+    }
+    pen.textAlign = "right";
+    for (const mark of marks(axes.y, axes.logY, [1])) {
+      pen.beginPath(); pen.moveTo(left, down(mark)); pen.lineTo(right, down(mark)); pen.stroke();
+      pen.fillText(axes.logY ? mark.toExponential(0) : short(mark), left - 4, down(mark) + 4);
+    }
+    pen.save();
+    pen.beginPath(); pen.rect(left, top, right - left, bottom - top); pen.clip();
+    for (const [x, low, high, colour] of bands) {
+      pen.fillStyle = colour;
+      pen.beginPath();
+      for (let i = 0; i < x.length; i++) pen.lineTo(across(x[i]), down(low[i]));
+      for (let i = x.length - 1; i >= 0; i--) pen.lineTo(across(x[i]), down(high[i]));
+      pen.fill();
+    }
+    pen.lineJoin = "round";
+    for (const [x, y, colour, thick] of curves) {
+      pen.strokeStyle = colour;
+      pen.lineWidth = thick;
+      pen.beginPath();
+      for (let i = 0; i < x.length; i++) pen.lineTo(across(x[i]), down(y[i]));
+      pen.stroke();
+    }
+    pen.restore();
+  }
+
+  function marks([low, high], log, digits) {
+    if (log) {
+      const found = [];
+      for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++)
+        for (const digit of digits) if (digit * 10 ** power >= low * 0.999 && digit * 10 ** power <= high * 1.001) found.push(digit * 10 ** power);
+      return found;
+    }
+    const rough = (high - low) / 4, size = 10 ** Math.floor(Math.log10(rough)), step = size * [1, 2, 5, 10].find((digit) => digit * size >= rough);
+    const found = [];
+    for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(k * step);
+    return found;
+  }
+
+  const both = (of) => [[before, GREY, 2.2], [now, RED, 1.4]].map(([run, colour, thick]) => [...of(run), colour, thick]);
+
+  function show() {
+    byId("words").textContent = sentence();
+    table();
+    const bins = now.record.density.map((_, k) => k * now.record.resolution), first = Math.ceil(1 / now.record.resolution), last = Math.floor(50 / now.record.resolution);
+    const cut = (values) => values.slice(first, last + 1), peak = Math.max(...cut(before.record.density), ...cut(now.record.density));
+    draw("density", "PSD of the seat rail, vertical [(m/s²)²/Hz] over Hz", both((run) => [cut(bins), cut(run.record.density)]),
+      { x: [1, 50], y: [peak * 1e-5, peak * 2], logX: true, logY: true });
+    const begin = data.skip + Math.round(1 / data.interval), span = Math.round(1 / data.interval);
+    const time = Array.from({ length: span }, (_, i) => (begin + i) * data.interval);
+    const piece = (run) => run.record.acceleration[2].subarray(begin, begin + span), high = 1.1 * Math.max(...piece(before).map(Math.abs), ...piece(now).map(Math.abs));
+    draw("time", "Seat rail, vertical [m/s²] over s", both((run) => [time, piece(run)]), { x: [time[0], time[span - 1]], y: [-high, high] });
+    const damper = (run) => run.record.dampers[data.shown], part = (values) => values.subarray(begin, begin + SECONDS * span);
+    const reach = (of) => Math.max(...part(of(before)).map(Math.abs), ...part(of(now)).map(Math.abs)) * 1.1;
+    const [v, f] = [reach((run) => damper(run).velocity), reach((run) => damper(run).force)];
+    draw("force", `Force [N] over velocity [m/s] of the ${data.dampers[data.shown].name} damper, ${SECONDS} s`,
+      both((run) => [part(damper(run).velocity), part(damper(run).force)]), { x: [-v, v], y: [-f, f] });
+    if (data.frf) {
+      const runs = [[before, GREY, 2.2], [now, RED, 1.4]].filter(([run]) => run.response), frequency = runs.length ? runs[0][0].response.frequency : [1];
+      const top = Math.max(1, ...runs.flatMap(([run]) => Array.from(run.response.magnitude)));
+      const bands = now.response ? [[frequency, now.response.magnitude.map((value, k) => value - 2 * now.response.error[k]), now.response.magnitude.map((value, k) => value + 2 * now.response.error[k]), BAND]] : [];
+      draw("frf", "FRF [m/s² per m] over Hz; band: 2 standard errors",
+        runs.map(([run, colour, thick]) => [run.response.frequency, run.response.magnitude, colour, thick]), { x: [1, 50], y: [top * 1e-3, top * 1.5], logX: true, logY: true }, bands);
+    }
+    const { stepping, all } = now.record.milliseconds, seconds = (data.samples - 1) * data.interval;
+    byId("time-used").textContent = `${short(seconds)} s of the car in ${Math.round(all)} ms, ${Math.round(stepping)} ms of them time steps.`;
+  }
+
+  controls();
+  window.addEventListener("resize", () => now && show());
+  byId("frf").hidden = !data.frf;
+  request("record");
+})();
