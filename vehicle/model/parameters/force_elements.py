@@ -141,8 +141,8 @@ class Hydromount:
         for keys in (MAXWELL, TRACK):
             missing = [key for key in keys if getattr(self, key) is None]
             if 0 < len(missing) < len(keys):
-                given = next(key for key in keys if key not in missing)
-                raise ConfigurationError(f"Hydromount.{missing[0]}: missing; {given} needs {' and '.join(missing)}")
+                present = next(key for key in keys if key not in missing)
+                raise ConfigurationError(f"Hydromount.{missing[0]}: missing; {present} needs {' and '.join(missing)}")
 
     @property
     def maxwell(self) -> tuple[float, float] | None:
