@@ -23,7 +23,7 @@ WINGS = {
     "engines": ("simulation", "linear", "reduced", "lumped"),
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "fmu", "trial", "comparison", "output", "report", "bench"),
-    "studies": ("design", "replication", "sweeps", "tuning", "optimisation"),
+    "studies": ("design", "mounts", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -61,12 +61,13 @@ ROOMS: dict[str, set[str]] = {
     | {"reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
     | {"report", "threads"},
+    "mounts": {"records"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
     | {"simulation", "trial", "version"},
     "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "fmu", "linear"}
-    | {"optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
+    | {"mounts", "optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
     | {"sweeps", "threads", "tuning", "version"},
     "threads": set(),
     "version": set(),

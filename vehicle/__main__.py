@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib import import_module
 
-from vehicle.commands import COMMANDS
+from vehicle.commands import COMMANDS, module_of
 from vehicle.commands.command_line import begin_process, run_command
 from vehicle.errors import ConfigurationError
 
@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         begin_process()
     if typed and typed[0] in COMMANDS:
-        code: int = import_module(f"vehicle.commands.{typed[0]}").main(typed[1:])
+        code: int = import_module(module_of(typed[0])).main(typed[1:])
         return code
     return run_command(lambda: _print(typed))
 
@@ -57,7 +57,7 @@ def _print(typed: Sequence[str]) -> None:
         raise ConfigurationError(f"no command {typed[0]!r}; must be one of {', '.join(COMMANDS)}{nearest}")
     print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:
-        print(f"  {name:<11} {import_module(f'vehicle.commands.{name}').parser().description}")
+        print(f"  {name:<11} {import_module(module_of(name)).parser().description}")
     print("\n--version prints the version; --print-completion bash|zsh a script that completes commands and options")
     print("--schema prints the JSON Schema of a vehicle file, --schema template that of a template")
 

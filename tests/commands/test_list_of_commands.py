@@ -15,14 +15,14 @@ import pytest
 from scenarios.global_sensitivity import parser as global_sensitivity_parser
 from scenarios.study import study_parser
 from vehicle.__main__ import main
-from vehicle.commands import COMMANDS, OLDER
+from vehicle.commands import COMMANDS, OLDER, module_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
 def parsers() -> dict[str, argparse.ArgumentParser]:
     """Every command of the package, a study, and the study with options of its own."""
-    found = {name: import_module(f"vehicle.commands.{name}").parser() for name in COMMANDS}
+    found = {name: import_module(module_of(name)).parser() for name in COMMANDS}
     study = study_parser("levels", quick="short")
     return {**found, "study": study, "global_sensitivity": global_sensitivity_parser()}
 

@@ -7,7 +7,7 @@ from importlib import import_module
 
 import pytest
 
-from vehicle.commands import COMMANDS
+from vehicle.commands import COMMANDS, module_of
 from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.errors import ConfigurationError
 
@@ -40,7 +40,7 @@ LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
 
 
 def parser_of(name: str) -> Parser:
-    parser: Parser = import_module(f"vehicle.commands.{name}").parser()
+    parser: Parser = import_module(module_of(name)).parser()
     return parser
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import vehicle
 from tests.documentation.pages import BLOCK, ROOT, Site, blocks, pages, prose_commands
-from vehicle.commands import COMMANDS
+from vehicle.commands import COMMANDS, module_of
 from vehicle.drawing.rendering.backend import film_available
 from vehicle.model.parameters.paths import value_of
 
@@ -132,7 +132,7 @@ def test_blocks_are_of_known_languages_and_closed(page):
 
 def options_of(name):
     """Names of all options of a command, with those of its subcommands."""
-    found, parsers = set(), [import_module(f"vehicle.commands.{name}").parser()]
+    found, parsers = set(), [import_module(module_of(name)).parser()]
     while parsers:
         parser = parsers.pop()
         found |= set(parser._option_string_actions)

@@ -18,10 +18,17 @@ COMMANDS = (
     "drive",
     "optimise",
     "tune",
+    "fit-mount",
     "new",
     "fmu",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
+
+
+def module_of(name: str) -> str:
+    """Return the name of the module of a command."""
+    return f"vehicle.commands.{name.replace('-', '_')}"
+
 
 OLDER = COMMANDS[:5]
 """Those that are called as `python -m vehicle.NAME` too."""

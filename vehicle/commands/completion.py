@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator
 from importlib import import_module
 
-from vehicle.commands import COMMANDS
+from vehicle.commands import COMMANDS, module_of
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import CARS
 from vehicle.signals.excitation.input_files import shipped_inputs
@@ -43,7 +43,7 @@ _vehicle() {
   esac
   while [[ $first -lt $COMP_CWORD ]]; do
     next="${name:+$name }${COMP_WORDS[$first]}"
-    [[ "$next" != *-* ]] && _vehicle_words "$next" > /dev/null || break
+    [[ "${COMP_WORDS[$first]}" != -* ]] && _vehicle_words "$next" > /dev/null || break
     name="$next"; first=$((first + 1))
   done
   if [[ "$current" == -* ]]; then words=$(_vehicle_words "$name")
@@ -69,7 +69,7 @@ def completion_script(shell: str) -> str:
         raise ConfigurationError(f"--print-completion {shell}: must be {' or '.join(SHELLS)}")
     rows = [("", f"{' '.join(COMMANDS)} --help --version --print-completion"), ("--print-completion", " ".join(SHELLS))]
     for name in COMMANDS:
-        rows += _rows(name, import_module(f"vehicle.commands.{name}").parser())
+        rows += _rows(name, import_module(module_of(name)).parser())
     return SCRIPT % "\n".join(f'    "{key}") echo "{choices}" ;;' for key, choices in rows) + SHELLS[shell]
 
 

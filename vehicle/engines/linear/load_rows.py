@@ -115,9 +115,9 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         for axis, letter in enumerate("xyz"):
             # A hydromount has the forces of rubber and fluid.
             channel = f"{name}_force_{letter}"
-            before, others = terms_of.get(channel, (0.0, {}))
+            static_sum, others = terms_of.get(channel, (0.0, {}))
             terms_of[channel] = (
-                before + float(static[axis]),
+                static_sum + float(static[axis]),
                 {key: term[axis] + others.get(key, 0.0) for key, term in terms.items()},
             )
     for (name, row), stiffness in zip(load_places.springs, rows.layout.springs.stiffness, strict=True):

@@ -1,0 +1,85 @@
+"""`python -m vehicle fit-mount`: the law of a mount from measured dynamic stiffness and loss angle."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from vehicle.commands.command_line import command
+from vehicle.commands.destination import output_files_of
+from vehicle.commands.options import command_parser, message_options, output_options
+from vehicle.commands.parser import Parser
+
+if TYPE_CHECKING:
+    from vehicle.drawing.rendering.mount_plot import MountCurve
+    from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
+    from vehicle.studies.mounts.mount_fit import MountFit
+
+FILES = ("mount.toml", "mount.csv", "mount.png")
+CURVE_POINTS = 400
+"""Number of points of a fitted curve in the picture."""
+
+
+def parser() -> Parser:
+    """Return the parser of the options."""
+    parser = command_parser("fit-mount", "Fit the law of a mount to measured dynamic stiffness and loss angle.")
+    parser.add_argument(
+        "file",
+        type=Path,
+        metavar="FILE",
+        help="table with frequency [Hz], amplitude [mm] (peak), stiffness [N/mm] and loss_angle [deg]",
+    )
+    parser.add_argument(
+        "--law",
+        choices=("auto", "rubber", "hydromount"),
+        default="auto",
+        help="rubber with Maxwell branch and friction, hydromount with inertia track, or the one of both that "
+        "describes the points best (auto); %(default)s by default",
+    )
+    output_options(parser, None, default=f"{', '.join(FILES)} in runs/mount")
+    message_options(parser, quiet=True)
+    return parser
+
+
+def _job(options: argparse.Namespace) -> None:
+    from vehicle.drawing.rendering.mount_plot import plot_mount
+    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.studies.mounts.measured_stiffness import read_stiffness
+    from vehicle.studies.mounts.mount_fit import fit_mount
+    from vehicle.studies.mounts.mount_laws import LAWS
+    from vehicle.studies.mounts.mount_text import TITLES, caption_of, points_text, summary_lines, vehicle_lines
+
+    data = read_stiffness(options.file)
+    lines, table, picture = output_files_of(options, Path("runs/mount"), FILES)
+    fits = fit_mount(data, tuple(LAWS) if options.law == "auto" else (options.law,))
+    best, caption = fits[0], caption_of(data, options.file.name)
+    write_text(lines, vehicle_lines(best, caption))
+    write_text(table, points_text(best, data))
+    title = f"{TITLES[best.law.name].capitalize()}: points and fitted curves"
+    write_whole(picture, lambda path: plot_mount(path, _curves(best, data), title, caption))
+    if not options.quiet:
+        print("\n".join(summary_lines(fits, caption)))
+        print(f"files: {lines.parent}: {', '.join(path.name for path in (lines, table, picture))}")
+
+
+def _curves(fit: MountFit, data: MeasuredStiffness) -> list[MountCurve]:
+    """Return points and fitted curve of each amplitude."""
+    import numpy as np
+
+    from vehicle.drawing.rendering.mount_plot import MountCurve
+
+    line = np.linspace(np.min(data.frequency), np.max(data.frequency), CURVE_POINTS)
+    return [
+        MountCurve(
+            label=f"{1e3 * amplitude:.3g} mm",
+            frequency=data.frequency[level],
+            measured=data.stiffness[level],
+            line=line,
+            fitted=fit.stiffness(line, amplitude),
+        )
+        for amplitude, level in data.levels()
+    ]
+
+
+main = command(parser, _job)

@@ -1,0 +1,1 @@
+"""Laws of mounts fitted to measured dynamic stiffness and loss angle."""

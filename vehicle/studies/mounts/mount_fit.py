@@ -1,0 +1,111 @@
+"""Fit of the laws of mounts to measured dynamic stiffness, by least squares of the logarithm.
+
+    minimise  sum of |ln(K_law / K)|^2,    ln(K_law / K) = relative error of |K| + i error of the loss angle [rad],
+
+over u = ln(parameter), from several starts. The covariance of u is s^2 (J'J)^-1 with s^2 = RSS/(2 m - p) at m points,
+so one standard error of a value is its relative standard error. The law with the least
+
+    BIC = 2 m ln(RSS/(2 m)) + p ln(2 m)
+
+is chosen (Bayesian information criterion, Schwarz, Annals of Statistics 6 (1978)).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
+from vehicle.studies.mounts.mount_laws import LAWS, Complex, MountLaw, Vector
+
+WIDEST = float(np.log(1e6))
+"""Maximum distance of ln(parameter) from its start."""
+
+DETERMINED = 0.5
+"""Maximum relative standard error of a parameter that the points determine."""
+
+FLOOR = 1e-12
+"""Minimum mean square of the residuals in the criterion: below it are the errors of the arithmetic."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MountFit:
+    """A law fitted to measured points.
+
+    Attributes:
+        law: the law.
+        values: parameters in the order of `law.parameters`, SI units; (p,).
+        errors: standard errors of `values`; infinite if the points do not determine a parameter; (p,).
+        criterion: BIC; smaller is better.
+        stiffness_error: RMS and maximum of the relative error of |K| [-]; (2,).
+        angle_error: RMS and maximum of the error of the loss angle [rad]; (2,).
+    """
+
+    law: MountLaw
+    values: Vector
+    errors: Vector
+    criterion: float
+    stiffness_error: Vector
+    angle_error: Vector
+
+    def stiffness(self, frequency: npt.ArrayLike, amplitude: npt.ArrayLike) -> Complex:
+        """Return K [N/m] at frequencies [Hz] and peak amplitudes [m]."""
+        omega = 2.0 * np.pi * np.asarray(frequency, dtype=float)
+        return self.law.stiffness(self.values, *np.broadcast_arrays(omega, np.asarray(amplitude, dtype=float)))
+
+    @property
+    def determined(self) -> npt.NDArray[np.bool_]:
+        """True for the parameters with a relative standard error of at most `DETERMINED`; (p,)."""
+        return np.asarray(self.errors <= DETERMINED * self.values)
+
+
+def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
+    """Fit one law.
+
+    Args:
+        data: measured points.
+        law: the law.
+    """
+    omega, amplitude, measured = 2.0 * np.pi * data.frequency, data.amplitude, data.stiffness
+
+    def residuals(logarithms: Vector) -> Vector:
+        error = np.log(law.stiffness(np.exp(logarithms), omega, amplitude) / measured)
+        return np.concatenate([error.real, error.imag])
+
+    best: Any = None
+    for start in np.log(law.starts(omega, amplitude, measured)):
+        with np.errstate(over="ignore", invalid="ignore"):
+            fit = scipy.optimize.least_squares(
+                residuals, start, bounds=(start - WIDEST, start + WIDEST), xtol=1e-12, ftol=1e-12, gtol=1e-12
+            )
+        best = fit if best is None or fit.cost < best.cost else best
+    count, size = len(best.fun), len(best.x)
+    squares = 2.0 * float(best.cost)
+    _, singular, directions = np.linalg.svd(best.jac, full_matrices=False)
+    spread = directions.T / np.maximum(singular, 1e-9 * singular[0])
+    relative = np.sqrt(squares / max(count - size, 1) * np.sum(spread**2, axis=1))
+    error = best.fun.reshape(2, -1)
+    rms, largest = np.sqrt(np.mean(error**2, axis=1)), np.max(np.abs(error), axis=1)
+    return MountFit(
+        law=law,
+        values=np.exp(best.x),
+        errors=np.exp(best.x) * relative,
+        criterion=count * float(np.log(max(squares / count, FLOOR))) + size * float(np.log(count)),
+        stiffness_error=np.array([rms[0], largest[0]]),
+        angle_error=np.array([rms[1], largest[1]]),
+    )
+
+
+def fit_mount(data: MeasuredStiffness, laws: Sequence[str] = tuple(LAWS)) -> list[MountFit]:
+    """Fit laws, and sort them by BIC, the chosen one first.
+
+    Args:
+        data: measured points.
+        laws: names of the laws; all by default.
+    """
+    return sorted((fit_law(data, LAWS[name]) for name in laws), key=lambda fit: fit.criterion)

@@ -1,0 +1,96 @@
+"""Fits of mounts as text: lines of a vehicle file, table of the points, printed summary."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+import numpy as np
+
+from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
+from vehicle.studies.mounts.mount_fit import MountFit
+
+VECTORS = ("stiffness", "damping", "friction_force", "friction_stroke")
+"""Parameters of a vehicle file with a value for each axis."""
+
+BEFORE = {"rubber": {"damping": "N s/m"}, "hydromount": {}}
+"""Parameters that the vehicle file needs in addition to those of a law, which are zero."""
+
+TITLES = {"rubber": "rubber with Maxwell branch and friction", "hydromount": "hydromount with inertia track"}
+"""Names of the laws in sentences."""
+
+
+def caption_of(data: MeasuredStiffness, source: str) -> str:
+    """Return the description of measured points in one sentence."""
+    levels = [f"{1e3 * amplitude:.3g}" for amplitude, _ in data.levels()]
+    several = f"amplitudes {', '.join(levels[:-1])} and {levels[-1]}" if len(levels) > 1 else f"amplitude {levels[0]}"
+    low, high = np.min(data.frequency), np.max(data.frequency)
+    return f"{source}: {len(data.frequency)} points, {several} mm peak, {low:g} to {high:g} Hz"
+
+
+def vehicle_lines(fit: MountFit, caption: str) -> str:
+    """Return the parameters as lines for a table of a bushing in a vehicle file, with their standard errors.
+
+    Args:
+        fit: fitted law.
+        caption: description of the points.
+    """
+    lines = [
+        f"# {TITLES[fit.law.name]}, fitted to {caption}",
+        "# z is the measured axis; x and y have the same values: replace them by their own",
+        "rotational_stiffness = 0.0  # [N m/rad] not measured",
+    ]
+    lines += [
+        f"{name} = [0.0, 0.0, 0.0]  # [{unit}] in the Maxwell branch" for name, unit in BEFORE[fit.law.name].items()
+    ]
+    for (name, unit), value, error, determined in zip(
+        fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), fit.determined, strict=True
+    ):
+        text = f"{float(f'{value:.5g}')!r}"
+        shown = f"[{text}, {text}, {text}]" if name in VECTORS else text
+        spread = f"standard error {error:.2g}" if determined else "not determined by these points"
+        lines.append(f"{name} = {shown}  # [{unit}] {spread}")
+    return "\n".join(lines) + "\n"
+
+
+def points_text(fit: MountFit, data: MeasuredStiffness) -> str:
+    """Return the measured and fitted values of all points as CSV text."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    heads = ("frequency [Hz]", "amplitude [mm]", "stiffness [N/mm]", "loss_angle [deg]")
+    writer.writerow([*heads, "fitted_stiffness [N/mm]", "fitted_loss_angle [deg]"])
+    fitted = fit.stiffness(data.frequency, data.amplitude)
+    for _, level in data.levels():
+        for index in level:
+            values = [data.frequency[index], 1e3 * data.amplitude[index]]
+            for stiffness in (data.stiffness[index], fitted[index]):
+                values += [1e-3 * abs(stiffness), np.degrees(np.angle(stiffness))]
+            writer.writerow([f"{value:.6g}" for value in values])
+    return file.getvalue()
+
+
+def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
+    """Return the printed summary: laws with their criteria and residuals, and the parameters of the first.
+
+    Args:
+        fits: fits sorted by BIC.
+        caption: description of the points.
+    """
+    lines = [caption, f"{'law':<12}{'BIC':>9}   stiffness, RMS and max   loss angle, RMS and max"]
+    for fit in fits:
+        stiffness, angle = 100.0 * fit.stiffness_error, np.degrees(fit.angle_error)
+        lines.append(
+            f"{fit.law.name:<12}{fit.criterion:>9.1f}{f'{stiffness[0]:.1f} %, {stiffness[1]:.1f} %':>25}"
+            f"{f'{angle[0]:.1f} deg, {angle[1]:.1f} deg':>26}"
+        )
+    best = fits[0]
+    others = f", the least BIC, by {fits[1].criterion - best.criterion:.1f}" if len(fits) > 1 else ""
+    lines.append(f"chosen: {TITLES[best.law.name]}{others}")
+    lines.append(f"{'parameter':<20}{'value':>12}   standard error")
+    for (name, unit), value, error, determined in zip(
+        best.law.parameters.items(), best.values, best.errors, best.determined, strict=True
+    ):
+        spread = f"{error:.2g} {unit}" if determined else "not determined by these points"
+        lines.append(f"{name:<20}{value:>12.5g}   {spread}")
+    return lines
