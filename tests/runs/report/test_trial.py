@@ -241,3 +241,13 @@ def test_a_car_that_the_page_cannot_run_has_no_section():
     slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
     with pytest.raises(ConfigurationError, match="heights of the plates"):
         trial_data(car, slopes, wheel="fl")
+
+
+def test_settings_outside_the_valid_range_are_named(browser):
+    car, signal = shipped("bump_7p5mm.csv", seconds=10.0)
+    page = Page(browser, car, signal)
+    for level in (1.0, 4.0):
+        valid = car.run(scaled(signal, level), engine="reduced").recording.statistics.within_validity
+        notices = page.ask("record", level=level)["notices"]
+        assert valid == (level == 1.0) and valid == (not notices), notices
+    assert notices == ["stabilizer_half_fl turned by more than 0.05 rad about y; this car is valid up to there"]

@@ -44,6 +44,7 @@ def trial(run: FinishedRun) -> Markup:
     return joined(
         [
             tag("p", "Computing ...", class_="answer", id="trial-words"),
+            tag("p", id="trial-notices"),
             tag("noscript", tag("p", "This section needs JavaScript; the others do not.")),
             tag(
                 "div",

@@ -212,6 +212,8 @@
       draw("frf", "FRF [m/s² per m] over Hz; band: 2 standard errors",
         runs.map(([run, colour, thick]) => [run.response.frequency, run.response.magnitude, colour, thick]), { x: [1, 50], y: [top * 1e-3, top * 1.5], logX: true, logY: true }, bands);
     }
+    const { notices } = now.record, more = notices.length > 2 ? `; ${notices.length - 2} more` : "";
+    byId("notices").textContent = notices.length ? `Outside the valid range of this car: ${notices.slice(0, 2).join("; ")}${more}.` : "";
     const { stepping, all } = now.record.milliseconds, seconds = (data.samples - 1) * data.interval;
     byId("time-used").textContent = `${short(seconds)} s of the car in ${Math.round(all)} ms, ${Math.round(stepping)} ms of them time steps.`;
   }

@@ -9,6 +9,7 @@ from __future__ import annotations
 import base64
 import dataclasses
 import json
+import zlib
 from collections.abc import Sequence
 from importlib import resources
 from typing import TYPE_CHECKING, Any
@@ -153,7 +154,8 @@ def _module() -> bytes:
 
 
 def _text(content: bytes) -> str:
-    return base64.b64encode(content).decode()
+    """Return compressed bytes as text (deflate, base64)."""
+    return base64.b64encode(zlib.compress(content, 9)).decode()
 
 
 def _finite(record: dict[str, Any]) -> dict[str, Any]:
@@ -168,13 +170,14 @@ def _integers(values: Vector) -> tuple[npt.NDArray[np.int16], float]:
 
 
 def _plates(signal: Signal, wheels: Sequence[str]) -> list[dict[str, Any]]:
-    """Return the plates that move: index, step [m], and integers of the displacement."""
+    """Return the plates that move: index, step [m], and second differences of the integers modulo 2^16."""
     count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
     plates = []
     for wheel, z in signal.displacement.items():
         if np.any(z[:count]):
             integers, step = _integers(z[:count])
-            plates.append({"plate": wheels.index(wheel), "step": step, "z": _text(integers.tobytes())})
+            changes = np.diff(integers, 2, prepend=np.zeros(2, dtype="<i2"))
+            plates.append({"plate": wheels.index(wheel), "step": step, "changes": _text(changes.tobytes())})
     return plates
 
 

@@ -2,7 +2,18 @@
 // Numbers of the trial, computed in a worker: the runs of the car are the C runtime of FMUs as WebAssembly; here are the
 // plates between their samples, accelerations, weightings of ISO 2631-1, densities and FRFs.
 
-const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+async function bytesOf(text) {
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Integers from their second differences modulo 2^16.
+function integersOf(bytes) {
+  const values = new Int16Array(bytes.buffer);
+  for (let order = 0; order < 2; order++) for (let i = 1; i < values.length; i++) values[i] += values[i - 1];
+  return values;
+}
 
 // Derivatives of the cubic spline through equally spaced samples, not-a-knot at both ends: a tridiagonal system.
 function splineDerivatives(z, interval) {
@@ -146,25 +157,25 @@ const LINES = 4096, REALISATIONS = 4, SETTLING = 3, LOWEST = 1, HIGHEST = 50;
 
 class Trial {
   static async open(data) {
-    const { instance } = await WebAssembly.instantiate(bytesOf(data.module), {});
-    return new Trial(data, instance.exports);
+    const { instance } = await WebAssembly.instantiate(await bytesOf(data.module), {});
+    const plates = await Promise.all(data.plates.map(async ({ changes }) => integersOf(await bytesOf(changes))));
+    return new Trial(data, instance.exports, await bytesOf(data.car), plates);
   }
 
-  constructor(data, module) {
+  constructor(data, module, content, integers) {
     this.data = data;
     this.module = module;
     module._initialize();
-    const content = bytesOf(data.car), at = module.reserve(content.length);
+    const at = module.reserve(content.length);
     new Uint8Array(module.memory.buffer, at, content.length).set(content);
     this.car = module.open_car(at, content.length);
     if (!this.car) throw new Error("the numbers of the car are damaged");
     const { interval, ahead, plateCount, samples } = data;
     this.plates = new Float64Array(2 * plateCount * (samples + ahead));
-    for (const { plate, step, z } of data.plates) {
-      const integers = new Int16Array(bytesOf(z).buffer), heights = Float64Array.from(integers, (value) => step * value);
-      const table = plateTable(heights, interval, ahead);
+    data.plates.forEach(({ plate, step }, k) => {
+      const table = plateTable(Float64Array.from(integers[k], (value) => step * value), interval, ahead);
       for (let i = 0; i < samples + ahead; i++) this.plates.set(table.subarray(2 * i, 2 * i + 2), 2 * (i * plateCount + plate));
-    }
+    });
     const most = Math.max(samples, (SETTLING + 1) * LINES) + ahead, outputs = 3 + 2 * data.dampers.length;
     this.places = {
       parameters: module.reserve(8 * data.parameters.flat().length),
@@ -181,12 +192,20 @@ class Trial {
     new Float64Array(buffer, places.plates, plates.length).set(plates);
     new Int32Array(buffer, places.outputs, outputs.length).set(outputs);
     const done = module.run_car(this.car, places.parameters, places.plates, samples, data.interval, places.outputs, outputs.length, places.values);
-    if (done < samples) {
-      const text = new Uint8Array(module.memory.buffer, module.last_message());
-      throw new Error(new TextDecoder().decode(text.subarray(0, text.indexOf(0))));
-    }
+    if (done < samples) throw new Error(this.text(module.last_message()));
     const values = new Float64Array(module.memory.buffer, places.values, outputs.length * samples);
     return outputs.map((_, k) => values.slice(k * samples, (k + 1) * samples));
+  }
+
+  text(place) {
+    const bytes = new Uint8Array(this.module.memory.buffer, place);
+    return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
+  }
+
+  // Notices of the last run on quantities that left their valid range.
+  notices() {
+    const places = Array.from({ length: this.module.watched(this.car) }, (_, k) => this.module.notice(this.car, k));
+    return places.filter(Boolean).map((place) => this.text(place));
   }
 
   // Second derivative of a position, with the filter of the records; the last `ahead` samples are lost.
@@ -217,7 +236,7 @@ class Trial {
     const { data } = this, { interval, skip } = data, count = data.dampers.length, started = performance.now();
     const outputs = [...data.positions, ...data.dampers.flatMap(({ velocity, force }) => [velocity, force])];
     const histories = this.run(this.parametersOf(settings), this.plates.map((value) => settings.level * value), outputs);
-    const marched = performance.now(), acceleration = histories.slice(0, 3).map((position) => this.acceleration(position));
+    const marched = performance.now(), notices = this.notices(), acceleration = histories.slice(0, 3).map((position) => this.acceleration(position));
     const samples = acceleration[0].length, [w] = data.weightings;
     const [x, y] = weighted(acceleration[0], acceleration[1], w, interval);
     const [z] = weighted(acceleration[2], null, data.weightings[2], interval);
@@ -232,7 +251,7 @@ class Trial {
       return { velocity, force, slip: slipping / (samples - skip), highest };
     });
     return {
-      acceleration, dampers, axes,
+      acceleration, dampers, axes, notices,
       comfort: Math.hypot(...axes.map((value, axis) => value * data.factors[axis])),
       density: density(acceleration[2], skip, LINES, interval),
       resolution: 1 / (LINES * interval),

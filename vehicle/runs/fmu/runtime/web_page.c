@@ -33,7 +33,13 @@ EXPORT int32_t run_car(State *s, const double *parameter, const double *plate, i
     memcpy(s->plate, plate + plates * (size_t)k, plates * sizeof(double));
     if (k == 0) set_at_rest(s);
     else if (!communication_step(s, s->time[0], interval, message)) return k;
+    while (new_notice(s) >= 0) continue;
     for (int32_t o = 0; o < outputs; o++) value[o * samples + k] = output_value(s, output[o]);
   }
   return samples;
 }
+
+/* Return the number of watched quantities, and the notice on one of them; NULL if it stayed within its limits. */
+EXPORT int32_t watched(const State *s) { return (int32_t)s->car->n.watched; }
+
+EXPORT const char *notice(const State *s, int32_t k) { return s->warned[k] > 0.0 ? s->car->notice + k * NOTICE : NULL; }
