@@ -50,7 +50,7 @@ ROOMS: dict[str, set[str]] = {
     "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
-    "car": {"analysis", "excitation", "flexbody", "linear", "notebook", "parameters", "records", "reduced"}
+    "car": {"analysis", "excitation", "flexbody", "laws", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
     "bench": {"analysis", "car", "excitation", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},

@@ -1,8 +1,9 @@
 """Registration of functions for numba, and the cache folder of compiled code.
 
 `jitable` marks a function of numbers, arrays and records for calls from compiled code, and leaves it unchanged in
-Python. `numba_module` loads numba at the first use. numba's search for a cache folder fails for a read-only package
-without a home folder. The next process executes code from the cache, so folders writable by others are not used.
+Python; `overloaded` marks a function whose compiled form is another function. `numba_module` loads numba at the first
+use. numba's search for a cache folder fails for a read-only package without a home folder. The next process executes
+code from the cache, so folders writable by others are not used.
 """
 
 from __future__ import annotations
@@ -34,16 +35,35 @@ Without inlining, a process that compiles calls the function from another module
 which changes round-off. Entries for Python and C take a tenth of the compiling time."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-_marked: list[Callable[..., Any]] = []
+_marked: list[tuple[Callable[..., Any], Callable[[Any], Any] | None]] = []
 _loaded: list[Any] = []
 
 
 def jitable(function: Function) -> Function:
     """Mark a function for inlining into compiled callers, and return it unchanged."""
-    _marked.append(function)
+    _mark(function, None)
+    return function
+
+
+def overloaded(compiled: Callable[[Any], Any]) -> Callable[[Function], Function]:
+    """Return a decorator of a function with another form in compiled code; in Python the function is unchanged.
+
+    Args:
+        compiled: function of the module numba that returns the typing function of `numba.extending.overload`.
+    """
+
+    def mark(function: Function) -> Function:
+        _mark(function, compiled)
+        return function
+
+    return mark
+
+
+def _mark(function: Callable[..., Any], compiled: Callable[[Any], Any] | None) -> None:
+    """Keep a function until numba is loaded, or register it."""
+    _marked.append((function, compiled))
     if _loaded:
         _register()
-    return function
 
 
 def numba_module() -> Any:
@@ -55,7 +75,7 @@ def numba_module() -> Any:
     prepare_compiler_cache()
     numba = importlib.import_module("numba")
     if not _loaded:
-        _loaded.append(importlib.import_module("numba.extending").register_jitable)
+        _loaded.append(numba)
     _register()
     return numba
 
@@ -63,7 +83,12 @@ def numba_module() -> Any:
 def _register() -> None:
     """Register the marked functions with numba."""
     while _marked:
-        _loaded[0](**CALLED, **OPTIONS)(_marked.pop(0))
+        function, compiled = _marked.pop(0)
+        extending = _loaded[0].extending
+        if compiled is None:
+            extending.register_jitable(**CALLED, **OPTIONS)(function)
+        else:
+            extending.overload(function, jit_options=CALLED | OPTIONS)(compiled(_loaded[0]))
 
 
 @cache

@@ -36,6 +36,7 @@ from vehicle.commands.options import (
 from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.names import CORNERS
 from vehicle.signals.records.formats import TABLES, WRITTEN
 
@@ -57,7 +58,14 @@ def parser() -> Parser:
     )
     unit_option(read)
     output_options(parser, None, default="runs/<input stem>, or runs/road_C_80,")
-    vehicle_options(parser)
+    car = vehicle_options(parser)
+    car.add_argument(
+        "--controller",
+        type=Path,
+        metavar="FILE.fmu",
+        help="controller of all semi-active dampers, FMI 2.0 or 3.0 co-simulation: velocities in, coefficient out; an "
+        "instance for each damper",
+    )
     engine_option(parser, "mujoco")
     skip_option(parser)
     parser.add_argument(
@@ -123,7 +131,9 @@ def _job(options: argparse.Namespace) -> None:
     else:
         source = find_input(options.input)
         stem = source.stem
-    inputs = tuple(path for path in (source, options.vehicle, options.measured) if isinstance(path, Path))
+    inputs = tuple(
+        path for path in (source, options.vehicle, options.measured, options.controller) if isinstance(path, Path)
+    )
     _check_numbers(options)
     output = output_folder_of(options, Path("runs") / stem, protect=inputs)
     if "h5" in options.formats:
@@ -140,6 +150,8 @@ def _job(options: argparse.Namespace) -> None:
     report_name = None if options.report is None else report_path(options, output)
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
+    if options.controller is not None:
+        overrides += _controller_overrides(options)
 
     from vehicle.errors import SimulationError
     from vehicle.runs.car import Car
@@ -229,6 +241,25 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
             raise ConfigurationError(
                 f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"
             )
+
+
+def _controller_overrides(options: argparse.Namespace) -> list[str]:
+    """Return the overrides that give all semi-active dampers the controller of --controller.
+
+    Raises:
+        ConfigurationError: no damper of the car has limits of its coefficient.
+    """
+    from vehicle.model.parameters.vehicle import load_vehicle
+
+    vehicle = load_vehicle(options.vehicle, options.overrides)
+    paths = dict.fromkeys(damper.path for damper in vehicle.composition.dampers if damper.law.control is not None)
+    if not paths:
+        raise ConfigurationError(
+            f"--controller {options.controller}: no damper of {vehicle.name} has a table control with the limits of "
+            "its coefficient; take --vehicle focus_road, or add [front.damper.control]: docs/vehicle-file.md"
+        )
+    file = options.controller.resolve().as_posix()
+    return [f"{path}.control.{text}" for path in paths for text in (f"law={FMU}", f"fmu={file}")]
 
 
 def _check_numbers(options: argparse.Namespace) -> None:

@@ -81,7 +81,7 @@ def test_hybrid_on_off_switches_by_its_shares():
 def test_unknown_law_is_refused():
     with pytest.raises(ConfigurationError) as caught:
         dataclasses.replace(DAMPER, law="skyhok")
-    assert str(caught.value) == f"SemiActiveDamper.law: found 'skyhok', must be one of passive, {', '.join(LAWS)}"
+    assert str(caught.value) == f"SemiActiveDamper.law: found 'skyhok', must be one of passive, {', '.join(LAWS)}, fmu"
 
 
 TIME = 1e-3 * np.arange(2000)

@@ -44,6 +44,8 @@ VALID = (
     "front.left.bushings.arm_rear.stiffness=[5e5,5e5,5e5]",
     "front.damper.control={law='skyhook', minimum_damping=500, maximum_damping=4000, skyhook_damping=2500, "
     "groundhook_damping=0, skyhook_share=0.5, control_period=0.001}",
+    "front.damper.control={law='fmu', fmu='my controllers/skyhook.fmu', minimum_damping=500, maximum_damping=4000, "
+    "skyhook_damping=0, groundhook_damping=0, skyhook_share=0.5, control_period=0.001}",
     "front.damper.stop={curve='stop.csv'}",
     "rear.bushings.rear_support={stiffness=[1e5,1e5,1e5], damping=[0,0,0], rotational_stiffness=0, "
     "maxwell_stiffness=1e5, maxwell_damping=1e3}",

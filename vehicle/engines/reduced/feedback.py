@@ -27,7 +27,7 @@ import numpy.typing as npt
 from vehicle.compiler import jitable
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import tyre_outputs
-from vehicle.model.laws.control_laws import PRESENT, RING, act, in_steps, pack
+from vehicle.model.laws.control_laws import NUMBERS, PRESENT, RING, act, in_steps, pack
 from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
@@ -112,7 +112,8 @@ def feedback_at_rest(
         timestep: time step [s].
     """
     controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
-    laws = in_steps(np.reshape([pack(damper.controlled) for damper in dampers if damper.controlled], (-1, 8)), timestep)
+    numbers = [pack(damper.controlled) for damper in dampers if damper.controlled]
+    laws = in_steps(np.reshape(numbers, (-1, NUMBERS)), timestep)
     memory = np.zeros((len(controlled), RING + 1 + int(np.max(laws["lag"], initial=0.0))))
     memory[:] = laws["softest"][:, None]
     return Feedback(

@@ -28,6 +28,7 @@ from vehicle.engines.reduced.validity import (
 )
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
+from vehicle.model.laws.controller_fmu import controllers
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.signals.excitation.signal import Signal
 
@@ -171,7 +172,14 @@ class GroupRun:
             first_sample[levels:, lane][: len(initial)] = initial
         first_sample[speeds + 3 * count :] = 0.5 * self.feedback.laws["softest"][:, None]
         peaks = aligned_table(len(bodies) + 2 * watched, self.element)
-        self._step_blocks(reading, y, peaks, table, rows_of_cars)
+        controls = [
+            (f"damper_{system.inputs[index]}", law.controlled)
+            for index, law in enumerate(self.dampers[0])
+            if law.controlled
+        ]
+        with controllers(self.feedback.laws, controls, self.timestep) as check:
+            self._step_blocks(reading, y, peaks, table, rows_of_cars)
+            check()
         return [
             self._validity(peaks[:, lane].astype(float), model, bodies, static)
             for lane, (model, static) in enumerate(zip(self.models, self.tyre_load, strict=True))

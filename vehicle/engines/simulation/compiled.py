@@ -28,21 +28,13 @@ from vehicle.engines.simulation.sparse_rows import Mask, nonzero_columns, soluti
 from vehicle.engines.simulation.step_records import Efc, Simulation, SparseRows, Ticket
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
+from vehicle.model.laws.function_address import address_as_pointer
 
 numba = numba_module()
 types, intrinsic = numba.types, numba.extending.intrinsic
 
 USER_SIZE = 2
 """Length of the userdata that the callbacks read: address of the records, stamp."""
-
-
-def _address_as_void_pointer(typing_context: Any, address: Any) -> Any:
-    """Convert an integer address to a pointer."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.inttoptr(arguments[0], ir.IntType(8).as_pointer())
-
-    return types.voidptr(types.int64), generate
 
 
 def _call_step(typing_context: Any, function: Any, model: Any, data: Any) -> Any:
@@ -59,7 +51,7 @@ def _call_step(typing_context: Any, function: Any, model: Any, data: Any) -> Any
 
 
 simulation_at, loop_at = at(Simulation), at(Loop)
-as_pointer, call_step = intrinsic(_address_as_void_pointer), intrinsic(_call_step)
+as_pointer, call_step = intrinsic(address_as_pointer), intrinsic(_call_step)
 
 
 @numba.njit

@@ -11,7 +11,7 @@ import numpy as np
 from vehicle.engines.simulation.element_records import Layout, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, FLUID, TURNING
-from vehicle.model.laws.control_laws import in_steps
+from vehicle.model.laws.control_laws import NUMBERS, in_steps
 from vehicle.model.laws.damper import unpack
 from vehicle.names import AXES
 
@@ -123,7 +123,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
         ),
         controls=layout.controls._replace(
             dampers=_true_indices(f"control/{name}" in numbers for name in names.dampers),
-            laws=in_steps(np.reshape(controls, (-1, 8)), timestep),
+            laws=in_steps(np.reshape(controls, (-1, NUMBERS)), timestep),
         ),
         tables=_tables(names, numbers),
         rolling=layout.rolling._replace(

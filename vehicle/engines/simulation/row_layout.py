@@ -35,7 +35,7 @@ from vehicle.engines.simulation.law_arrays import (
     with_numbers,
 )
 from vehicle.model.assembly.element_numbers import FLUID, TURNING
-from vehicle.model.laws.control_laws import in_steps
+from vehicle.model.laws.control_laws import NUMBERS, in_steps
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
@@ -217,7 +217,7 @@ def _controls(model: mujoco.MjModel, chosen: Sequence[str], modes: int) -> Contr
     sites = [(int(model.site(lower).id), int(model.site(upper).id)) for lower, upper in site_names]
     return Controls(
         dampers=whole_numbers([]),
-        laws=in_steps(np.zeros((0, 8)), 1.0),
+        laws=in_steps(np.zeros((0, NUMBERS)), 1.0),
         sites=whole_numbers(sites, 2),
         shapes=_shapes(model, [site for both in site_names for site in both], modes),
         dofs=_spring_dofs(model, sites),

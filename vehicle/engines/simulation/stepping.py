@@ -21,6 +21,7 @@ from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
 from vehicle.engines.simulation.sampling import Loop, Plates, move_plates
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.model.laws.controller_fmu import controllers
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
@@ -88,8 +89,11 @@ def simulate(
     )
     compiled.attach(data, sparse=True)
     advance = compiled.loop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
-    started = clock.perf_counter()
-    with installed(rows, compiled):
+    laws = {damper.name: damper.law.controlled for damper in car.vehicle.composition.dampers}
+    names = [rows.laws.dampers[index] for index in rows.layout.controls.dampers]
+    controls = [(name, control) for name in names if (control := laws[name]) is not None]
+    with controllers(rows.layout.controls.laws, controls, step) as check, installed(rows, compiled):
+        started = clock.perf_counter()
         index = 0
         while index <= count:
             # The first and the last sample need the energy of the car, so their steps are taken singly.
@@ -104,6 +108,7 @@ def simulate(
                 move_plates(index - offset, plates)
                 _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
             if index == count or recorder.filled == CHUNK:
+                check()
                 _check_state(model, data, recorder, every * step)
                 recorder.flush(block.motion, index - offset, every)
                 if progress is not None:
@@ -114,7 +119,8 @@ def simulate(
             mujoco.mj_step(model, data)
             if (index + 1) % every == 0:
                 recorder.keep_ahead((index + 1 - count) // every - 1)
-    wall = clock.perf_counter() - started
+        check()
+        wall = clock.perf_counter() - started
     warnings = _warnings(data)
     if warnings:
         raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; discard its results")

@@ -12,6 +12,9 @@ Continuous laws approximate F within the limits. On-off laws switch to cmax if F
 law switches by share and 1 - share of the range. Without the brackets the hybrid law would demand c v / 2 if both gains
 are c and the share is a half: a passive damper.
 
+The law `fmu` takes its coefficient, within the limits, from a controller in an FMU
+(`vehicle.model.laws.controller_call`).
+
 Once a period the controller reads both velocities and holds its demand until the next reading. The damper receives the
 demand after the delay, and follows with its maximum rate; c v opposes v at every instant.
 
@@ -28,7 +31,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.compiler import jitable
-from vehicle.model.parameters.semi_active_damper import AT_ONCE, SemiActiveDamper
+from vehicle.model.laws.function_address import result_at
+from vehicle.model.parameters.semi_active_damper import AT_ONCE, FMU, SemiActiveDamper
 
 SETTING = np.dtype(
     [
@@ -42,11 +46,15 @@ SETTING = np.dtype(
             "period",  # steps between two readings of the sensors
             "lag",  # steps from reading to setting
             "change",  # largest change of the coefficient in a step [N s/m]
+            "controller",  # address of the memory of a controller FMU during a run, otherwise 0
         )
     ],
     align=True,
 )
 """Record of a controlled damper for a given time step."""
+
+NUMBERS = 8
+"""Number of the parameters of a controlled damper: the fields of `SETTING` without the address."""
 
 HELD, REACHED, PRESENT, RING = 0, 1, 2, 3
 """Indices in the memory of a damper: demand, coefficient at the end of the step, its mean over the step, demands of the
@@ -54,10 +62,13 @@ past steps."""
 
 
 def pack(control: SemiActiveDamper) -> npt.NDArray[np.float64]:
-    """Return the parameters of a controlled damper, in the order of `SETTING`, but with times [s] and a rate; (8,)."""
+    """Return the parameters of a controlled damper, in the order of `SETTING`, but with times [s] and a rate; (8,).
+
+    Without a run, a damper with a controller FMU has its softest setting.
+    """
     family = control.law.removesuffix("_on_off")
-    share = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": control.skyhook_share}[family]
-    sky, ground = share, 1.0 - share
+    shares = {"skyhook": 1.0, "groundhook": 0.0, "hybrid": control.skyhook_share}
+    sky, ground = (shares[family], 1.0 - shares[family]) if control.law != FMU else (0.0, 0.0)
     if family == control.law:
         sky, ground = sky * control.skyhook_damping, ground * control.groundhook_damping
     limits, times = (control.minimum_damping, control.maximum_damping), (control.control_period, control.delay)
@@ -72,9 +83,10 @@ def in_steps(numbers: npt.ArrayLike, timestep: float) -> npt.NDArray[Any]:
         timestep: time step [s]; period and delay are rounded to whole steps, the period to at least one.
 
     Returns:
-        Records of `SETTING`, (...).
+        Records of `SETTING`, (...), without controllers.
     """
-    records = np.array(numbers, dtype=float)
+    values = np.asarray(numbers, dtype=float)
+    records = np.concatenate([values, np.zeros((*values.shape[:-1], 1))], axis=-1)
     records[..., 5:7] = np.rint(records[..., 5:7] / timestep)
     records[..., 5] = np.maximum(records[..., 5], 1.0)
     records[..., 7] = np.where(records[..., 7] < AT_ONCE, records[..., 7] * timestep, np.inf)
@@ -94,6 +106,9 @@ def demanded(numbers: Any, body: Any, wheel: Any) -> Any:
         numbers: record from `in_steps`.
         body, wheel: vb and vw [m/s].
     """
+    if numbers["controller"] > 0.0:
+        coefficient = result_at(numbers["controller"], body, wheel)
+        return np.minimum(np.maximum(coefficient, numbers["softest"]), numbers["firmest"])
     speed, way = np.abs(body - wheel), np.sign(body - wheel)
     softest, firmest, sky, ground = numbers["softest"], numbers["firmest"], numbers["sky"], numbers["ground"]
     if numbers["on_off"] > 0.0:

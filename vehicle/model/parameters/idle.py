@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from vehicle.model.parameters.force_elements import Bushing, Hydromount
 from vehicle.model.parameters.paths import meant
-from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
+from vehicle.model.parameters.semi_active_damper import FMU, SemiActiveDamper
 from vehicle.model.parameters.vehicle import Vehicle
 
 
@@ -32,6 +32,8 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
             off[f"{path}.viscous"] = (True, f"{path}.viscous_law = linear or degressive")
         for name in (entry.name for entry in dataclasses.fields(SemiActiveDamper) if entry.name != "law"):
             off[f"{path}.control.{name}"] = (passive, f"{path}.control.law = skyhook or another law")
+        with_fmu = law.controlled is not None and law.controlled.law == FMU
+        off[f"{path}.control.fmu"] = (not with_fmu, f"{path}.control.law = fmu")
         off[f"{path}.degressive_"] = (law.viscous_law != "degressive", f"{path}.viscous_law = degressive")
     for connection in vehicle.composition.connections:
         if isinstance(connection.law, Bushing | Hydromount):

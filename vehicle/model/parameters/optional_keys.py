@@ -13,10 +13,14 @@ from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
 from vehicle.model.parameters.force_elements import Bushing, Damper, ForceTable, Hydromount, MainSpring, Tyre
 from vehicle.model.parameters.instance import instances
+from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.names import SIDE_SIGN
 
 WITH_FILES = (Damper, ForceTable, MainSpring, Bushing)
 """Parameter classes whose numbers may be in a file that `curve` names."""
+
+TABLES = (ForceTable, SemiActiveDamper)
+"""Parameter classes of tables inside the table of an element."""
 
 
 def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
@@ -63,15 +67,17 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
 
 
 def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
-    """Yield the keys of a parameter class that have a default, or all keys; tables of points key by key."""
+    """Yield the keys of a parameter class that have a default, or all keys; inner tables key by key."""
     hints = typing.get_type_hints(parameters)
     if parameters in WITH_FILES:
         yield "curve"
     for entry in dataclasses.fields(parameters):
         needed = entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
-        if ForceTable in typing.get_args(hints[entry.name]):
+        inner = next((kind for kind in TABLES if kind in typing.get_args(hints[entry.name])), None)
+        if inner is not None:
             yield entry.name
-            yield from (f"{entry.name}.{key}" for key in _keys(ForceTable, everything=True))
+            keys = _keys(inner, everything=everything or inner is ForceTable)
+            yield from (f"{entry.name}.{key}" for key in keys)
         elif everything or not needed:
             yield entry.name
 

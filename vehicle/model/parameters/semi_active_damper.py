@@ -13,6 +13,14 @@ PASSIVE = "passive"
 LAWS = ("skyhook_on_off", "skyhook", "groundhook_on_off", "groundhook", "hybrid_on_off", "hybrid")
 """Names of the laws of `vehicle.model.laws.control_laws`."""
 
+FMU = "fmu"
+"""Name of the law of a controller in an FMU."""
+
+CONTROLLER_PARAMETERS = (
+    *("minimum_damping", "maximum_damping", "skyhook_damping", "groundhook_damping", "skyhook_share"),
+)
+"""Values of the table that a parameter of the same name in a controller FMU takes."""
+
 AT_ONCE = 1e12
 """Rate of the coefficient [N s/m per s] that means no limit."""
 
@@ -25,7 +33,8 @@ class SemiActiveDamper:
     remain.
     """
 
-    law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS), default=PASSIVE)
+    law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS, FMU), default=PASSIVE)
+    fmu: str | None = quantity("-", "FMU of the controller, of the law fmu", is_file=True, default=None)
     minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
     maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0, at_most=1e6)
     skyhook_damping: float = quantity("N s/m", "damper between body and sky", at_least=0.0)
@@ -52,6 +61,8 @@ class SemiActiveDamper:
 
     def __post_init__(self) -> None:
         validate(self)
+        if self.law == FMU and self.fmu is None:
+            raise ConfigurationError('SemiActiveDamper.fmu: missing; law = fmu needs it: fmu = "FILE.fmu"')
         if self.maximum_damping < self.minimum_damping:
             raise ConfigurationError(
                 f"SemiActiveDamper.maximum_damping: found {self.maximum_damping!r} N s/m, "

@@ -29,6 +29,7 @@ from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
+from vehicle.model.laws.controller_fmu import require_controllers
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import assignments, full_path
 from vehicle.model.parameters.shipped import vehicle_file
@@ -237,9 +238,11 @@ class Car:
         Raises:
             ConfigurationError: the car cannot be built, is unstable, its time step is too large, or the reduced engine
                 does not contain an element of it.
+            DataError, MissingPartError: the FMU of a controller cannot be used.
         """
         if engine in self._checked:
             return
+        require_controllers([damper.law.controlled for damper in self.vehicle.composition.dampers])
         if engine == "mujoco" or (engine == "auto" and self.needs_mujoco):
             self.stepped()
         elif np.any(grows(self.poles.poles)):

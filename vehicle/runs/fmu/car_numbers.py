@@ -21,10 +21,11 @@ from vehicle.engines.reduced.feedback import sensor_outputs
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors, car_factors
 from vehicle.errors import ConfigurationError
-from vehicle.model.laws.control_laws import SETTING, in_steps, pack
+from vehicle.model.laws.control_laws import NUMBERS, in_steps, pack
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.force_elements import Damper
+from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.runs.fmu.output_rows import Output, car_outputs, watched_outputs
 
 if TYPE_CHECKING:
@@ -57,9 +58,6 @@ PARAMETERS = {
     "control": "",
 }
 """Tunable parameters of a damper, with units, in the order of runtime/car.h."""
-
-CONTROL_NUMBERS = len(SETTING.names or ())
-"""Numbers of a control law."""
 
 COMMANDS = {"force": "N", "coefficient": "N s/m"}
 """Commands of a damper, with units."""
@@ -112,7 +110,7 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)
     sensors = sensor_outputs(model, laws, columns, car.static.tyre_load if rolling else None)
     controlled = {index: pack(law.controlled) for index, law in enumerate(laws) if law.controlled}
-    controls = in_steps(np.reshape(list(controlled.values()), (-1, CONTROL_NUMBERS)), step)
+    controls = in_steps(np.reshape(list(controlled.values()), (-1, NUMBERS)), step)
     outputs, rows = car_outputs(car, channels)
     watched, limits, notices = watched_outputs(car)
     nodes, parameters = _law_nodes(laws), np.array([_parameters(law) for law in laws])
@@ -124,7 +122,7 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
         nodes,
         _damper_numbers(laws, list(controlled)),
         parameters,
-        np.array([list(record) for record in controls]).reshape(-1, CONTROL_NUMBERS),
+        np.array([list(record)[:NUMBERS] for record in controls]).reshape(-1, NUMBERS),
         factors.sliders.stiffness,
         factors.sliders.limit,
         factors.sliders.dampers,
@@ -191,6 +189,11 @@ def _require_known(name: str, law: Damper) -> None:
         raise ConfigurationError(
             f"{name}.friction_law: an FMU can have {', '.join(FRICTION_CODES)}, not {law.friction_law!r}; set one of "
             "them"
+        )
+    if law.controlled is not None and law.controlled.law == FMU:
+        raise ConfigurationError(
+            f"{name}.control.law: found {FMU!r}; an FMU of a car does not contain another FMU: set law = skyhook, and "
+            f"in the other simulator {name}_control = 0 and {name}_coefficient_command from the controller"
         )
     for entry in dataclasses.fields(law):
         value = getattr(law, entry.name)

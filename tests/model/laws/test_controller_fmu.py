@@ -1,0 +1,187 @@
+"""Controllers in FMUs: the call in both forms against the own law, its timing, and FMUs that are refused."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[fmu]'")
+
+from tests.model.laws.controller_files import NUMBERS, PARAMETERS, controller_fmu
+from tools.controller_library import FOLDER, digests
+from vehicle.errors import ConfigurationError, DataError, SimulationError
+from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
+from vehicle.model.laws.controller_call import NOT_FINITE, READINGS, SET, STATUS, TERMINATED, controller_step
+from vehicle.model.laws.controller_fmu import Controller, controllers, read_controller
+from vehicle.model.laws.function_address import result_at
+from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+
+if sys.platform != "linux":
+    pytest.skip("the library of the tests is for Linux", allow_module_level=True)
+
+SKYHOOK = replace(half_car_rider_parameters().semi_active, law="skyhook")
+STEP = 1e-3
+VERSIONS = pytest.mark.parametrize("version", ["2", "3"])
+
+
+def started(path, control=SKYHOOK, messages=None):
+    return Controller(read_controller(path), "damper_fr", control, STEP, [] if messages is None else messages)
+
+
+def speeds(count=200):
+    return np.random.default_rng(7).normal(size=(count, 2)) * 0.3
+
+
+def test_the_library_is_built_from_this_source():
+    stamp = json.loads((FOLDER / "stamp.json").read_text())
+    assert stamp == digests(), "build the library again: python tools/controller_library.py"
+
+
+@VERSIONS
+def test_both_forms_of_the_call_equal_the_own_law(tmp_path, version):
+    path = controller_fmu(tmp_path / "skyhook.fmu", version)
+    record = in_steps(pack(SKYHOOK), STEP)
+    wanted = [float(demanded(record, body, wheel)) for body, wheel in [*speeds(), (0.0, 0.0)]]
+    compiled, interpreted = started(path), started(path)
+    for n, (body, wheel) in enumerate([*speeds(), (0.0, 0.0)]):
+        assert result_at(float(compiled.memory.ctypes.data), body, wheel) == pytest.approx(wanted[n], rel=1e-14)
+        assert controller_step(interpreted.memory.ctypes.data, body, wheel) == pytest.approx(wanted[n], rel=1e-14)
+    np.testing.assert_array_equal(compiled.memory[READINGS], len(wanted))
+    compiled.close()
+    interpreted.close()
+
+
+@VERSIONS
+def test_a_damper_with_period_delay_and_rate_equals_the_own_law(tmp_path, version):
+    path = str(controller_fmu(tmp_path / "skyhook.fmu", version))
+    own = replace(SKYHOOK, control_period=3e-3, delay=2e-3, rate=2e5)
+    record, outside = (in_steps(pack(control), STEP) for control in (own, replace(own, law="fmu", fmu=path)))
+    past, other = at_rest(record), at_rest(outside)
+    laws = np.array([outside])
+    with controllers(laws, [("damper_fr", replace(own, law="fmu", fmu=path))], STEP) as check:
+        for step, (body, wheel) in enumerate(speeds()):
+            act(record, step, body, wheel, past)
+            act(laws[0], step, body, wheel, other)
+            assert other[PRESENT] == pytest.approx(past[PRESENT], rel=1e-13)
+        check()
+    assert laws["controller"][0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("sensor", "wanted"),
+    [
+        ("damper_velocity", lambda body, wheel: body - wheel),
+        ("body_acceleration", lambda body, wheel: np.diff(body, prepend=body[:1]) / STEP),
+        ("wheel_acceleration", lambda body, wheel: np.diff(wheel, prepend=wheel[:1]) / STEP),
+    ],
+)
+def test_values_and_times_of_the_sensors(tmp_path, sensor, wanted):
+    # The output is the input itself.
+    numbers = {**NUMBERS, "coefficient": NUMBERS[sensor]}
+    path = controller_fmu(tmp_path / "sensor.fmu", inputs=("wheel_velocity", sensor), references=numbers)
+    controller = started(path)
+    found = [result_at(float(controller.memory.ctypes.data), body, wheel) for body, wheel in speeds()]
+    np.testing.assert_allclose(found, wanted(*speeds().T), rtol=1e-14, atol=1e-12)
+    controller.close()
+
+
+def test_the_coefficient_stays_within_the_damper(tmp_path):
+    # Without parameters the gain of the FMU is 1000, and its limits are wider than those of the damper.
+    path = controller_fmu(tmp_path / "wide.fmu", parameters=())
+    control = replace(SKYHOOK, minimum_damping=400.0, maximum_damping=600.0, law="fmu", fmu=str(path))
+    laws = np.array([in_steps(pack(control), STEP)])
+    with controllers(laws, [("damper_fr", control)], STEP):
+        found = [float(demanded(laws[0], body, wheel)) for body, wheel in speeds()]
+    assert min(found) == 400.0 and max(found) == 600.0
+    assert any(400.0 < value < 600.0 for value in found)
+
+
+def test_instances_and_runs_are_independent(tmp_path):
+    path = controller_fmu(tmp_path / "skyhook.fmu")
+    firm, soft = started(path, replace(SKYHOOK, skyhook_damping=5000.0)), started(path)
+    first = [result_at(float(each.memory.ctypes.data), 0.1, -0.1) for each in (firm, soft)]
+    assert first == pytest.approx([2500.0, 1500.0], rel=1e-14)
+    # A library of its own each: also global variables would be separate.
+    assert firm.memory[SET] != soft.memory[SET]
+    again = started(path)
+    assert result_at(float(again.memory.ctypes.data), 0.1, -0.1) == first[1]
+    for each in (firm, soft, again):
+        each.close()
+
+
+@VERSIONS
+@pytest.mark.parametrize(
+    ("fault", "status", "text"),
+    [
+        (0.25, NOT_FINITE, "returns a coefficient that is not a finite number"),
+        (0.5, TERMINATED, "asks to end the simulation"),
+        (0.75, 3, "reports an error"),
+    ],
+)
+def test_a_failure_in_a_run_is_said_with_its_time(tmp_path, version, fault, status, text):
+    if fault == 0.5 and version == "2":
+        pytest.skip("FMI 2.0 has no such answer")
+    path = controller_fmu(tmp_path / "faulty.fmu", version, parameters=(*PARAMETERS, "skyhook_share"))
+    controller = started(path, replace(SKYHOOK, skyhook_share=fault))
+    answers = [result_at(float(controller.memory.ctypes.data), 0.3, 0.1) for _ in range(120)]
+    assert len(set(answers)) == 1 and controller.memory[STATUS] == status
+    with pytest.raises(SimulationError) as caught:
+        controller.check()
+    message = str(caught.value)
+    assert f"damper_fr: controller faulty.fmu {text} at t = 0.1000 s" in message
+    assert ("with the message 'the controller fails from 0.1 s on'" in message) == (fault == 0.75)
+    assert "control_period = 0.001 s" in message
+    controller.close()
+
+
+REFUSED: dict[str, tuple[dict[str, Any], type[Exception], str]] = {
+    "model exchange": ({"form": "ModelExchange"}, DataError, "is not for co-simulation; export it as FMI 2.0 or 3.0"),
+    "platform": ({"platform": "win64"}, DataError, "has no library for linux64, but for win64; export it on this"),
+    "inputs": (
+        {"inputs": ("body_velocity", "v_wheel")},
+        DataError,
+        "found inputs body_velocity, v_wheel and outputs coefficient; inputs must be among body_velocity, ",
+    ),
+    "no input": ({"inputs": ()}, DataError, "found inputs none"),
+    "output": ({"output": "c"}, DataError, "outputs c; inputs must be among body_velocity"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_an_unsuitable_fmu_is_refused_with_the_remedy(tmp_path, case):
+    options, error, text = REFUSED[case]
+    path = controller_fmu(tmp_path / "bad.fmu", **options)
+    with pytest.raises(error) as caught:
+        read_controller(path)
+    assert str(caught.value).startswith(f"controller {path}: ") and text in str(caught.value)
+
+
+def test_a_file_that_is_missing_or_no_fmu_is_refused(tmp_path):
+    with pytest.raises(ConfigurationError, match="there is no such file; set the path of an FMU"):
+        read_controller(tmp_path / "none.fmu")
+    (tmp_path / "text.fmu").write_text("no archive")
+    with pytest.raises(DataError, match=r"cannot be read as an FMU .*; export it as FMI 2\.0 or 3\.0 co-simulation"):
+        read_controller(tmp_path / "text.fmu")
+
+
+@VERSIONS
+def test_an_fmu_that_does_not_start_is_refused(tmp_path, version):
+    path = controller_fmu(tmp_path / "other.fmu", version, token="{another}")
+    with pytest.raises(
+        SimulationError, match=r"damper_fr: controller other\.fmu cannot be started \(.*; try the FMU alone"
+    ):
+        started(path)
+
+
+def test_without_fmpy_the_extra_is_named(tmp_path, monkeypatch):
+    from vehicle.errors import MissingPartError
+
+    path = controller_fmu(tmp_path / "skyhook.fmu")
+    monkeypatch.setitem(sys.modules, "fmpy", None)
+    with pytest.raises(MissingPartError, match=r"needs FMPy.*pip install 'vehicle-on-shaker\[fmu\]'"):
+        read_controller(path)

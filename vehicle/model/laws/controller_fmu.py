@@ -1,0 +1,298 @@
+"""Controller of a semi-active damper in an FMU: FMI 2.0 or 3.0 co-simulation, an instance for each damper and run.
+
+`controller_call` has names and timing of the variables. Each instance has its own copy of the library, so that a
+library with global variables serves several dampers. An instance is made at the beginning of a run and freed at its
+end, so that runs are independent. FMPy reads and loads the FMU; it is imported only for a car with such a controller.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
+from vehicle.model.laws import controller_call as call
+from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
+
+REALS = ("Real", "Float64")
+"""Types of the variables in FMI 2.0 and 3.0."""
+
+STATUS = {
+    2: "discards the step",
+    3: "reports an error",
+    4: "reports a fatal error",
+    5: "has not finished its step (asynchronous steps are not supported)",
+    call.NOT_FINITE: f"returns a {call.COEFFICIENT} that is not a finite number",
+    call.TERMINATED: "asks to end the simulation",
+}
+"""Meaning of the status of a failed call."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ControllerFile:
+    """Checked FMU of a controller.
+
+    Attributes:
+        path: the file.
+        description: model description of FMPy.
+        sensors: index in `SENSORS` of each input. inputs: value references of the inputs.
+        output: value reference of the coefficient.
+        parameters: value references of the parameters with a name in `CONTROLLER_PARAMETERS`.
+    """
+
+    path: Path
+    description: Any
+    sensors: tuple[int, ...]
+    inputs: tuple[int, ...]
+    output: int
+    parameters: Mapping[str, int]
+
+
+def read_controller(path: Path) -> ControllerFile:
+    """Read and check the FMU of a controller.
+
+    Args:
+        path: the file.
+
+    Raises:
+        ConfigurationError: the file is missing.
+        DataError: the file is no FMU for co-simulation, its variables have other names, or it has no library for this
+            platform.
+        MissingPartError: FMPy is not installed.
+    """
+    fmpy = _fmpy()
+    if not path.is_file():
+        raise ConfigurationError(f"controller {path}: there is no such file; set the path of an FMU")
+    try:
+        description = fmpy.read_model_description(str(path), validate=False)
+        platforms = fmpy.supported_platforms(str(path))
+    except Exception as error:
+        raise DataError(
+            f"controller {path}: cannot be read as an FMU ({error}); export it as FMI 2.0 or 3.0 co-simulation"
+        ) from None
+    if description.fmiVersion == "1.0" or description.coSimulation is None:
+        form = "of FMI 1.0" if description.fmiVersion == "1.0" else "not for co-simulation"
+        raise DataError(f"controller {path}: the FMU is {form}; export it as FMI 2.0 or 3.0 co-simulation")
+    if fmpy.platform not in platforms:
+        raise DataError(
+            f"controller {path}: the FMU has no library for {fmpy.platform}, but for {_listed(platforms)}; "
+            "export it on this platform, or compile its sources: python -m fmpy compile FILE.fmu"
+        )
+    return _with_variables(path, description)
+
+
+def _with_variables(path: Path, description: Any) -> ControllerFile:
+    """Return a controller with the references of its variables.
+
+    Raises:
+        DataError: an input or the output is missing or has another name or type.
+    """
+    variables = {entry.name: entry for entry in description.modelVariables}
+    numbers = {name: entry for name, entry in variables.items() if entry.type in REALS and not entry.dimensions}
+    inputs = [name for name, entry in variables.items() if entry.causality == "input"]
+    outputs = [name for name, entry in numbers.items() if entry.causality == "output"]
+    wrong = [name for name in inputs if name not in call.SENSORS or name not in numbers]
+    if wrong or not inputs or call.COEFFICIENT not in outputs:
+        raise DataError(
+            f"controller {path}: found inputs {_listed(inputs)} and outputs {_listed(outputs)}; "
+            f"inputs must be among {', '.join(call.SENSORS)}, and an output must be {call.COEFFICIENT} [N s/m], all "
+            "scalar real numbers: rename the variables in the tool of the controller"
+        )
+    return ControllerFile(
+        path=path,
+        description=description,
+        sensors=tuple(call.SENSORS.index(name) for name in inputs),
+        inputs=tuple(numbers[name].valueReference for name in inputs),
+        output=numbers[call.COEFFICIENT].valueReference,
+        parameters={
+            name: numbers[name].valueReference
+            for name in CONTROLLER_PARAMETERS
+            if name in numbers and numbers[name].causality == "parameter"
+        },
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names for a message."""
+    return ", ".join(names) or "none"
+
+
+class Controller:
+    """Instance of a controller FMU for one damper and run, initialized at time 0.
+
+    Args:
+        file: the FMU.
+        damper: name of the damper.
+        control: values of its table.
+        period: communication step [s].
+        messages: list to which the messages of the FMU are appended.
+
+    Raises:
+        SimulationError: the library cannot be loaded, or the FMU refuses to start.
+    """
+
+    def __init__(
+        self, file: ControllerFile, damper: str, control: SemiActiveDamper, period: float, messages: list[str]
+    ) -> None:
+        self.file, self.damper, self.period, self.messages = file, damper, period, messages
+        self.memory: npt.NDArray[np.int64] = np.zeros(call.SIZE, dtype=np.int64)
+        self.folder = tempfile.mkdtemp(prefix="controller-")
+        self.slave: Any = None
+        try:
+            self._start(control)
+        except Exception as error:
+            self.close()
+            raise SimulationError(
+                f"{damper}: controller {file.path.name} cannot be started ({error}){self._last_message()}; try "
+                f"the FMU alone: python -m fmpy simulate {file.path.name}"
+            ) from None
+
+    def _start(self, control: SemiActiveDamper) -> None:
+        """Load and initialize the FMU, and write the memory for the calls."""
+        fmpy, file, second = _fmpy(), self.file, self.file.description.fmiVersion == "2.0"
+        fmpy.extract(str(file.path), self.folder)
+        slave = self.slave = fmpy.instantiate_fmu(
+            self.folder, file.description, "CoSimulation", logger=self._logger(second), require_functions=False
+        )
+        if file.parameters:
+            write = slave.setReal if second else slave.setFloat64
+            write([*file.parameters.values()], [getattr(control, name) for name in file.parameters])
+        if second:
+            slave.setupExperiment(startTime=0.0)
+            slave.enterInitializationMode()
+        else:
+            slave.enterInitializationMode(startTime=0.0)
+        slave.exitInitializationMode()
+        names = ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal") if second else (
+            *("fmi3SetFloat64", "fmi3DoStep", "fmi3GetFloat64"),
+        )  # fmt: skip
+        self.memory[call.CALL] = call.compiled_step().address
+        self.memory[call.SET : call.GET + 1] = [
+            ctypes.cast(getattr(slave.dll, name), ctypes.c_void_p).value or 0 for name in names
+        ]
+        self.memory[call.INSTANCE] = int(getattr(slave.component, "value", slave.component))
+        self.memory[call.COUNT] = len(file.inputs)
+        self.memory[call.SOURCES : call.SOURCES + len(file.sensors)] = file.sensors
+        references = self.memory.view(np.uint32)
+        references[2 * call.REFERENCES :][: len(file.inputs)] = file.inputs
+        references[2 * call.OUTPUT_REFERENCE] = file.output
+        numbers = self.memory.view(np.float64)
+        numbers[call.PERIOD], numbers[call.OUTPUT] = self.period, control.minimum_damping
+
+    def _logger(self, second: bool) -> Callable[..., None]:
+        """Return the function that takes the messages of warnings and errors."""
+        # FMPy gives the messages of all FMI 2.0 instances to the newest instance: all instances have the same list.
+        if second:
+            return lambda environment, name, status, category, text: self.messages.append(text.decode(errors="replace"))
+        from fmpy.fmi3 import fmi3LogMessageCallback
+
+        return fmi3LogMessageCallback(  # type: ignore[no-any-return]
+            lambda environment, status, category, text: self.messages.append(text.decode(errors="replace"))
+        )
+
+    def _last_message(self) -> str:
+        """Return the last message of the FMU for an error."""
+        return f", with the message {self.messages[-1].strip()!r}" if self.messages else ""
+
+    def check(self) -> None:
+        """Check that all calls have succeeded.
+
+        Raises:
+            SimulationError: a call has failed; with damper, time and the last message of the FMU.
+        """
+        status = int(self.memory[call.STATUS])
+        if status <= call.WARNING:
+            return
+        step_size = getattr(self.file.description.defaultExperiment, "stepSize", None)
+        hint = f"its communication step is control_period = {self.period:g} s"
+        if step_size:
+            hint += f", the step in its model description {step_size} s"
+        raise SimulationError(
+            f"{self.damper}: controller {self.file.path.name} {STATUS.get(status, f'returns the status {status}')} at "
+            f"t = {self.memory[call.READINGS] * self.period:.4f} s{self._last_message()}; {hint}: check the step "
+            "and the inputs"
+        )
+
+    def close(self) -> None:
+        """Free the instance, and remove its copy of the library."""
+        slave, self.slave = self.slave, None
+        if slave is not None:
+            slave.freeInstance()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+@contextmanager
+def controllers(
+    laws: npt.NDArray[Any], dampers: Sequence[tuple[str, SemiActiveDamper]], timestep: float
+) -> Iterator[Callable[[], None]]:
+    """Start the controller FMUs of a run, and free them at its end.
+
+    Args:
+        laws: records of the controlled dampers; the addresses of the controllers are in them during the run; (k,).
+        dampers: name and control of each of them.
+        timestep: time step of the engine [s].
+
+    Yields:
+        Function that raises a SimulationError if a controller has failed.
+
+    Raises:
+        ConfigurationError, DataError, MissingPartError, SimulationError: see `read_controller` and `Controller`.
+    """
+    files: dict[str, ControllerFile] = {}
+    messages: list[str] = []
+    with ExitStack() as stack:
+        started = []
+        stack.callback(laws["controller"].fill, 0.0)
+        for index, (name, control) in enumerate(dampers):
+            if control.law == FMU and control.fmu is not None:
+                if control.fmu not in files:
+                    files[control.fmu] = read_controller(Path(control.fmu))
+                period = float(laws["period"][index]) * timestep
+                controller = Controller(files[control.fmu], name, control, period, messages)
+                stack.callback(controller.close)
+                started.append(controller)
+                laws["controller"][index] = float(controller.memory.ctypes.data)
+
+        def check() -> None:
+            for controller in started:
+                controller.check()
+
+        yield check
+
+
+def require_controllers(controls: Iterable[SemiActiveDamper | None]) -> None:
+    """Check the FMUs of controllers before a run.
+
+    Args:
+        controls: controls of the dampers; None for a passive damper.
+
+    Raises:
+        ConfigurationError, DataError, MissingPartError: see `read_controller`.
+    """
+    for path in dict.fromkeys(control.fmu for control in controls if control and control.law == FMU):
+        read_controller(Path(path or ""))
+
+
+def _fmpy() -> Any:
+    """Import FMPy.
+
+    Raises:
+        MissingPartError: FMPy is not installed.
+    """
+    try:
+        import fmpy
+    except ImportError:
+        raise MissingPartError(
+            "a controller in an FMU needs FMPy, which is not installed; install it with: pip install "
+            "'vehicle-on-shaker[fmu]'"
+        ) from None
+    return fmpy
