@@ -32,6 +32,7 @@ SUBJECTS = {
     "Linear system": "Matrices, poles, natural modes and participation of the linearised car.",
     "Quarter and half cars": "Lumped models, bumps, settling, road holding.",
     "Semi-active dampers": "Skyhook, groundhook and hybrid control, in both engines and the lumped half car.",
+    "Exported FMUs": "Cars written as FMUs of FMI 2.0 and 3.0 (a C program), against the reduced engine.",
     "FRF estimation and spectra": "FRF, coherence, local rational models, spectra, record alignment.",
     "Comfort, ISO 2631": "Frequency weightings, weighted RMS, MTVV, dose values, SEAT value.",
     "Load histories": "Rainflow counts and equivalent amplitudes.",

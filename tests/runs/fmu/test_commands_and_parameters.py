@@ -11,6 +11,7 @@ pytest.importorskip("numba", reason="the reduced engine needs it")
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[oracles]'")
 
 from tests.runs.fmu.master import Instance, drive, plates_of, written
+from tests.validation import validated
 from vehicle.runs.car import Car, Road
 from vehicle.signals.excitation.signal import Signal
 
@@ -42,7 +43,11 @@ def test_friction_is_that_of_the_car_with_this_friction(tmp_path, high_piece):
     wanted = of_car(tmp_path, [*laws, "front.damper.coulomb_friction=60"], high_piece, {})
     changed = ["front.damper.coulomb_friction=20", "front.damper.stribeck_velocity=0.1"]
     values = of_both("coulomb_friction", 60.0) | of_both("stribeck_velocity", 0.03)
-    assert difference(of_car(tmp_path, [*laws, *changed], high_piece, values), wanted) < 1e-10
+    validated(
+        "Exported FMUs", "friction set as parameters: deviation from the car with this friction over the peak",
+        difference(of_car(tmp_path, [*laws, *changed], high_piece, values), wanted), 0.0, abs=1e-10,
+        source="second derivation: another FMU with these values in its resources",
+    )  # fmt: skip
     assert difference(of_car(tmp_path, [*laws, *changed], high_piece, {}), wanted) > 0.01
 
 
@@ -74,7 +79,11 @@ def test_a_force_command_acts_as_on_the_poles(tmp_path):
     xi = -300.0 * model.force[:, index, None] * np.expm1(np.multiply.outer(model.poles, time)) / model.poles[:, None]
     shapes = model.outputs(["seat_rail_acc_z", "knuckle_fl_acc_z"]).poles
     wanted = np.vstack([(shapes @ xi).real, (model.slip[index] @ xi).real])
-    assert difference(found, wanted) < 1e-10
+    validated(
+        "Exported FMUs", "constant force of a damper as a command: deviation over the peak",
+        difference(found, wanted), 0.0, abs=1e-10,
+        source="closed form: step response of the poles",
+    )  # fmt: skip
     # A pull of the damper lifts the wheel and lowers the body.
     assert found[1, 20] > 0.0 > found[0, 20]
 
@@ -87,7 +96,11 @@ def test_steps_of_a_millisecond_equal_short_steps(tmp_path):
     plates = plates_of(signal, SECONDS)
     short = drive(Instance(fmu, started=False), signal, plates, OUTPUTS, 5)
     long = drive(Instance(fmu, started=False), signal, plates[::5], OUTPUTS, 1, 1e-3)
-    assert difference(long, short) < 1e-10
+    validated(
+        "Exported FMUs", "communication steps of 1 ms on a road: deviation from steps of 0.2 ms over the peak",
+        difference(long, short), 0.0, abs=1e-10,
+        source="second derivation: shorter communication steps",
+    )  # fmt: skip
 
 
 def test_a_lifted_tyre_gives_one_warning(tmp_path):
