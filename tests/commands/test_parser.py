@@ -19,6 +19,7 @@ LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
         "a road of a class": (["--road", "road.csv"], ["--road", "C"]),
         "a film": (["--input", "low.csv"], ["--input", "low.csv", "--video"]),
         "a measurement": (["--input", "low.csv"], ["--input", "low.csv", "--measured", "m.uff"]),
+        "a report": (["--input", "low.csv"], ["--input", "low.csv", "--report"]),
         "a file of signals or a recorded road": (["--road", "C"], ["--road", "r.csv", "--speed", "channel:v"]),
         "a file of signals or of a measurement": (["--road", "C"], ["--road", "C", "--measured", "m.uff"]),
     },
@@ -26,6 +27,7 @@ LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
         "a file of signals": (["--road", "C", "--road", "D"], ["--input", "low.csv"]),
         "a road": (["--input", "low.csv"], ["--road", "C"]),
         "a road of a class": (["--road", "a.csv", "--road", "b.csv"], ["--road", "a.csv", "--road", "C"]),
+        "a report": ([], ["--report"]),
         "going on": ([], ["--resume"]),
     },
     "optimise": {

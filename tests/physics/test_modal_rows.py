@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from tests.engines.simulation.row_model import (
-    QUARTER_TURN,
+    TURN,
     Stepper,
     add_bushing,
-    add_mode,
+    add_flexible_body,
     element_law,
     empty_spec,
 )
@@ -22,22 +22,12 @@ BOX = Superelement(**box_fields())
 STEP = 2e-4  # w h = 0.05 at the highest of the four modes
 NODE, OTHER = "corner_7", "corner_2"
 FREE = element_law([0.0] * 3)  # a bushing without stiffness: only its preload acts
-TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def free_box(force, *, turned=False, law=FREE, ratio=0.02, carrier=False):
     """Return the free box, pulled at a node by the preload of a bushing to the ground; its CoG is the origin."""
     spec = empty_spec(STEP)
-    body = spec.worldbody.add_body(name="body")
-    body.explicitinertial = True
-    tensor = BOX.inertia
-    body.mass, body.ipos = BOX.mass, np.zeros(3)
-    body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
-    if turned:
-        body.quat = QUARTER_TURN
-    body.add_freejoint(name="body")
-    for number, frequency in enumerate(BOX.frequencies, start=1):
-        add_mode(spec, number, 2.0 * np.pi * frequency, ratio)
+    body = add_flexible_body(spec, BOX, turned=turned, ratio=ratio)
     arm = BOX.positions[BOX.node_index(NODE)] - BOX.cog
     ground = TURN @ arm if turned else arm
     if carrier:

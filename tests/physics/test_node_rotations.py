@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 import scipy
 
-from tests.engines.simulation.row_model import QUARTER_TURN, Stepper, add_bushing, add_mode, element_law, empty_spec
+from tests.engines.simulation.row_model import (
+    QUARTER_TURN,
+    TURN,
+    Stepper,
+    add_bushing,
+    add_flexible_body,
+    element_law,
+    empty_spec,
+)
 from tests.model.flexbody.box_body import MASSES, PAIRS, POSITIONS, SECTION, box_fields
 from tests.validation import validated
 from vehicle.commands import body as body_command
@@ -29,7 +37,6 @@ NODE, HELD = 6, {0: 2e5, 3: 1e5, 5: 3e5}
 """Corner with the rotational spring; corners on springs to the ground [N/m], for a static response."""
 TWIST = 2e4
 """As stiff as the beams, so that 10 % of it would show in the frequencies."""
-TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def all_modes():
@@ -46,16 +53,7 @@ BOX = all_modes()
 def held_box(*, twist=TWIST, carrier=True, turned=False, rotations=True, preload=None, step=1e-4):
     """Return the box on three springs, and between a corner and the ground a spring against rotation."""
     spec = empty_spec(step)
-    body = spec.worldbody.add_body(name="body")
-    body.explicitinertial = True
-    tensor = BOX.inertia
-    body.mass, body.ipos = BOX.mass, np.zeros(3)
-    body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
-    if turned:
-        body.quat = QUARTER_TURN
-    body.add_freejoint(name="body")
-    for number, frequency in enumerate(BOX.frequencies, start=1):
-        add_mode(spec, number, 2.0 * np.pi * frequency)
+    body = add_flexible_body(spec, BOX, turned=turned)
     for node in (*HELD, NODE):
         arm = BOX.positions[node] - BOX.cog
         ground = TURN @ arm if turned else arm

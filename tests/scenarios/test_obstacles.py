@@ -13,31 +13,15 @@ from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.output.run_obstacle import obstacle_values
 
-RIGID = """
-base = "focus_road_seated"
-name = "rigid"
-[body]
-flexible = false
-attachment_flexibility = false
-"""
-
 
 @pytest.fixture(scope="module")
-def car(tmp_path_factory):
-    """A car with an occupant on a rigid body, which is quick to build."""
-    path = tmp_path_factory.mktemp("car") / "rigid.toml"
-    path.write_text(RIGID, encoding="utf-8")
-    return path
+def passage(rigid_car):
+    return Passage(vehicle=rigid_car, overrides=(), engine="mujoco", obstacle="cleat:20x50", speed=30.0)
 
 
-@pytest.fixture(scope="module")
-def passage(car):
-    return Passage(vehicle=car, overrides=(), engine="mujoco", obstacle="cleat:20x50", speed=30.0)
-
-
-def test_a_short_study(car, tmp_path):
+def test_a_short_study(rigid_car, tmp_path):
     folder = tmp_path / "obstacles"
-    arguments = ["--output", str(folder), "--vehicle", str(car), "--speeds", "20,40", "--engine", "reduced"]
+    arguments = ["--output", str(folder), "--vehicle", str(rigid_car), "--speeds", "20,40", "--engine", "reduced"]
     assert main([*arguments, "--obstacle", "cleat:10x50", "--obstacle", "speed_bump"]) == 0
     content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     rows = {(row["obstacle"], row["speed_kmh"]): row for row in content["passages"]}

@@ -14,26 +14,10 @@ from vehicle.model.parameters.force_elements import Bushing
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
 
-SEATED = """
-base = "focus_road_seated"
-name = "rigid"
-[body]
-flexible = false
-attachment_flexibility = false
-"""
 
-
-@pytest.fixture(scope="module")
-def car(tmp_path_factory):
-    """The car with its occupant on a rigid body, which is quick to build."""
-    path = tmp_path_factory.mktemp("car") / "rigid.toml"
-    path.write_text(SEATED, encoding="utf-8")
-    return path
-
-
-def test_a_short_study(car, tmp_path):
+def test_a_short_study(rigid_car, tmp_path):
     folder = tmp_path / "road"
-    assert main(["--output", str(folder), "--quick", "--vehicle", str(car)]) == 0
+    assert main(["--output", str(folder), "--quick", "--vehicle", str(rigid_car)]) == 0
     content = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert {"class_and_speed.png", "friction.png", "results.md"} <= {path.name for path in folder.iterdir()}
     rides = {(ride["road"], ride["friction"]): ride["mean"] for ride in content["rides"]}
@@ -45,10 +29,10 @@ def test_a_short_study(car, tmp_path):
     assert content["rows"] == []  # one short record judges nothing
 
 
-def test_twice_the_road_and_twice_the_friction_are_the_same(car, tmp_path):
+def test_twice_the_road_and_twice_the_friction_are_the_same(rigid_car, tmp_path):
     """u = a U(F / a): the reduced engine is linear except for the dampers, and the product of load and slope of rolling
     tyres, which changes these ratios by 3e-5 to 6e-5; with the static load they agree within 1e-6."""
-    runs = RideRuns({"rigid": car}, records=1, duration=2.0, folder=tmp_path)
+    runs = RideRuns({"rigid": rigid_car}, records=1, duration=2.0, folder=tmp_path)
     pairs = [Ride(car="rigid", road=road, speed=80.0, friction=force) for road, force in (("A", 30.0), ("C", 120.0))]
     for name in ("rail", "seat_weighted", "load_front"):
         single, other = (ratio(runs, ride, name)[0] for ride in pairs)

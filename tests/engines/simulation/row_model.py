@@ -15,6 +15,9 @@ from vehicle.model.parameters.force_elements import FRICTION_LAWS
 QUARTER_TURN = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
 """Quaternion of 90 degrees about z."""
 
+TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+"""Matrix of the same rotation."""
+
 
 def empty_spec(step: float) -> mujoco.MjSpec:
     """The options of the generated car, without gravity."""
@@ -39,6 +42,21 @@ def add_free_body(spec, name, mass, inertia, *, position=(0.0, 0.0, 0.0), turn=N
     if turn is not None:
         body.quat = turn
     body.add_freejoint(name=name)
+    return body
+
+
+def add_flexible_body(spec, element, *, turned=False, ratio=0.0):
+    """A free body with mass and inertia of a superelement, its CoG at the origin, and its modes; returns the body."""
+    body = spec.worldbody.add_body(name="body")
+    body.explicitinertial = True
+    tensor = element.inertia
+    body.mass, body.ipos = element.mass, np.zeros(3)
+    body.fullinertia = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+    if turned:
+        body.quat = QUARTER_TURN
+    body.add_freejoint(name="body")
+    for number, frequency in enumerate(element.frequencies, start=1):
+        add_mode(spec, number, 2.0 * np.pi * frequency, ratio)
     return body
 
 

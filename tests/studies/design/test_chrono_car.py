@@ -162,14 +162,27 @@ def test_both_engines_run_it_on_a_road(struts):
     assert np.std(fast) == pytest.approx(np.std(exact), rel=0.02) and np.std(exact) > 0.1
 
 
+def rear_spring(car):
+    """Return the note on the rear springs, and its numbers: load, force in Chrono [N], settling [mm]."""
+    (note,) = (text for text in car.notes if text.startswith("rear: a main spring"))
+    return note, [int(word) for word in re.findall(r"-?\d+", note)]
+
+
+def test_a_preload_pushes_as_in_chrono(struts, tmp_path):
+    """F = F0 - k (length - free length) of LinearSpringForce: at its points the spring has F0 more."""
+    preloaded = imported(tmp_path, "strut_car", changes={"wishbones/Spring/Preload": 960.0})
+    (_, before), (note, after) = rear_spring(struts), rear_spring(preloaded)
+    assert after[0] == before[0] and after[1] - before[1] == pytest.approx(960, abs=1)
+    assert after[2] - before[2] == pytest.approx(960 / 48.0, abs=1) and "mm longer" in note
+
+
 def test_what_is_left_out_is_said(wishbones, struts):
     said = "\n".join(struts.notes)
     for text in ("driveline", "steering", "front: brakes", "Axle: inertia of the drive shafts", "Minimum Length"):
         assert f"{text}" in said and "left out" in said
     assert "front: a main spring carries" in said and "higher under the rear wheels" in said
     # The springs of the rear axle are lines: (4456 N - load) / 48 N/mm.
-    (note,) = (text for text in struts.notes if text.startswith("rear: a main spring"))
-    carried, there, longer = (int(word) for word in re.findall(r"-?\d+", note))
+    note, (carried, there, longer) = rear_spring(struts)
     length = np.linalg.norm(np.subtract(WISHBONE["Spring"]["Location Chassis"], WISHBONE["Spring"]["Location Arm"]))
     assert there == pytest.approx(48000 * (0.55 - length), abs=1) and "mm longer" in note
     assert longer == pytest.approx((there - carried) / 48.0, abs=1)

@@ -142,13 +142,13 @@ def test_classes_of_level_find_the_same_values(folder):
 
 
 def test_classes_of_a_linear_response():
-    """y = 2 x + noise: H = 2 in each class, with the scatter that is stated, at levels in ascending order."""
+    """y(t) = 2 x(t - 3 ms) + noise: the same H in each class, with the stated scatter, at levels in ascending order."""
     random, count = np.random.default_rng(4), 40_000
     level = np.where(np.arange(count) < count // 2, 1.0, 3.0)
     x = 1e-3 * level * random.standard_normal(count)
     record = Record(
         time=uniform_axis(count, 1e-3),
-        channels={"knuckle_fl_acc_z": 2.0 * x + 5e-4 * random.standard_normal(count)},
+        channels={"knuckle_fl_acc_z": 2.0 * np.roll(x, 3) + 5e-4 * random.standard_normal(count)},
         units={"knuckle_fl_acc_z": "m/s2"},
     )
     signal = Signal(time=record.time, displacement={"fl": x})
@@ -159,7 +159,8 @@ def test_classes_of_a_linear_response():
     levels = [[float(text) for text in re.findall(r"[0-9.]+(?= to| mm)", name)] for name in target.data.channels]
     # The window in the middle contains both levels.
     np.testing.assert_allclose([levels[0][0], *levels[1]], [1.0, 3.0, 3.0], rtol=0.1)
-    ratio = (target.data.response - 2.0) / target.data.random_error
+    exact = 2.0 * np.exp(-2j * np.pi * target.data.frequency * 3e-3)
+    ratio = (target.data.response - exact) / target.data.random_error
     validated(
         "Statistics and intervals", "scatter of FRFs in classes of level over the stated error",
         np.sqrt(np.mean(ratio.real**2 + ratio.imag**2) / 2.0), 1.0, abs=0.1,

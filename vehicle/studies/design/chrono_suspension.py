@@ -164,7 +164,7 @@ def _strut(file: ChronoFile, to_vehicle: Callable[[Vector], Vector]) -> Imported
     top, bottom = axle.points["strut_top"], axle.points["damper_bottom"]
     # Anywhere on the axis of the strut the spring has the same force.
     axle.points["spring_lower"] = bottom + 0.3 * (top - bottom)
-    axle.sources["hardpoints.spring_lower"] = "assumed: on the axis of the strut, where its to_vehicle changes no force"
+    axle.sources["hardpoints.spring_lower"] = "assumed: on the axis of the strut, where its position changes no force"
     for name in ("Location Chassis", "Location Upright"):
         if np.linalg.norm(shock.array(name, 3) - spring.array(name, 3)) > EQUAL:
             axle.changed.append(f"{shock.source(name)}: the damper acts along the strut, on the line of the spring")
