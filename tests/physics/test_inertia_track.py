@@ -7,9 +7,10 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
-from tests.validation import validated
+from tests.validation import foreign, validated
 from vehicle.engines.linear.dynamic_stiffness import steady_motion
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
@@ -21,6 +22,7 @@ from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.toml_file import read_table
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
+from vehicle.signals.excitation.signal import Signal
 
 RUBBER, DRAG, CHAMBER, MASS, FLOW = 2.0e5, 150.0, 4.0e5, 80.0, 1200.0
 TRACK = {
@@ -28,6 +30,14 @@ TRACK = {
     "hydromount.chamber_stiffness": CHAMBER,
     "hydromount.track_mass": MASS,
     "hydromount.track_damping": FLOW,
+}
+GAP, DISC, LEAK, MEMBRANE, SEAT = 3e-4, 1.0, 60.0, 2e3, 2e6
+DECOUPLED = {
+    "hydromount.decoupler_gap": GAP,
+    "hydromount.decoupler_mass": DISC,
+    "hydromount.decoupler_damping": LEAK,
+    "hydromount.decoupler_stiffness": MEMBRANE,
+    "hydromount.decoupler_seat": SEAT,
 }
 CHANNELS = ["engine_acc_z", "hydromount_force_z"]
 SOURCE = "closed form: Kr + i w cr + Kb Z / (Kb + Z), Z = -w^2 mt + i w ct"
@@ -39,7 +49,7 @@ def fluid_stiffness(omega, chamber=CHAMBER, mass=MASS, flow=FLOW):
     return chamber * track / (chamber + track)
 
 
-def add_fluid(spec, name, moving, *, points=None):
+def add_fluid(spec, name, moving, *, decoupler=False):
     """The fluid of a mount between a body and the world, as the generator writes it."""
     fluid = f"fluid/{name}"
     moving.add_site(name=f"{fluid}/moving")
@@ -50,13 +60,26 @@ def add_fluid(spec, name, moving, *, points=None):
     )  # fmt: skip
     spec.add_numeric(name=f"law/{fluid}", data=element_law([0.0, 0.0, CHAMBER]))
     spec.add_numeric(name=f"inertia/{fluid}", data=[MASS, 0.0])
-    if points is not None:
-        spec.add_numeric(name=f"table/{fluid}/z", data=np.ravel(points))
-    body = spec.worldbody.add_body(name=fluid)
+    add_coordinate(spec, fluid, MASS, 0.0, FLOW)
+    if decoupler:
+        spec.add_numeric(name=f"inertia/decoupler/{name}", data=[DISC, 0.0])
+        seat = GAP * np.array([-2.0, -1.0, 1.0, 2.0, -SEAT, 0.0, 0.0, SEAT])
+        spec.add_numeric(name=f"table/decoupler/{name}", data=seat)
+        add_coordinate(spec, f"decoupler/{name}", DISC, MEMBRANE, LEAK)
+
+
+def add_coordinate(spec, name, mass, stiffness, damping):
+    """A scalar coordinate, as the generator writes it."""
+    body = spec.worldbody.add_body(name=name)
     body.explicitinertial = True
     body.mass, body.inertia, body.ipos = 1e-9, [1e-9] * 3, np.zeros(3)
     body.add_joint(
-        name=fluid, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0], armature=MASS - 1e-9, damping=FLOW
+        name=name,
+        type=mujoco.mjtJoint.mjJNT_SLIDE,
+        axis=[1.0, 0.0, 0.0],
+        armature=mass - 1e-9,
+        stiffness=stiffness,
+        damping=damping,
     )
 
 
@@ -198,9 +221,72 @@ def test_a_track_is_refused_where_the_attachment_couples_the_axes():
         Car(vehicle_of(table, FOCUS_FILE.parent), folder=FOCUS_FILE.parent).model  # noqa: B018
 
 
+def first_harmonic(x, omega, times):
+    return 2.0 * np.mean(x * np.exp(-1j * omega * times))
+
+
+@pytest.mark.parametrize(("force", "said"), [(20.0, "within the gap"), (80.0, "at the gap"), (400.0, "beyond the gap")])
+def test_a_decoupler_against_a_stiff_solver(force, said):
+    mass, frequency, step = 5.0, 11.0, 1e-4
+    spec, omega, period = empty_spec(step), 2.0 * np.pi * frequency, round(1.0 / (frequency * step))
+    omega = 2.0 * np.pi / (period * step)
+    body = add_free_body(spec, "engine", mass, [10.0] * 3)
+    add_bushing(spec, "hydromount", body, spec.worldbody, element_law([RUBBER] * 3, [DRAG] * 3))
+    add_fluid(spec, "hydromount", body, decoupler=True)
+    run = Stepper(spec)
+
+    def push(time):
+        run.data.xfrc_applied[1, 2] = force * np.cos(omega * time)
+
+    settle, last = 16 * period, 4 * period
+    moved = run.step(settle + last, run.position, push)[settle:]
+
+    def slopes(time, state):
+        z, x, y, *speeds = state
+        pressed = CHAMBER * (z - x - y)
+        seat = SEAT * (y - np.clip(y, -GAP, GAP))
+        return [
+            *speeds,
+            (force * np.cos(omega * time) - RUBBER * z - DRAG * speeds[0] - pressed) / mass,
+            (pressed - FLOW * speeds[1]) / MASS,
+            (pressed - LEAK * speeds[2] - MEMBRANE * y - seat) / DISC,
+        ]
+
+    times = step * (settle + np.arange(last))
+    exact = solve_ivp(slopes, (0.0, times[-1]), np.zeros(6), "Radau", times, rtol=1e-7, atol=1e-11, max_step=1e-3).y
+    found, expected = (force / first_harmonic(z, omega, times) + mass * omega**2 for z in (moved[:, 2], exact[0]))
+    assert (np.max(np.abs(exact[2])) > GAP) == (said != "within the gap")
+    claim, source = f"mount with a decoupler, 11 Hz, {said}", foreign("scipy", "Radau, tolerance 1e-7")
+    subject = "Bushings, springs and stops"
+    validated(
+        subject, f"{claim}: dynamic stiffness", abs(found), abs(expected), rel=1e-3, unit="N/m", source=source
+    )  # fmt: skip
+    validated(
+        subject, f"{claim}: loss angle", np.degrees(np.angle(found)), np.degrees(np.angle(expected)), abs=0.05,
+        unit="deg", source=source,
+    )  # fmt: skip
+
+
+def test_beyond_the_gap_a_run_is_mujocos(tracked, high_piece):
+    car = tracked.with_({**DECOUPLED, "hydromount.decoupler_gap": 5e-5, "solver.timestep": 5e-4})
+    (said,) = car.run(high_piece, engine="reduced").recording.statistics.warnings
+    assert said.startswith("decoupler of hydromount left the linear segment of its table by 0.38 mm")
+    run = car.run(high_piece, engine="auto")
+    assert "mujoco" in repr(run) and run.recording.statistics.energies.residual < 1e-3
+    small = Signal(time=high_piece.time, displacement={"fr": 0.02 * high_piece.displacement["fr"]})
+    whole, reduced = (np.asarray(car.run(small, engine=engine)["engine_acc_z"]) for engine in ("mujoco", "reduced"))
+    validated(
+        "Reduced engine", "car with a decoupler within its gap, RMS error of engine_acc_z against MuJoCo",
+        np.sqrt(np.mean((whole - reduced) ** 2)) / np.std(whole), 0.0, abs=2e-3,
+        source="second derivation: MuJoCo at its default step",
+    )  # fmt: skip
+
+
 def test_an_incomplete_track_is_refused():
     with pytest.raises(ConfigurationError, match=r"hydromount\.track_damping: missing; chamber_stiffness needs"):
         Car.load("focus", {"hydromount.chamber_stiffness": 4e5, "hydromount.track_mass": 50.0})
+    with pytest.raises(ConfigurationError, match=r"hydromount\.chamber_stiffness: missing; decoupler_gap needs"):
+        Car.load("focus", DECOUPLED)
 
 
 def test_rubber_friction_along_the_fluid_is_refused():

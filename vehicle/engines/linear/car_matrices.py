@@ -29,16 +29,17 @@ from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
 from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
-from vehicle.model.assembly.element_numbers import FLUID
+from vehicle.model.assembly.element_numbers import DECOUPLER, FLUID
 from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
 
-COORDINATES = ("mode_", FLUID)
-"""Beginnings of the names of coordinates that are not parts: modes of the body, fluids of hydromounts."""
+COORDINATES = ("mode_", FLUID, DECOUPLER)
+"""Beginnings of the names of coordinates that are not parts: modes of the body, fluids of hydromounts, decouplers."""
 
 DIFFERENCE_STEP = 1e-6
 """Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
@@ -90,7 +91,7 @@ class CarMatrices:
         slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
-        fluids: velocity coordinate of the fluid of each hydromount with a track, by the name of the mount.
+        fluids: velocity coordinates of fluids and decouplers of hydromounts, by names as "fluid of hydromount".
     """
 
     system: LinearSystem
@@ -173,7 +174,8 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
         },
         modal=e.modes.velocities,
         fluids={
-            name.removeprefix(FLUID): int(model.joint(name).dofadr[0]) for name in rows.names if name.startswith(FLUID)
+            name.replace("/", " of ", 1): int(model.joint(name).dofadr[0])
+            for name in fluid_coordinates(rows.laws, model_numbers(model))
         },
     )
 
@@ -243,6 +245,10 @@ def _segments(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
     ):
         if law_type == 0:
             row, name = jacobian[e.bushings.rows[element, axis]], f"{rows.names[element]} along {AXES[axis]}"
+        elif law_type == 3:
+            dof = e.fluids.dofs[element]
+            row, name = np.eye(rows.model.nv)[dof], str(rows.model.joint(rows.model.dof_jntid[dof]).name)
+            name = name.replace("/", " of ", 1)
         else:
             row = jacobian[e.springs.rows[element]] if law_type == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
             name = ("", "spring", "stop of damper")[law_type] + f" {element + 1}"

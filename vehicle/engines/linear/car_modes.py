@@ -97,7 +97,7 @@ def _energy(matrices: CarMatrices, shape: npt.NDArray[np.complex128]) -> tuple[d
         energy[group] = energy.get(group, 0.0) + value
     energy["flexible"] = float(np.sum(np.abs(shape[matrices.modal]) ** 2))
     for name, dof in matrices.fluids.items():
-        energy[f"fluid of {name}"] = float(matrices.system.mass[dof, dof] * np.abs(shape[dof]) ** 2)
+        energy[name] = float(matrices.system.mass[dof, dof] * np.abs(shape[dof]) ** 2)
     total = sum(energy.values())
     return {name: value / total for name, value in energy.items()}, float(np.sqrt(total))
 

@@ -85,7 +85,7 @@ def motion_shares(
             shares |= {
                 f"{group.replace('_', ' ')} {word}": _share(a) for word, a in zip(axis_words, motion, strict=True)
             }
-    shares |= {group: share for group, share in energy.items() if group.startswith("fluid of ")}
+    shares |= {group: share for group, share in energy.items() if group.startswith(("fluid of ", "decoupler of "))}
     shares |= {f"flexible body, {mode_words(n + 1, names)}": _share(q) for n, q in enumerate(modal)}
     if max(shares.values()) < NAMED * (1.0 + _EQUAL) and len(pairs) == 2 and all(pairs.values()):
         shares = _combine_axles(shares, pairs, axis_labels)

@@ -174,7 +174,8 @@ class Tables(NamedTuple):
     """Nonlinear laws over displacement (`vehicle.model.laws.curve`), t of them: F(at + x) - F(at) in place of K x.
 
     Attributes:
-        kinds: 0 for an axis of a bushing, 1 for a spring, 2 for the bump stop of a damper; (t,).
+        kinds: 0 for an axis of a bushing, 1 for a spring, 2 for the bump stop of a damper, 3 for the
+            seat of a decoupler, whose element is its first index among the fluids; (t,).
         elements, axes: index among the elements of this type, and axis; (t,).
         at: displacement at the operating point [m]; the record of the element contains the tangent K there; (t,).
         edges, slopes, offsets: upper edges (the last infinite), slopes and offsets of the segments; (t, segments).
@@ -291,12 +292,12 @@ class RoundTyres(NamedTuple):
 
 
 class Fluids(NamedTuple):
-    """Displacements of fluids in the extensions of hydromounts along z: two for each fluid, rubber and chamber.
+    """Displacements of fluids in the extensions of hydromounts along z: two for each coordinate, chamber and rubber.
 
     Attributes:
         elements: indices of the elements among the bushings; (k,).
-        dofs, places: velocity and position coordinates of the fluids; (k,).
-        factors: extension per displacement of the fluid [-]; (k,).
+        dofs, places: velocity and position coordinates of the fluids and decouplers; (k,).
+        factors: extension per displacement of the coordinate [-]; (k,).
     """
 
     elements: Index

@@ -10,6 +10,10 @@ x is relative to the mount, so no other motion accelerates mt, and mt has no wei
 its mount with x subtracted, r -> r + n x e_z and J_x = n e_z with n = -1, e_z being the z axis of the law. Behind a
 flexible attachment the rubber has x too; see `vehicle.model.assembly.connections.FluidLaw`.
 
+A decoupler with the coordinate y has the same pressure and is parallel to the track: z - x - y in place of z - x, and
+md y'' + cd y' + Km y + seat(y) = Kb (z - x - y). Within its gap it takes the fluid from the track; beyond the gap it
+lies on its seat, and the fluid goes through the track.
+
 Source: Singh, Kim and Ravindra, Linear analysis of automotive hydro-mechanical mount with emphasis on decoupler
 characteristics, Journal of Sound and Vibration 158 (1992) 219-243, with p1 = Kb (z - x) / Ap and C1 = Ap^2 / Kb; the
 lower chamber is soft.

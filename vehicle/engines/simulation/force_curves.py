@@ -44,7 +44,7 @@ def standing_on(layout: Layout, preload: Vector | None) -> Layout:
     t, stiffness, springs = layout.tables, layout.bushings.stiffness.copy(), layout.springs.stiffness.copy()
     at = t.at.copy()
     for index, (law_type, element, axis) in enumerate(zip(t.kinds, t.elements, t.axes, strict=True)):
-        if law_type == 2:
+        if law_type >= 2:
             continue
         row = layout.bushings.rows[element, axis] if law_type == 0 else layout.springs.rows[element]
         curve = curve_of(t, index)

@@ -64,11 +64,14 @@ def bent(k: int, displacement: float, stiffness: float, t: Tables, s: State) -> 
 
 @jitable
 def stops(d: Fields, e: Layout, s: State) -> None:
-    """Add the forces of bump stops on the joints of their dampers; call this after `generalised_forces`."""
+    """Add the forces of bump stops and decoupler seats on their joints; call this after `generalised_forces`."""
     t = e.tables
     for k in range(t.kinds.shape[0]):
-        if t.kinds[k] == 2:
-            dof, position = e.dampers.dofs[t.elements[k]], e.dampers.places[t.elements[k]]
+        if t.kinds[k] >= 2:
+            if t.kinds[k] == 2:
+                dof, position = e.dampers.dofs[t.elements[k]], e.dampers.places[t.elements[k]]
+            else:
+                dof, position = e.fluids.dofs[t.elements[k]], e.fluids.places[t.elements[k]]
             s.stretch[k] = d.qpos[position]
             d.qfrc_applied[dof] -= curve_force(s.stretch[k], t.edges[k], t.slopes[k], t.offsets[k])
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.engines.simulation.element_records import Layout, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
-from vehicle.model.assembly.element_numbers import AVERAGED, FLUID, TURNING
+from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
 from vehicle.model.laws.damper import unpack
 from vehicle.names import AXES
@@ -136,8 +136,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             factors=np.array(
                 [
                     factor
-                    for name in names.bushings
-                    if name.startswith(FLUID)
+                    for name in fluid_coordinates(names, numbers)
                     for factor in (-1.0, float(numbers[f"inertia/{name}"][1]))
                 ]
             ),
@@ -164,6 +163,13 @@ def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:
     return RubberFriction(elements=elements, axes=axes, stiffness=stiffness, limit=limit)
 
 
+def fluid_coordinates(names: LawNames, numbers: Numbers) -> list[str]:
+    """Return the names of the coordinates of the fluids of hydromounts: fluid in the track, and decoupler."""
+    fluids = [name for name in names.bushings if name.startswith(FLUID)]
+    pairs = [name for fluid in fluids for name in (fluid, fluid.replace(FLUID, DECOUPLER, 1))]
+    return [name for name in pairs if f"inertia/{name}" in numbers]
+
+
 def _elements(names: LawNames, numbers: Numbers) -> Vector:
     """Return stiffness and share of the limit of the Jenkins elements of all dampers; (m, 2)."""
     fields = [numbers[f"presliding/{name}"] for name in dict.fromkeys(names.presliding)]
@@ -176,6 +182,7 @@ def _tables(names: LawNames, numbers: Numbers) -> Tables:
               for column, axis in enumerate(AXES)]  # fmt: skip
     fields += [(name, (1, index, 0)) for index, name in enumerate(names.springs)]
     fields += [(name, (2, index, 0)) for index, name in enumerate(names.dampers)]
+    fields += [(name, (3, 2 * index, 0)) for index, name in enumerate(fluid_coordinates(names, numbers))]
     read = [(numbers.get(f"table/{name}"), where) for name, where in fields]
     return tables_through([(points.reshape(2, -1), where) for points, where in read if points is not None])
 

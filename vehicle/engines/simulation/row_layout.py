@@ -29,6 +29,7 @@ from vehicle.engines.simulation.element_records import (
 )
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.engines.simulation.law_arrays import (
+    fluid_coordinates,
     law_names,
     laws_of,
     model_numbers,
@@ -74,9 +75,11 @@ def read_layout(model: mujoco.MjModel) -> Layout:
     rolling = [name for name in names if f"rolling/{name}" in numbers]
     spins = {name: _spin(model, ends[name]) for name in rolling}
 
-    fluids = [name for name in names if name.startswith(FLUID)]
-    moved = [(name, fluid) for fluid in fluids for name in (fluid, f"bushing/{fluid.removeprefix(FLUID)}")]
-    further = {**spins, **{name: (int(model.joint(fluid).dofadr[0]),) for name, fluid in moved}}
+    coordinates = [(name, name.partition("/")[2]) for name in fluid_coordinates(law, numbers)]
+    moved = [(row, name) for name, mount in coordinates for row in (f"{FLUID}{mount}", f"bushing/{mount}")]
+    further = dict(spins)
+    for row, name in moved:
+        further[row] = (*further.get(row, ()), int(model.joint(name).dofadr[0]))
 
     def modal_at(name: str) -> range:
         return range(0) if numeric(model, f"shape/{name}") is None else modal
@@ -137,9 +140,9 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         rolling=_rolling(model, [(names.index(name), ends[name], spins[name][0]) for name in rolling], plates),
         round=_round_tyres(model, [(names.index(name), ends[name]) for name in names if f"round/{name}" in numbers]),
         fluids=Fluids(
-            elements=whole_numbers([names.index(name) for name, _ in moved]),
-            dofs=whole_numbers([model.joint(fluid).dofadr[0] for _, fluid in moved]),
-            places=whole_numbers([model.joint(fluid).qposadr[0] for _, fluid in moved]),
+            elements=whole_numbers([names.index(row) for row, _ in moved]),
+            dofs=whole_numbers([model.joint(name).dofadr[0] for _, name in moved]),
+            places=whole_numbers([model.joint(name).qposadr[0] for _, name in moved]),
             factors=np.zeros(0),
         ),
         joints=_triples(rows_of([name for name in balls if name not in names])),

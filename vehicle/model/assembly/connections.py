@@ -101,16 +101,22 @@ class FluidLaw:
     K0 (z - y) = Z y + Kb (y - x) of its point y, Z being the rubber, eliminates y exactly: a spring K0 Kb / (K0 + Kb)
     on z - x, and the rubber in series with K0 + Kb, times K0^2 / (K0 + Kb)^2, on z + x Kb / K0.
 
+    A decoupler takes a part of the displaced volume: x is the sum of both displacements, which have the same pressure.
+
     Attributes:
         law: spring on z - x as a law along three axes.
         mass, damping: mt [kg] and ct [N s/m].
         share: Kb / K0; 0 for a rigid attachment.
+        decoupler: md [kg], cd [N s/m] and Km [N/m]; None without a decoupler.
+        seat: points of its seat, displacement [m] and force [N]; (2, 4).
     """
 
     law: ElementLaw
     mass: float
     damping: float
     share: float
+    decoupler: tuple[float, float, float] | None = None
+    seat: Vector = field(default_factory=lambda: np.zeros((2, 0)))
 
 
 def fluid_law(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> FluidLaw | None:
@@ -123,7 +129,19 @@ def fluid_law(connection: PlacedConnection, body: TrimmedBody, superelement: Sup
     share = 0.0 if flexibility is None else _chamber(parameters) * float(flexibility[2, 2])
     stiffness = np.array([0.0, 0.0, _chamber(parameters) / (1.0 + share)])
     law = ElementLaw(stiffness=stiffness, damping=_zeros(), directions=None if connection.axes is None else axes)
-    return FluidLaw(law=law, mass=parameters.track_mass or 0.0, damping=parameters.track_damping or 0.0, share=share)
+    fluid = FluidLaw(law=law, mass=parameters.track_mass or 0.0, damping=parameters.track_damping or 0.0, share=share)
+    if not parameters.decoupler_gap:
+        return fluid
+    gap, load = parameters.decoupler_gap, parameters.decoupler_gap * (parameters.decoupler_seat or 0.0)
+    return replace(
+        fluid,
+        decoupler=(
+            parameters.decoupler_mass or 0.0,
+            parameters.decoupler_damping or 0.0,
+            parameters.decoupler_stiffness or 0.0,
+        ),
+        seat=np.array([[-2.0 * gap, -gap, gap, 2.0 * gap], [-load, 0.0, 0.0, load]]),
+    )
 
 
 def _flexibility(connection: PlacedConnection, body: TrimmedBody, superelement: Superelement) -> Vector | None:

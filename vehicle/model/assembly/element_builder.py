@@ -172,7 +172,10 @@ class ElementBuilder:
             self._node_rotation(name, connection.at)
         fluid = fluid_name(connection)
         if f"law/{fluid}" in numbers:
-            self._add_coordinate(fluid, float(numbers[f"inertia/{fluid}"][0]), *numbers[f"joint/{fluid}"].tolist())
+            for field, values in numbers.items():
+                if field.startswith("inertia/"):
+                    coordinate = field.removeprefix("inertia/")
+                    self._add_coordinate(coordinate, float(values[0]), *numbers[f"joint/{coordinate}"].tolist())
             self._connect_rows(fluid, sites, connection, ideal=False)
 
     def _connect_rows(self, name: str, sites: tuple[str, str], connection: PlacedConnection, *, ideal: bool) -> None:

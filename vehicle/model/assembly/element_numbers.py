@@ -29,8 +29,8 @@ from vehicle.names import AXES
 Vector = npt.NDArray[np.float64]
 Numbers = dict[str, Vector]
 
-FLUID = "fluid/"
-"""Beginning of the names of the fluids of hydromounts in the model."""
+FLUID, DECOUPLER = "fluid/", "decoupler/"
+"""Beginnings of the names of the fluids of hydromounts, and of their decouplers, in the model."""
 
 TURNING, AVERAGED = 12, 13
 """Indices of the rotational stiffness, and of the mark of an averaged stiffness, in the field of a law along three
@@ -61,6 +61,10 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
         numbers |= _law_numbers(name, fluid.law)
         numbers |= {f"joint/{name}": np.array([0.0, fluid.damping])}
         numbers[f"inertia/{name}"] = np.array([fluid.mass, fluid.share])
+        if fluid.decoupler is not None:
+            name, (mass, damping, membrane) = f"{DECOUPLER}{connection.name}", fluid.decoupler
+            numbers |= {f"joint/{name}": np.array([membrane, damping]), f"table/{name}": fluid.seat.ravel()}
+            numbers[f"inertia/{name}"] = np.array([mass, fluid.share])
     return numbers
 
 

@@ -9,7 +9,15 @@ from typing import Any
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes, axes_along
 from vehicle.model.parameters.composition import PlacedConnection, PlacedOutput, PlacedPart
-from vehicle.model.parameters.force_elements import MAXWELL, TRACK, Bushing, Hydromount, LinearBushing, Tyre
+from vehicle.model.parameters.force_elements import (
+    DECOUPLER,
+    MAXWELL,
+    TRACK,
+    Bushing,
+    Hydromount,
+    LinearBushing,
+    Tyre,
+)
 from vehicle.model.parameters.hardpoints import Point, require_apart, require_point
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.quantity import NAME_PATTERN
@@ -39,7 +47,7 @@ def point_of(path: str, value: Any) -> Point:
 
 def law_kind(table: Mapping[str, Any], *, plate: bool = False) -> type[LinearBushing] | type[Hydromount]:
     """Return the parameter class of a connection; `plate`: the connection is a tyre on its plate."""
-    return Hydromount if {*MAXWELL, *TRACK} & set(table) else Tyre if plate else Bushing
+    return Hydromount if {*MAXWELL, *TRACK, *DECOUPLER} & set(table) else Tyre if plate else Bushing
 
 
 def _point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:

@@ -16,6 +16,7 @@ from typing import Any
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.driving import Driving
 from vehicle.model.parameters.force_elements import (
+    DECOUPLER,
     MAXWELL,
     NUMBERS,
     TRACK,
@@ -206,7 +207,7 @@ def _tables(template: Template, required: Template | None) -> Schema:
 
 def _bushing(parameters: type, lowest_stiffness: float, whole: bool) -> Schema:
     """Return the schema of a connection: a hydromount if a number of its branches is given."""
-    branch = {"anyOf": [{"required": [key]} for key in (*MAXWELL, *TRACK)]}
+    branch = {"anyOf": [{"required": [key]} for key in (*MAXWELL, *TRACK, *DECOUPLER)]}
     schema = {"if": branch, "then": _reference(Hydromount, whole), "else": _reference(parameters, whole)}
     return (
         {**schema, "properties": {"stiffness": {"items": {"minimum": lowest_stiffness}}}}
@@ -236,7 +237,10 @@ def _table(parameters: type[Any], complete: bool = True) -> Schema:
     if parameters not in WITH_FILES:
         schema = _object(properties, needed if complete else [])
         if parameters is Hydromount and complete:
-            schema["dependencies"] = {key: [*keys] for keys in (MAXWELL, TRACK) for key in keys}
+            schema["dependencies"] = {
+                **{key: [*keys] for keys in (MAXWELL, TRACK) for key in keys},
+                **{key: [*TRACK, *DECOUPLER] for key in DECOUPLER},
+            }
         return schema
     # Numbers may be in a file.
     schema = _object({**properties, "curve": {**TEXT, "description": "file with the curve, or property file"}})

@@ -156,9 +156,9 @@ TRACKED: dict[str, Any] = {"at_least": 0.01, "at_most": 1e4, "why": "mount track
 class Hydromount:
     """Bushing whose z axis is an elastomer, a fluid with an inertia track, or both in parallel.
 
-    K(s) = Kz1 + Dz1 s + Kz2 Dz2 s / (Dz2 s + Kz2) + Kb Z / (Kb + Z) with Z = mt s^2 + ct s. A decoupler with a gap
-    puts its membrane Ks in series with Kb while the displaced fluid is within the gap. Rubber friction acts as
-    that of `Bushing`.
+    K(s) = Kz1 + Dz1 s + Kz2 Dz2 s / (Dz2 s + Kz2) + Kb Z / (Kb + Z) with Z = mt s^2 + ct s. A decoupler
+    gives way to the pressure in parallel with the track, with md, cd and its membrane Km, beyond the gap its seat too.
+    Rubber friction acts as that of `Bushing`.
     """
 
     stiffness: Point = quantity("N/m", "Kx, Ky, Kz1", at_least=0.0, length=3, **STIFFEST)
@@ -183,10 +183,31 @@ class Hydromount:
     friction_force: Point = _friction_force()
     friction_stroke: Point = _friction_stroke()
 
+    decoupler_gap: float | None = quantity(
+        "m", "free displacement of the decoupler to each side, at the rubber", at_least=2e-5, at_most=0.02,
+        why="decouplers of engine mounts move by 0.1 to 1 mm", default=None,
+    )  # fmt: skip
+    decoupler_mass: float | None = quantity(
+        "kg", "md, mass of the decoupler and its fluid at the rubber", default=None, **TRACKED
+    )
+    decoupler_damping: float | None = quantity(
+        "N s/m", "cd, flow resistance of the decoupler at the rubber", at_least=0.0, default=None, **STRONGEST
+    )
+    decoupler_stiffness: float | None = quantity(
+        "N/m", "Km, membrane of the decoupler, which centres it", above=0.0, at_least=1.0, default=None, **STIFFEST
+    )
+    decoupler_seat: float | None = quantity(
+        "N/m", "stiffness of the seat of the decoupler beyond the gap", above=0.0, default=None, **STIFFEST
+    )
+
     def __post_init__(self) -> None:
         validate(self)
         _require_stroke(self)
-        for keys in (MAXWELL, TRACK):
+        if self.decoupler_gap is not None and self.chamber_stiffness is None:
+            raise ConfigurationError(
+                f"Hydromount.chamber_stiffness: missing; decoupler_gap needs {' and '.join(TRACK)} of a track"
+            )
+        for keys in (MAXWELL, TRACK, DECOUPLER):
             missing = [key for key in keys if getattr(self, key) is None]
             if 0 < len(missing) < len(keys):
                 present = next(key for key in keys if key not in missing)
@@ -221,11 +242,10 @@ def _require_stroke(law: Bushing | Hydromount) -> None:
             )
 
 
-MAXWELL, TRACK = (
-    ("maxwell_stiffness", "maxwell_damping"),
-    ("chamber_stiffness", "track_mass", "track_damping"),
-)
-"""Parameters of the Maxwell branch and of the inertia track of a hydromount; each group is complete or absent."""
+MAXWELL = ("maxwell_stiffness", "maxwell_damping")
+TRACK = ("chamber_stiffness", "track_mass", "track_damping")
+DECOUPLER = ("decoupler_gap", "decoupler_mass", "decoupler_damping", "decoupler_stiffness", "decoupler_seat")
+"""Parameters of Maxwell branch, inertia track and decoupler of a hydromount; each group is complete or absent."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
