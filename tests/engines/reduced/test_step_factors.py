@@ -6,7 +6,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.validation import foreign, validated
-from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import SERIES_BELOW, SLOWEST, car_factors, phi_functions
 
 STEP = 0.01
@@ -40,6 +40,8 @@ def one_pole(pole, height, velocity):
         modal=np.zeros((1, 1), dtype=complex),
         branch=np.zeros((0, 1), dtype=complex),
         slope=np.zeros((1, 0), dtype=complex),
+        scalar_rows=Outputs(poles=np.zeros((0, 1), dtype=complex), height=np.zeros((0, 2)), velocity=np.zeros((0, 2))),
+        scalar_force=np.zeros((1, 0), dtype=complex),
         matrices=None,  # type: ignore[arg-type]
     )
 

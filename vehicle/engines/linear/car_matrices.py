@@ -25,10 +25,10 @@ from vehicle.engines.linear.damper_elements import (
     side_rows,
     slider_elements,
 )
+from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, DisplacementLaw, displacement_laws
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
 from vehicle.engines.simulation.callbacks import compiled_rows, installed
-from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
@@ -41,29 +41,6 @@ Vector = npt.NDArray[np.float64]
 COORDINATES = ("mode_", FLUID, DECOUPLER)
 """Beginnings of the names of coordinates that are not parts: modes of the body, fluids of hydromounts, decouplers."""
 
-DIFFERENCE_STEP = 1e-6
-"""Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class LinearSegment:
-    """Linear segment of a law over displacement in which the car is at rest.
-
-    Attributes:
-        name: name of the element.
-        row: displacement of the element over the velocity coordinates; (n,).
-        plate: index of the input under a tyre; -1 for other elements.
-        low, high: ends of the segment, as displacements from the design position [m].
-        stiffness_increase: slope of the steepest segment of the law less the slope of this segment [N/m].
-    """
-
-    name: str
-    row: Vector
-    plate: int
-    low: float
-    high: float
-    stiffness_increase: float = 0.0
-
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarMatrices:
@@ -75,7 +52,7 @@ class CarMatrices:
         dampers: velocity coordinates of the damper joints; (d,).
         viscous: damping constants of the dampers [N s/m], softest settings of controlled ones; (d,).
         sensors: rows that map u' to the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
-        segments: linear segments of the laws over displacement: the valid range of the linear car.
+        laws: nonlinear laws over displacement; their difference from the tangent is not in the matrices.
         tyre_stiffness, tyre_damping: vertical stiffness [N/m] and damping [N s/m] of the tyres; (w,).
         body_rows: rows that map u' to velocity of the centre of gravity and angular velocity of each body;
             body name to (6, n).
@@ -98,7 +75,7 @@ class CarMatrices:
     dampers: npt.NDArray[np.intp]
     viscous: Vector
     sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
-    segments: tuple[LinearSegment, ...] = ()
+    laws: tuple[DisplacementLaw, ...] = ()
     one_sided: frozenset[str] = frozenset()
     tyre_stiffness: Vector
     tyre_damping: Vector
@@ -194,7 +171,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
         rows: rows of the car at rest.
         jacobian: Jacobian of the rows; (rows, n).
         joint_damping: damping inside joints; (n,).
-        preload: static forces of the rows; rolling tyres need their static load for the slope of the road.
+        preload: static forces of the rows.
     """
     e, bushings, dofs = rows.layout, rows.layout.bushings, rows.layout.dampers.dofs
     viscous = e.dampers.laws["viscous_damping"]
@@ -209,7 +186,7 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
     tyres = {"stiffness": bushings.stiffness[e.tyres, 2], "damping": bushings.damping[e.tyres, 2]}
     inputs = {f"input_{term}": vertical.T * values for term, values in tyres.items()}
     branch_rows = jacobian[bushings.rows[present]]
-    rolling = None
+    over_displacement, rolling = displacement_laws(rows, jacobian, preload), None
     if len(e.rolling.tyres):
         rolling = rolling_terms(rows, preload)
         damping += rolling.damping
@@ -226,44 +203,15 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
         },
         car={
             "viscous": viscous,
-            "segments": _segments(rows, jacobian),
+            "laws": over_displacement,
             "sliders": slider_elements(rows),
             "rubber": rubber_elements(rows, jacobian),
-            "sides": side_rows(rows, jacobian, preload),
+            "sides": side_rows(rows, jacobian, preload, over_displacement),
             "tyre_rows": vertical,
             **{f"tyre_{term}": values for term, values in tyres.items()},
             "slope": np.zeros((len(damping), 0)) if rolling is None else rolling.slope,
         },
     )
-
-
-def _segments(rows: Rows, jacobian: Vector) -> tuple[LinearSegment, ...]:
-    """Return the linear segments of the laws over displacement in which the car is at rest."""
-    segments_of_laws, e, tables = [], rows.layout, rows.layout.tables
-    for index, (law_type, element, axis, position) in enumerate(
-        zip(tables.kinds, tables.elements, tables.axes, tables.at, strict=True)
-    ):
-        if law_type == 0:
-            row, name = jacobian[e.bushings.rows[element, axis]], f"{rows.names[element]} along {AXES[axis]}"
-        elif law_type == 3:
-            dof = e.fluids.dofs[element]
-            row, name = np.eye(rows.model.nv)[dof], str(rows.model.joint(rows.model.dof_jntid[dof]).name)
-            name = name.replace("/", " of ", 1)
-        else:
-            row = jacobian[e.springs.rows[element]] if law_type == 1 else np.eye(rows.model.nv)[e.dampers.dofs[element]]
-            name = ("", "spring", "stop of damper")[law_type] + f" {element + 1}"
-        curve = curve_of(tables, index)
-        # A point on the line through its neighbours is not a breakpoint.
-        corners = curve.knots[np.abs(np.diff(curve.slopes)) > 1e-9 * np.max(curve.slopes)]
-        edges = np.concatenate([[-np.inf], corners, [np.inf]])
-        index_of_segment = int(np.searchsorted(edges[1:-1], position))
-        plate = list(e.tyres).index(element) if law_type == 0 and axis == 2 and element in e.tyres else -1
-        stiffness_increase = float(np.max(curve.slopes) - curve.slope(position))
-        low, high = edges[index_of_segment] - position, edges[index_of_segment + 1] - position
-        segments_of_laws.append(
-            LinearSegment(name=name, row=row, plate=plate, low=low, high=high, stiffness_increase=stiffness_increase)
-        )
-    return tuple(segments_of_laws)
 
 
 def _tangent_stiffness(rows: Rows, compiled: bool) -> Vector:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.displacement_laws import BUSHING, DisplacementLaw
 from vehicle.engines.simulation.rows import Rows
 from vehicle.names import AXES
 
@@ -60,6 +62,7 @@ class SideRows:
         dampers: indices of the dampers with a side force coefficient; (k,).
         static: forces at rest [N]; (2 k,).
         displacement, velocity, branch: rows over u, u' and the forces of the Maxwell branches; (2 k, ...).
+        laws: rows over the forces g of the laws over displacement; (2 k, laws).
     """
 
     dampers: npt.NDArray[np.int64]
@@ -67,13 +70,19 @@ class SideRows:
     displacement: Vector
     velocity: Vector
     branch: Vector
+    laws: Vector
 
 
 def no_side_forces() -> SideRows:
     """Return no side forces."""
     none = np.zeros((0, 0))
     return SideRows(
-        dampers=np.zeros(0, dtype=np.int64), static=np.zeros(0), displacement=none, velocity=none, branch=none
+        dampers=np.zeros(0, dtype=np.int64),
+        static=np.zeros(0),
+        displacement=none,
+        velocity=none,
+        branch=none,
+        laws=none,
     )
 
 
@@ -128,11 +137,15 @@ def slider_elements(rows: Rows) -> SliderElements:
     )
 
 
-def side_rows(rows: Rows, jacobian: Vector, preload: Vector) -> SideRows:
-    """Return the side forces of the dampers with a side force coefficient; arguments: see `car_matrices.law_matrices`.
+def side_rows(rows: Rows, jacobian: Vector, preload: Vector, laws: Sequence[DisplacementLaw]) -> SideRows:
+    """Return the side forces of the dampers with a side force coefficient.
 
     The turn of the static force along the slide with the rod is neglected: it is the weight of the rod, and the
     force of its gas.
+
+    Args:
+        rows, jacobian, preload: see `vehicle.engines.linear.car_matrices.law_matrices`.
+        laws: nonlinear laws over displacement.
     """
     e, b, model = rows.layout, rows.layout.bushings, rows.model
     dampers = np.flatnonzero(e.dampers.laws["side_force"] > 0.0)
@@ -142,6 +155,7 @@ def side_rows(rows: Rows, jacobian: Vector, preload: Vector) -> SideRows:
     count = int(np.count_nonzero(b.branch_stiffness > 0.0))
     static, branch = np.zeros((len(dampers), 2)), np.zeros((len(dampers), 2, count))
     displacement, velocity = np.zeros((2, len(dampers), 2, jacobian.shape[1]))
+    by_law = np.zeros((len(dampers), 2, len(laws)))
     for side, damper in enumerate(dampers):
         # In the design position all frames are parallel.
         across = np.linalg.svd(model.jnt_axis[model.dof_jntid[e.dampers.dofs[damper]]][None])[2][1:]
@@ -154,10 +168,14 @@ def side_rows(rows: Rows, jacobian: Vector, preload: Vector) -> SideRows:
             velocity[side] -= along @ (b.damping[n][:, None] * jacobian[b.rows[n]])
             for axis in np.flatnonzero(b.branch_stiffness[n] > 0.0):
                 branch[side, :, branches[n, axis]] -= along[:, axis]
+            for index, law in enumerate(laws):
+                if law.element[:2] == (BUSHING, int(n)):
+                    by_law[side, :, index] -= along[:, law.element[2]]
     return SideRows(
         dampers=dampers.astype(np.int64),
         static=static.ravel(),
         displacement=displacement.reshape(2 * len(dampers), -1),
         velocity=velocity.reshape(2 * len(dampers), -1),
         branch=branch.reshape(2 * len(dampers), -1),
+        laws=by_law.reshape(2 * len(dampers), -1),
     )

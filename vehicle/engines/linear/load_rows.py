@@ -1,13 +1,14 @@
 """Loads of the linear car: the forces of all elements and the suspension travel as rows over its motion.
 
-The law of an element in the axes of its carrier is f = p - K r - B r' - f2, with r = J u - z and the preload p. The
+The law of an element in the axes of its carrier is f = p - K r - g - B r' - f2, with r = J u - z and the preload p. The
 force of an ideal joint follows from the equation of motion,
 
-    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi - B e,
+    Jc' f = M u'' + C u' + K u + H' f_b - Bk z - Bc z' - S' phi + D' g - B e,
 
-with the nonlinear damper forces phi, and the forces of rolling tyres on the slope of the road that Bc z' lacks. K
-contains the rotation of the preloads, so this f is in world axes. In the axes of a carrier that rotates by theta it is
-f - theta x p. If joints constrain a motion twice, f is the least-norm solution.
+with the nonlinear damper forces phi, the forces g of the laws over displacement that K lacks, and the forces of rolling
+tyres on the slope of the road that Bc z' lacks. K contains the rotation of the preloads, so this f is in world axes. In
+the axes of a carrier that rotates by theta it is f - theta x p. If joints constrain a motion twice, f is the least-norm
+solution.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.displacement_laws import BUSHING, SPRING, DisplacementLaw, law_rows
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
@@ -39,6 +41,7 @@ class LoadRows:
         branch: rows over f_b; (l, b).
         height, height_rate: rows over z and z'; (l, w).
         friction: rows over phi, with the sign of the equation of motion; (l, d).
+        law: rows over the forces g of the laws over displacement (`displacement_laws`); (l, laws).
         slope: rows over e = F_z/F_0 V tan(beta) - z' of the plates, likewise; (l, w), (l, 0) for standing tyres.
     """
 
@@ -51,6 +54,7 @@ class LoadRows:
     height: Vector
     height_rate: Vector
     friction: Vector
+    law: Vector
     slope: Vector
 
     def only(self, names: Sequence[str]) -> LoadRows:
@@ -78,8 +82,8 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     load_places, bushings, preload = LoadPlaces(car, rows), rows.layout.bushings, car.static.preload
     joint_forces = _joint_forces(matrices)
     widths = [model.nv] * 3 + [len(system.branch_time)] + [len(system.inputs)] * 2
-    widths += [len(matrices.dampers), matrices.slope.shape[1]]
-    fields = ("displacement", "velocity", "acceleration", "branch", "height", "height_rate", "friction", "slope")
+    widths += [len(matrices.dampers), len(matrices.laws), matrices.slope.shape[1]]
+    fields = ("displacement", "velocity", "acceleration", "branch", "height", "height_rate", "friction", "law", "slope")
     terms_of: dict[str, tuple[float, dict[str, Vector]]] = {}
     with_law = {int(row_indices[0]): index for index, row_indices in enumerate(bushings.rows)}
     branches = np.cumsum(bushings.branch_stiffness.ravel() > 0.0).reshape(bushings.rows.shape) - 1
@@ -103,6 +107,7 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
                 "branch": np.zeros((3, widths[3])),
                 "height": np.zeros((3, widths[4])),
                 "height_rate": np.zeros((3, widths[4])),
+                "law": np.array([-_axis_of(law, index) for law in matrices.laws]).reshape(-1, 3).T,
             }
             for axis in np.flatnonzero(bushings.branch_stiffness[index] > 0.0).tolist():
                 terms["branch"][axis, branches[index, axis]] = -1.0
@@ -120,8 +125,16 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
                 static_sum + float(static[axis]),
                 {key: term[axis] + others.get(key, 0.0) for key, term in terms.items()},
             )
-    for (name, row), stiffness in zip(load_places.springs, rows.layout.springs.stiffness, strict=True):
-        terms_of[f"{name}_force"] = float(preload[row]), {"displacement": -stiffness * jacobian[row]}
+    for index, ((name, row), stiffness) in enumerate(
+        zip(load_places.springs, rows.layout.springs.stiffness, strict=True)
+    ):
+        terms_of[f"{name}_force"] = (
+            float(preload[row]),
+            {
+                "displacement": -stiffness * jacobian[row],
+                "law": np.array([-float(law.element[:2] == (SPRING, index)) for law in matrices.laws]),
+            },
+        )
     coordinates = spring_coordinates(car, model)
     for (name, spring, damping, unstrained), (qpos_index, dof) in zip(load_places.joints, coordinates, strict=True):
         unit = np.eye(model.nv)[dof]
@@ -153,8 +166,14 @@ def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
         "height": -split @ system.input_stiffness,
         "height_rate": -split @ system.input_damping,
         "friction": -split @ system.slide_rows.T,
+        "law": split @ law_rows(matrices.laws, system.size).T,
         "slope": -split @ matrices.slope,
     }
+
+
+def _axis_of(law: DisplacementLaw, bushing: int) -> Vector:
+    """Return the unit vector of the axis of a law of a bushing; zeros for the law of another element."""
+    return np.asarray((law.element[:2] == (BUSHING, bushing)) * np.eye(3)[law.element[2]])
 
 
 def _cross(vector: Vector) -> Vector:

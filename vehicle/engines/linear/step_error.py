@@ -25,6 +25,7 @@ import scipy
 
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.car_modes import require_stable
+from vehicle.engines.linear.displacement_laws import law_rows
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.step_map import StepMap, StepRows, step_map, step_rows
 from vehicle.engines.linear.strained_part import holding_parameter, moving_part
@@ -162,15 +163,13 @@ class _StepCheck:
 
     def _stiff_segments(self, rows: StepRows, step: float) -> list[StepError]:
         """Return the law over displacement with a segment too stiff for the step, if any."""
-        segments = [segment for segment in self.matrices.segments if segment.stiffness_increase > 0.0]
-        if not segments:
+        laws = [law for law in self.matrices.laws if law.slopes[1] > 0.0]
+        if not laws:
             return []
         basis = self.forms[False].basis
-        directions = np.array([segment.row for segment in segments])
-        mobility = basis @ np.linalg.solve(basis.T @ rows.mass @ basis, basis.T @ directions.T)  # (n, segments)
-        frequencies = np.sqrt(
-            [segment.stiffness_increase for segment in segments] * np.sum(directions * mobility.T, axis=1)
-        )
+        directions = law_rows(laws, self.matrices.system.size)
+        mobility = basis @ np.linalg.solve(basis.T @ rows.mass @ basis, basis.T @ directions.T)  # (n, laws)
+        frequencies = np.sqrt([law.slopes[1] for law in laws] * np.sum(directions * mobility.T, axis=1))
         worst = int(np.argmax(frequencies))
         angle = float(frequencies[worst]) * step
         if angle <= SEGMENT_LIMIT:
@@ -181,7 +180,7 @@ class _StepCheck:
             else "at which a vibration on a stiffer segment of a table is "
             f"{100.0 * (2.0 * np.arcsin(angle / 2.0) / angle - 1.0):.0f} % high"
         )
-        element = f"{segments[worst].name}, up to {segments[worst].stiffness_increase:.3g} N/m stiffer than at rest"
+        element = f"{laws[worst].name}, up to {laws[worst].slopes[1]:.3g} N/m stiffer than at rest"
         severity = angle / SEGMENT_LIMIT
         shape = mobility[:, worst].astype(np.complex128)
         return [

@@ -24,7 +24,8 @@ import numpy.typing as npt
 import scipy
 
 from vehicle.engines.linear.body_change import BodyChange, body_change, same_body
-from vehicle.engines.linear.car_matrices import DIFFERENCE_STEP, CarMatrices, differences, law_matrices
+from vehicle.engines.linear.car_matrices import CarMatrices, differences, law_matrices
+from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs

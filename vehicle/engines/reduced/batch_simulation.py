@@ -19,7 +19,7 @@ import numpy.typing as npt
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.engines.reduced.step_factors import LARGEST_COUPLING, SLOWEST, CarFactors, car_factors
+from vehicle.engines.reduced.step_factors import SLOWEST, CarFactors, car_factors
 from vehicle.engines.reduced.table_layout import LANES, SINGLE
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.errors import ConfigurationError
@@ -123,12 +123,11 @@ def simulate_batch(
         statistics[car] = run.statistics
         table[:, car] = [run[name] for name in channels]
     # Group cars with similar numbers of poles: the largest number in a group applies to all its cars.
-    ordered_cars = sorted(
-        factors, key=lambda car: (_nonlinear_elements(models[car]), factors[car].pairs, factors[car].reals)
-    )
+    keys = {car: (_nonlinear_elements(models[car]), factors[car].single_iterations) for car in factors}
+    ordered_cars = sorted(factors, key=lambda car: (keys[car], factors[car].pairs, factors[car].reals))
     groups = [
         cars[first : first + LANES]
-        for cars in (list(equal) for _, equal in groupby(ordered_cars, lambda car: _nonlinear_elements(models[car])))
+        for cars in (list(equal) for _, equal in groupby(ordered_cars, lambda car: keys[car]))
         for first in range(0, len(cars), LANES)
     ]
     for cars in groups:
@@ -178,11 +177,12 @@ def _single_precision_factors(
         cars = list(equal)
         factors = car_factors([models[car] for car in cars], timestep, columns, exact=False, present_load=rolling)
         pairs = zip(cars, factors, strict=True)
-        by_car |= {car: factor for car, factor in pairs if factor.coupling <= LARGEST_COUPLING}
+        by_car |= {car: factor for car, factor in pairs if factor.single_iterations}
     return by_car
 
 
 def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:
-    """Return the dampers with Jenkins elements, number of elements, and dampers with side forces: equal in a group."""
+    """Return what is equal in a group: dampers with Jenkins elements, their number, dampers with side forces, laws."""
     sliders, sides = model.matrices.sliders, model.matrices.sides
-    return tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist())
+    laws = tuple((law.element, law.one_sided) for law in model.laws)
+    return tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist()), laws

@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.displacement_laws import DisplacementLaw
 from vehicle.engines.reduced.pole_model import Outputs
-from vehicle.engines.reduced.step_factors import ITERATIONS, CarFactors
+from vehicle.engines.reduced.step_factors import CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, TILE, TableRows, aligned_table
+from vehicle.errors import SimulationError
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
 from vehicle.model.parameters.force_elements import Damper
@@ -62,6 +64,8 @@ class CarTable:
         element: number type.
         sensors: sensors of each car, see `vehicle.engines.reduced.feedback.sensor_outputs`.
         static: side forces of each car at rest; (2 k,), none by default.
+        heard: contributions of the forces of the laws over displacement to the sensors of each car; (sensors, laws),
+            none by default.
 
     Attributes:
         plates: number m of driven plates.
@@ -82,6 +86,7 @@ class CarTable:
         element: np.dtype[Any],
         sensors: Sequence[Outputs],
         static: Sequence[Vector] = (),
+        heard: Sequence[Vector] = (),
     ) -> None:
         self.element, lanes = element, aligned_table(1, element).shape[1]
         split = lanes if element == DOUBLE else 1
@@ -89,8 +94,9 @@ class CarTable:
         self.lanes = [(min(lane, len(cars) - 1) if split == 1 else 0, slice(lane % split, None, split))
                       for lane in range(lanes)]  # fmt: skip
         self.cars = cars
-        d, m, g = len(dampers[0]), start.shape[1], len(cars[0].strokes)
-        e = cars[0].sliders.stiffness.shape[1]
+        d, m, g, laws = len(dampers[0]), start.shape[1], len(cars[0].strokes), len(cars[0].laws)
+        groups, e = cars[0].sliders.stiffness.shape
+        corners = max((len(law.breakpoints) for car in cars for law in car.laws), default=0)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         count = len(sensors[0].poles)
@@ -101,10 +107,11 @@ class CarTable:
         sizes |= {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
         sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
-        sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": g}
+        sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": groups}
         sizes["static"] = len(static[0]) if static else 0
-        sizes |= dict.fromkeys(("spring", "give", "share", "slider"), g * e)
-        sizes |= {"work": d * (4 + 4 * node_count) + g * (2 + 4 * e) + 2 * self.sums + TILE}
+        sizes |= dict.fromkeys(("spring", "give", "share", "slider"), groups * e)
+        sizes |= {"corner": 3 * laws * corners, "own": laws, "excess": laws, "heard": count * laws}
+        sizes |= {"work": d * (4 + 4 * node_count) + groups * (2 + 4 * e) + 2 * self.sums + TILE}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         self.table, self.initial = (aligned_table(rows, element) for rows in (section_ends[-1], self.states - m))
@@ -127,6 +134,10 @@ class CarTable:
             sliders = cars[car].sliders
             values |= {"level": cars[car].levels if part.start == 0 else 0.0 * cars[car].levels}
             values |= {"static": static[car]} if static else {}
+            if laws:
+                effect = np.diag(gain)[d + groups :]
+                values |= {"own": 0.5 * effect, "corner": _corners(cars[car].laws, effect, corners)}
+                values |= {"excess": cars[car].initial_excess(*start), "heard": heard[car] if heard else np.zeros(0)}
             values |= {"spring": sliders.stiffness, "share": sliders.limit}
             values["give"] = np.divide(
                 1.0, sliders.stiffness, out=np.zeros_like(sliders.stiffness), where=sliders.stiffness > 0.0
@@ -140,13 +151,15 @@ class CarTable:
         for name in ("stuck", "stick"):
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
         del first_rows["pair"]
-        iterations = cars[0].iterations if element == DOUBLE else ITERATIONS[0]
+        iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
         self.rows = TableRows(
             pairs=pairs,
             reals=reals,
             iterations=iterations,
-            groups=(0.0,) * g,
+            groups=(0.0,) * groups,
             elements=e,
+            curves=(0.0,) * laws,
+            corners=corners,
             pieces=node_count - 1,
             **first_rows,
         )
@@ -165,7 +178,7 @@ class CarTable:
         """
         tile_count, poles = (
             -(-len(weights[0]) // TILE),
-            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.rows.groups)),
+            (self.states - 2 * (len(self.cars[0].slip) + self.plates) - len(self.cars[0].strokes)),
         )
         table = aligned_table(tile_count * self.states * TILE, self.element)
         view = table.reshape(tile_count, self.states, TILE, table.shape[1])
@@ -180,3 +193,32 @@ class CarTable:
                 rows[:, poles:] = weights[car][:, states:]
             view[..., lane] = padded.reshape(tile_count, TILE, self.states).transpose(0, 2, 1)
         return table
+
+
+def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Vector:
+    """Return the laws g over r = x + G g(x)/2 as sides, breakpoints and slope changes; (laws, count, 3).
+
+    Args:
+        laws: laws over displacement.
+        effects: effects G of their forces on their displacements [m/N]; (laws,).
+        count: number of breakpoints; laws with fewer have slope changes of zero.
+    """
+    numbers = np.zeros((len(laws), count, 3))
+    for row, law, effect in zip(numbers, laws, effects.tolist(), strict=True):
+        filled = 0
+        for side in (1.0, -1.0):
+            chosen = np.flatnonzero(np.copysign(1.0, law.breakpoints) == side)
+            chosen = chosen[np.argsort(np.abs(law.breakpoints[chosen]), kind="stable")]
+            slopes = side * np.cumsum(law.changes[chosen])
+            if np.any(1.0 + 0.5 * effect * slopes <= 0.0):
+                raise SimulationError(
+                    f"{law.name}: its tangent at rest is not positive in this car, so the reduced engine cannot follow "
+                    "its softer segments; use the MuJoCo engine"
+                )
+            steepness = slopes / (1.0 + 0.5 * effect * slopes)
+            part = row[filled : filled + len(chosen)]
+            part[:, 0] = side
+            part[:, 1] = side * (law.breakpoints[chosen] + 0.5 * effect * law.force(law.breakpoints[chosen]))
+            part[:, 2] = side * np.diff(steepness, prepend=0.0)
+            filled += len(chosen)
+    return numbers

@@ -96,6 +96,20 @@ def sensor_outputs(
     )
 
 
+def sensor_laws(model: PoleModel, columns: Sequence[int], tyre_load: Mapping[str, float] | None) -> Vector:
+    """Return the contributions of the forces g of the laws over displacement to the sensors of a car; (sensors, laws).
+
+    Args:
+        model, columns, tyre_load: see `sensor_outputs`.
+    """
+    inputs, matrices = model.matrices.system.inputs, model.matrices
+    loads = [] if tyre_load is None else [(tyre, tyre_load[inputs[tyre]]) for tyre in columns]
+    tyres = [[-1.0 / load if law.plate == tyre else 0.0 for law in model.laws] for tyre, load in loads]
+    others = np.zeros((len(matrices.sensors), len(model.laws)))
+    shape = (-1, len(model.laws))
+    return np.concatenate([np.reshape(tyres, shape), others, matrices.sides.laws.reshape(shape)])
+
+
 def feedback_at_rest(
     dampers: Sequence[Damper],
     owners: npt.NDArray[np.int64],

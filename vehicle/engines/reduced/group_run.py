@@ -12,20 +12,13 @@ import numpy.typing as npt
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
-from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_outputs
+from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_laws, sensor_outputs
 from vehicle.engines.reduced.load_outputs import load_outputs
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
 from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, SINGLE, TILE, OutputTiles, aligned_table
-from vehicle.engines.reduced.validity import (
-    Validity,
-    check_stride,
-    exceeded_segments,
-    rotating_bodies,
-    segment_outputs,
-    tyre_outputs,
-)
+from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bodies, tyre_outputs
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
 from vehicle.model.laws.controller_fmu import controllers
@@ -98,7 +91,19 @@ class GroupRun:
         )
         self.start, self.cars = (
             start,
-            CarTable(factors, dampers, start, element, sensors, [model.matrices.sides.static for model in models]),
+            CarTable(
+                factors,
+                dampers,
+                start,
+                element,
+                sensors,
+                [model.matrices.sides.static for model in models],
+                [
+                    sensor_laws(model, columns, static if present_load else None)
+                    for model, static in zip(models, tyre_load, strict=True)
+                    if model.laws
+                ],
+            ),
         )
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
@@ -107,20 +112,21 @@ class GroupRun:
         Args:
             table: time histories; (channels, all cars, samples).
             rows_of_cars: rows of the cars of this group.
-            channels: names of the channels; `friction_<index>` is the mean nonlinear force of a damper.
+            channels: names of the channels; `friction_<index>` is the mean nonlinear force of a damper,
+                `law_<index>` the force g of a law over displacement.
 
         Returns:
             Validity of the motion of each car.
         """
         matrices = self.models[0].matrices
-        system, segments, bodies = matrices.system, matrices.segments, rotating_bodies(matrices)
+        system, laws, bodies = matrices.system, self.models[0].laws, rotating_bodies(matrices)
         count, load_names = len(self.dampers[0]), () if self.loads is None else self.loads.names
-        # Rows of a sample: positions, levels (tyre loads, segments; load channels), then of the dampers: velocities,
-        # forces, friction, coefficients.
+        # Rows of a sample: positions, levels (tyre loads; load channels), then of the dampers: velocities, forces,
+        # friction, coefficients, then the forces of the laws over displacement.
         position_names = [name for name in channels if name in system.outputs]
         tyre_wheels = {f"tyre_{wheel}_force_z": wheel for wheel in system.inputs}
         levels = TILE * -(-len(position_names) // TILE)
-        watched = TILE * -(-(len(tyre_wheels) + len(segments)) // TILE)
+        watched = TILE * -(-len(tyre_wheels) // TILE)
         speeds = levels + watched + TILE * -(-len(load_names) // TILE)
         rows = {name: row for row, name in enumerate(position_names)}
         rows |= {name: levels + row for row, name in enumerate(tyre_wheels)}
@@ -130,6 +136,8 @@ class GroupRun:
             rows |= {name: speeds + part * count + index for part, name in enumerate(names)}
         for k, index in enumerate(self.feedback.dampers.tolist()):
             rows[f"damper_{system.inputs[index]}_coefficient"] = speeds + 3 * count + k
+        curves = speeds + 3 * count + len(self.feedback.dampers)
+        rows |= {f"law_{index}": curves + index for index in range(len(laws))}
         static_values = np.zeros((len(channels), self.cars.table.shape[1]))
         for row, name in enumerate(channels):
             if name in tyre_wheels:
@@ -155,14 +163,15 @@ class GroupRun:
             ),
             rotations=self.cars.tiles(rotations),
             loads=len(tyre_wheels),
+            tyres=np.array([law.plate for law in laws], dtype=np.int64),
             watched=watched,
             every=check_stride(self.interval),
-            always=bool(segments) or any(name in tyre_wheels or name in load_names for name in channels),
+            always=any(name in tyre_wheels or name in load_names for name in channels),
             wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
             offset=static_values,
             weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(self.element),
         )
-        width = speeds + 3 * count + len(self.feedback.dampers)
+        width = curves + len(laws)
         y = aligned_table((PAST + INNER_BLOCK) * width, self.element)
         first_sample = y[(PAST - 1) * width :][:width]
         for lane, (car, _) in enumerate(self.cars.lanes):
@@ -170,7 +179,12 @@ class GroupRun:
             outputs, columns = linear[car], self.factors[car].columns
             initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ self.start.ravel()
             first_sample[levels:, lane][: len(initial)] = initial
-        first_sample[speeds + 3 * count :] = 0.5 * self.feedback.laws["softest"][:, None]
+            excess = self.factors[car].initial_excess(*self.start)
+            first_sample[curves:, lane] = excess
+            for law, force in zip(laws, excess, strict=True):
+                if law.plate >= 0:
+                    first_sample[levels + law.plate, lane] -= force
+        first_sample[speeds + 3 * count : curves] = 0.5 * self.feedback.laws["softest"][:, None]
         peaks = aligned_table(len(bodies) + 2 * watched, self.element)
         controls = [
             (f"damper_{system.inputs[index]}", law.controlled)
@@ -186,8 +200,8 @@ class GroupRun:
         ]
 
     def _levels(self, model: PoleModel, watched: int) -> Outputs:
-        """Return the levels of a car as outputs: tyre loads and segments, filled up to `watched` rows, then loads."""
-        outputs = tyre_outputs(model) + segment_outputs(model)
+        """Return the levels of a car as outputs: linear tyre loads, filled up to `watched` rows, then loads."""
+        outputs = tyre_outputs(model)
         idle = ((0, watched - len(outputs.poles)), (0, 0))
         outputs = Outputs(
             poles=np.pad(outputs.poles, idle),
@@ -233,14 +247,12 @@ class GroupRun:
         car_peaks: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]
     ) -> Validity:
         """Return the validity of the motion of a car from its peaks; see `step_cars` for their order."""
-        rotations, low, high = car_peaks[: len(bodies)], car_peaks[len(bodies) :: 2], car_peaks[len(bodies) + 1 :: 2]
-        wheels, segments = model.matrices.system.inputs, model.matrices.segments
-        segment_rows = slice(len(wheels), len(wheels) + len(segments))
+        rotations, low = car_peaks[: len(bodies)], car_peaks[len(bodies) :: 2]
+        wheels = model.matrices.system.inputs
         return Validity(
             angles=dict(zip(bodies, np.sqrt(rotations).tolist(), strict=True)),
             loads={wheel: tyre_load[wheel] + load for wheel, load in zip(wheels, low.tolist(), strict=False)},
             one_sided=model.matrices.one_sided,
-            exceeded=exceeded_segments(segments, low[segment_rows], high[segment_rows]),
         )
 
     def statistics(self, validity: Validity, samples: int, wall_time: float) -> Statistics:

@@ -2,7 +2,7 @@
 
 u = Re(modal xi), u' = Re(modal s xi), u'' = Re(modal s xi') with xi' of the poles.
 
-xi' = s xi + b_z z + b_c z' + e f: plates, damper forces and forces on slopes act directly on xi' and hence on u'', and
+xi' = s xi + b_z z + b_c z' + e f: plates, forces f and forces on slopes act directly on xi' and hence on u'', and
 on no other part of a load.
 """
 
@@ -41,6 +41,12 @@ def load_outputs(model: PoleModel, loads: LoadRows) -> Outputs:
 def direct_forces(model: PoleModel, loads: LoadRows) -> Vector:
     """Return the rows of loads over the nonlinear damper forces at the same instant; (loads, d)."""
     return np.asarray(loads.friction + (loads.acceleration @ (model.modal * model.poles @ model.force)).real)
+
+
+def direct_laws(model: PoleModel, loads: LoadRows) -> Vector:
+    """Return the rows of loads over the forces g of the laws over displacement at the same instant; (loads, laws)."""
+    rate = model.modal * model.poles
+    return np.asarray(loads.law - (loads.acceleration @ (rate @ model.scalar_force[:, model.groups :])).real)
 
 
 def direct_slopes(model: PoleModel, loads: LoadRows) -> Vector:

@@ -1,24 +1,27 @@
-"""Car as a sum over its poles: all nonlinear forces on the shaker are damper forces.
+"""Car as a sum over its poles: nonlinear forces are those of dampers and of laws over one displacement each.
 
 With the matrices of `vehicle.engines.linear` (dampers sliding, ideal joints eliminated) the state x = (y, y', f_b)
 obeys
 
     x' = A x + B_z z + B_c z' + E f
 
-with the plate displacements z and the nonlinear damper forces f (friction, and the excess of a degressive law over D
-v). A = V diag(s) V^-1 transforms this into one scalar equation for each pole, xi' = s xi + b_z z + b_c z' + e f, and
-every channel into a sum over the poles plus direct terms of z, z' and f. Only one pole of a conjugate pair is stored.
+with the plate displacements z and the nonlinear forces f: of the dampers (friction, and the excess of a degressive law
+over D v), and of the scalar elements, each over one displacement (groups of Jenkins elements of presliding friction,
+then the laws of `vehicle.engines.linear.displacement_laws` beyond their tangent). A = V diag(s) V^-1 transforms this
+into one scalar equation for each pole, xi' = s xi + b_z z + b_c z' + e f, and every channel into a sum over the poles
+plus direct terms of z, z' and f. Only one pole of a conjugate pair is stored.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.displacement_laws import DisplacementLaw, law_rows
 from vehicle.engines.linear.first_order import first_order
 from vehicle.errors import ConfigurationError
 
@@ -38,6 +41,10 @@ class Outputs:
     poles: Complex
     height: Vector
     velocity: Vector
+
+    def part(self, rows: slice) -> Outputs:
+        """Return some of the outputs."""
+        return Outputs(poles=self.poles[rows], height=self.height[rows], velocity=self.velocity[rows])
 
     def __add__(self, other: Outputs) -> Outputs:
         """Return these outputs followed by others."""
@@ -62,8 +69,9 @@ class PoleModel:
         slope: effect of the velocity of each plate due to the static load on the slope, a part of b_c; (p, w), (p, 0)
             for standing tyres.
         matrices: matrices of the car.
-        slider_rows, slider_force: displacements of the groups of Jenkins elements, real part taken, (g, p), and the
-            effect of their forces, (p, g).
+        scalar_rows: displacements x of the g scalar elements: groups of Jenkins elements, then the laws.
+        scalar_force: effect of their forces; (p, g).
+        laws: nonlinear laws over displacement.
     """
 
     poles: Complex
@@ -76,8 +84,26 @@ class PoleModel:
     branch: Complex
     slope: Complex
     matrices: CarMatrices
-    slider_rows: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
-    slider_force: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
+    scalar_rows: Outputs
+    scalar_force: Complex
+    laws: tuple[DisplacementLaw, ...] = ()
+
+    @property
+    def groups(self) -> int:
+        """Return the number of groups of Jenkins elements, which come before the laws over displacement."""
+        return int(self.scalar_force.shape[1]) - len(self.laws)
+
+    @property
+    def law_outputs(self) -> Outputs:
+        """Return the displacements x of the laws over displacement as outputs."""
+        return self.scalar_rows.part(slice(self.groups, None))
+
+    def without_laws(self) -> PoleModel:
+        """Return the model with linear laws over displacement, each with its tangent at rest."""
+        groups = slice(0, self.groups)
+        return replace(
+            self, scalar_rows=self.scalar_rows.part(groups), scalar_force=self.scalar_force[:, groups], laws=()
+        )
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
         """Return the rows of acceleration channels, as displacements, and of dynamic tyre force channels.
@@ -135,12 +161,14 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         raise ConfigurationError(message)
     form = first_order(matrices.system)
     w = len(form.system.inputs)
-    sliders = matrices.sliders.rows.reshape(-1, len(matrices.system.mass))
-    further = np.zeros((len(form.state), matrices.slope.shape[1] + len(sliders)))
+    scalars = np.concatenate(
+        [matrices.sliders.rows.reshape(-1, matrices.system.size), law_rows(matrices.laws, matrices.system.size)]
+    )
+    further = np.zeros((len(form.state), matrices.slope.shape[1] + len(scalars)))
     if further.size:
         mass = form.basis.T @ form.system.mass @ form.basis
         slope = matrices.slope.reshape(len(form.basis), -1)
-        further[form.velocities] = np.linalg.solve(mass, form.basis.T @ np.hstack([slope, sliders.T]))
+        further[form.velocities] = np.linalg.solve(mass, form.basis.T @ np.hstack([slope, scalars.T]))
     inputs = np.hstack([form.input, form.input_rate, form.friction, further])
     poles, vectors = np.linalg.eig(form.state)
     selected = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
@@ -161,6 +189,22 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         branch=weighted[form.branches],
         slope=residues[:, forces:slopes],
         matrices=matrices,
-        slider_rows=sliders @ modal,
-        slider_force=residues[:, slopes:],
+        scalar_rows=_scalar_rows(matrices, scalars @ modal, poles[selected]),
+        scalar_force=residues[:, slopes:],
+        laws=matrices.laws,
     )
+
+
+def _scalar_rows(matrices: CarMatrices, displacements: Complex, poles: Complex) -> Outputs:
+    """Return the displacements x = d + tau d' of the scalar elements, over the plates of their tyres.
+
+    Args:
+        matrices: matrices of the car.
+        displacements: displacements d of the elements over the poles; (g, p).
+        poles: the poles; (p,).
+    """
+    groups, wheels = len(displacements) - len(matrices.laws), len(matrices.system.inputs)
+    rate_time = np.concatenate([np.zeros(groups), [law.rate_time for law in matrices.laws]])[:, None]
+    plates = np.array([-1] * groups + [law.plate for law in matrices.laws], dtype=int)[:, None]
+    height = -1.0 * (plates == np.arange(wheels))
+    return Outputs(poles=displacements + rate_time * displacements * poles, height=height, velocity=rate_time * height)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
-from vehicle.engines.reduced.load_outputs import direct_forces, slope_loads
+from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.step_factors import car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE
+from vehicle.engines.simulation.recorder import lift_off_notices
 from vehicle.engines.simulation.recording import Recording
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import channel_units, wheel_channels
@@ -60,6 +62,7 @@ def simulate_reduced(
     loads = loads and loads.only(names)
     # The force of a load at an instant contains the mean forces of the dampers in both adjacent steps.
     forces = [f"friction_{index}" for index in range(len(dampers))] if loads else []
+    forces += [f"law_{index}" for index in range(len(model.laws))] if loads else []
     tyres = {f"tyre_{wheel}_force_z": wheel for wheel in signal.wheels} if loads and rolling else {}
     table = np.empty((len(names) + len(forces) + len(tyres), 1, samples))
     columns = [inputs.index(wheel) for wheel in signal.wheels]
@@ -69,7 +72,8 @@ def simulate_reduced(
         [model], factors, [dampers], [tyre_load], signal, interval, every, DOUBLE, present_load=rolling, loads=loads
     )
     (validity,) = group.fill(table, [0], [*names, *forces, *tyres])
-    for load, row in zip(loads.names, direct_forces(model, loads), strict=True) if loads else ():
+    direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
+    for load, row in zip(loads.names, direct, strict=True) if loads else ():
         for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
             table[names.index(load), 0] += force * history
     time = uniform_time(samples=samples, timestep=interval)
@@ -78,12 +82,16 @@ def simulate_reduced(
         added = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)
         for load, history in zip(loads.names, added, strict=True):
             table[names.index(load), 0] += history
+    histories = dict(zip(names, table[: len(names), 0], strict=True))
+    statistics = group.statistics(validity, samples, clock.perf_counter() - started)
+    one_sided = [wheel for wheel in inputs if wheel in model.matrices.one_sided]
+    notices = lift_off_notices(histories, one_sided, tyre_load, record_rate)
     return Recording(
         time=time,
-        channels=dict(zip(names, table[: len(names), 0], strict=True)),
+        channels=histories,
         units=channel_units(names),
         excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
         pose_time=np.zeros(0),
         poses=np.zeros((0, 0)),
-        statistics=group.statistics(validity, samples, clock.perf_counter() - started),
+        statistics=replace(statistics, notices=notices),
     )

@@ -161,6 +161,28 @@ def fill_outputs(
 
 
 @inlined
+def subtract_excess(
+    reading: OutputTiles, laws: Any, begin: int, stride: int, size: int, y: Any, width: int, levels: int, forces: int
+) -> None:
+    """Subtract the forces g of the laws of tyres from their linear loads.
+
+    Args:
+        reading: output tiles.
+        laws: tuple with the length of the laws over displacement.
+        begin, stride, size: first sample, stride and end of the samples.
+        y, width: see `fill_outputs`.
+        levels, forces: first rows of the levels and of the forces of the laws in a sample of the outputs.
+    """
+    for i in range(len(laws)):
+        if reading.tyres[i] < 0:
+            continue
+        for sample in range(begin, size, stride):
+            row = (PAST + sample) * width
+            level = row + levels + reading.tyres[i]
+            store(y, level, load(y, level) - load(y, row + forces + i))
+
+
+@inlined
 def largest_rotation(values: Any, previous: Any) -> Any:
     """Return the maximum of the square of a rotation and its previous maximum."""
     x, y, z = of_cars(values[0]), of_cars(values[1]), of_cars(values[2])

@@ -27,6 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.damper_elements import SliderElements, no_sliders
+from vehicle.engines.linear.displacement_laws import DisplacementLaw
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 Vector = npt.NDArray[np.float64]
@@ -55,6 +56,10 @@ the round-off of sums in single precision. The dampers of the `focus` car, also 
 ACCURACY = 1e-9
 """Error of a damper force over its change in the step, at which the iteration ends in double precision."""
 
+SINGLE_ACCURACY, SINGLE_ITERATIONS = 1e-6, 12
+"""The same in single precision for cars with laws over displacement, the round-off of its sums, and the maximum number
+of iterations: a bump stop acts along its damper, so that each changes the force of the other."""
+
 ITERATIONS = 2, 60
 """Minimum and maximum number of iterations. For rho above 1, too, the iteration converges: it minimises a convex
 function by one coordinate at a time, because the gains are symmetric and positive."""
@@ -77,17 +82,18 @@ class CarFactors:
         integrated: indices of the integrated poles, p pairs and q real poles; (p + q,).
         pairs: p.
         plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
-        step: E - 1 and factors of mean damper forces, their slopes, mean forces of Jenkins elements, z', mean z', slope
+        step: E - 1 and factors of mean damper forces, their slopes, mean forces of scalar elements, z', mean z', slope
             forces and z for the integrated poles; (p + q, 1 + 2 d + g + 2 m + ...).
-        direct: contributions of mean forces, their slopes, forces of Jenkins elements, z' and z to eta of all poles;
+        direct: contributions of mean forces, their slopes, forces of scalar elements, z' and z to eta of all poles;
             (n, 2 d + g + 2 m).
         slip: rows of the damper velocities; (d, n).
         gains: contributions of z', mean forces and slopes to the damper velocities and to the displacements of the
-            Jenkins elements; (d + g, m), (d + g, d + g), (d + g, d).
+            scalar elements; (d + g, m), (d + g, d + g), (d + g, d).
         strokes: rows of these displacements; (g, n). levels: contributions of z to them; (g, m).
-        steepness: largest slope of the force on each, over velocity for a damper, over displacement for Jenkins
-            elements, by the mean force of a step; (d + g,).
+        steepness: smallest and largest slopes of the mean force of a step, over velocity for a damper, over
+            displacement for a scalar element; (2, d + g).
         sliders: numbers of the Jenkins elements.
+        laws: nonlinear laws over displacement, the last scalar elements.
     """
 
     columns: list[int]
@@ -100,8 +106,9 @@ class CarFactors:
     gains: tuple[Vector, Vector, Vector]
     strokes: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
     levels: Vector = field(default_factory=lambda: np.zeros((0, 0)))
-    steepness: Vector = field(default_factory=lambda: np.full(1, np.inf))
+    steepness: Vector = field(default_factory=lambda: np.array([[0.0], [np.inf]]))
     sliders: SliderElements = field(default_factory=no_sliders)
+    laws: tuple[DisplacementLaw, ...] = ()
 
     @property
     def reals(self) -> int:
@@ -121,24 +128,38 @@ class CarFactors:
     @property
     def _effects(self) -> Vector:
         """Return the largest change of each force over the change of another; 1 on the diagonal."""
-        gain, stiff = np.abs(self.gains[1]), np.isinf(self.steepness)
-        diagonal, steepness = np.diag(gain), np.where(stiff, 0.0, self.steepness)
-        effects = np.where(stiff, 1.0 / diagonal, steepness / (1.0 + diagonal * steepness))[:, None] * gain
+        (least, most), gain = self.steepness, np.abs(self.gains[1])
+        diagonal, stiff = np.diag(gain), np.isinf(most)
+        most = np.where(stiff, 0.0, most)
+        slope = np.maximum(most / (1.0 + diagonal * most), -least / (1.0 + diagonal * least))
+        effects = np.where(stiff, 1.0 / diagonal, slope)[:, None] * gain
         # A force that is zero at every velocity does not change.
-        effects = np.where(stiff | (steepness > 0.0), effects, 0.0)
+        effects = np.where(stiff | (most > 0.0) | (least < 0.0), effects, 0.0)
         np.fill_diagonal(effects, 1.0)
         return np.asarray(effects)
 
     @property
     def iterations(self) -> int:
-        """Return the number of Gauss-Seidel iterations over the forces that leaves `ACCURACY`.
+        """Return the number of Gauss-Seidel iterations over the forces in double precision; it leaves `ACCURACY`."""
+        return self._iterations_to(ACCURACY)
+
+    @property
+    def single_iterations(self) -> int:
+        """Return the number of iterations in single precision; 0 for a car that needs double precision."""
+        if self.coupling <= LARGEST_COUPLING:
+            return ITERATIONS[0]
+        count = self._iterations_to(SINGLE_ACCURACY) if self.laws else ITERATIONS[1]
+        return count if count <= SINGLE_ITERATIONS else 0
+
+    def _iterations_to(self, accuracy: float) -> int:
+        """Return the number of iterations that leaves an error of the forces over their change in the step.
 
         The change of a force is at most that of its input over the gain, whatever its law, and less if its law has no
         steep part, so the iteration of the linear equations with the absolute values of the gains is a bound.
         """
         effects, count = self._effects, 0
         error, iteration = np.ones(len(effects)), np.linalg.solve(np.tril(effects), np.triu(effects, 1))
-        while count < ITERATIONS[0] or (np.max(error) > ACCURACY and count < ITERATIONS[1]):
+        while count < ITERATIONS[0] or (np.max(error) > accuracy and count < ITERATIONS[1]):
             error, count = iteration @ error, count + 1
         return count
 
@@ -150,6 +171,19 @@ class CarFactors:
         """
         eta = -self.direct[self.integrated, -2 * len(self.columns) :] @ np.append(rates, displacements)
         return eta[: self.pairs], eta[self.pairs :].real
+
+    def initial_excess(self, displacements: Vector, rates: Vector) -> Vector:
+        """Return the forces g of the laws over displacement of a car at rest; arguments: see `start`."""
+        positions = [
+            law.rate_time * row @ rates + row @ displacements
+            for law, row in zip(self.laws, self._law_plates(), strict=True)
+        ]
+        return np.array([law.force(position) for law, position in zip(self.laws, positions, strict=True)])
+
+    def _law_plates(self) -> Vector:
+        """Return the displacements of the laws over the driven plates; (laws, m)."""
+        plates = np.array([law.plate for law in self.laws], dtype=int)
+        return np.where(plates[:, None] == np.array(self.columns), -1.0, 0.0)
 
     def rows(self, sensors: Complex) -> tuple[Vector, Vector]:
         """Return the rows of the pairs and of the real poles for `vehicle.engines.reduced.time_step.advance`.
@@ -222,7 +256,7 @@ def car_factors(
     if not models:
         return []
     h, driven = timestep, list(columns)
-    m, d, g = len(driven), models[0].force.shape[1], models[0].slider_force.shape[1]
+    m, d, g = len(driven), models[0].force.shape[1], models[0].scalar_force.shape[1]
     inputs_of_cars = [_Inputs(model, driven, None if exact else h) for model in models]
     # Compute the integrated poles of all cars at once.
     s, inputs, held, slope = (
@@ -251,10 +285,12 @@ def car_factors(
         plates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
         direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, plates, car_inputs.static])
         direct_factors[car_inputs.integrated, :-m] = direct[part]
-        rows = np.concatenate([model.slip, model.slider_rows.reshape(g, len(model.poles))])
+        scalars = model.scalar_rows
+        rows = np.concatenate([model.slip, scalars.poles])
         mean_force, ramp, mean_slider, rate, level = np.split(
             (rows @ direct_factors).real, np.cumsum([d, d, g, m]), axis=1
         )
+        rate[d:], level[d:] = rate[d:] + scalars.velocity[:, driven], level[d:] + scalars.height[:, driven]
         factors_of_cars.append(
             CarFactors(
                 columns=driven,
@@ -268,18 +304,35 @@ def car_factors(
                 strokes=rows[d:],
                 levels=level[d:],
                 steepness=_steepness(model),
-                sliders=model.matrices.sliders if g else no_sliders(),
+                sliders=model.matrices.sliders if model.groups else no_sliders(),
+                laws=model.laws,
             )
         )
     return factors_of_cars
 
 
 def _steepness(model: PoleModel) -> Vector:
-    """Return the largest slopes of the mean forces of a step of dampers and Jenkins elements; (d + g,)."""
-    if not model.slider_force.size:
-        return np.full(model.force.shape[1], np.inf)
+    """Return the smallest and the largest slopes of the mean forces of a step of dampers and scalar elements.
+
+    Args:
+        model: pole model of the car.
+
+    Returns:
+        Slopes; (2, d + g).
+    """
+    stiff, d = np.full(model.force.shape[1], np.inf), model.force.shape[1]
+    if not model.scalar_force.size:
+        return np.stack([np.zeros(d), stiff])
     sliders = model.matrices.sliders
-    return np.concatenate([sliders.steepness, 0.5 * sliders.stiffness.sum(axis=1)])
+    slopes = 0.5 * np.array([law.slopes for law in model.laws]).reshape(-1, 2)
+    groups = 0.5 * sliders.stiffness.sum(axis=1)
+    dampers = sliders.steepness if len(groups) else stiff
+    return np.stack(
+        [
+            np.concatenate([np.zeros(d + len(groups)), slopes[:, 0]]),
+            np.concatenate([dampers, groups, slopes[:, 1]]),
+        ]
+    )
 
 
 class _Inputs:
@@ -306,8 +359,7 @@ class _Inputs:
         slow = self.slow[:, None]
         self.static = np.where(slow, 0.0, -height / np.where(slow, 1.0, model.poles[:, None]))
         self.held = np.where(slow, height, 0.0)
-        sliders = model.slider_force.reshape(len(model.poles), -1)
-        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force, sliders])
+        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force, model.scalar_force])
         self.slope = model.slope[:, columns] if model.slope.shape[1] else model.slope
         self.integrated = np.arange(len(self.poles))
         if timestep is not None:

@@ -42,13 +42,15 @@ class TableRows(NamedTuple):
         real: first row of the factors of the real poles.
         groups: tuple with the length of the groups of Jenkins elements, which the compiler knows.
         elements: number of elements of a group.
-        slip: contribution of z' at the end of a step to the damper velocities and to the displacements of the groups,
-            by plates. level: contribution of z to the latter.
-        gain, ramp: contributions of the mean forces of dampers and groups, and of the slopes of the damper forces.
+        curves: tuple with the length of the laws over displacement, which the compiler knows.
+        corners: number of breakpoints of a law.
+        slip: contribution of z' at the end of a step to the damper velocities and to the displacements of groups and
+            laws, by plates. level: contribution of z to the latter.
+        gain, ramp: contributions of the mean forces of dampers, groups and laws, and of the slopes of damper forces.
         law: `pieces` + 1 breakpoints (x, F_c/2, friction over its limit) of each damper.
         pieces: number of segments of the laws.
         limit, full: friction limits; velocities of full friction.
-        inputs: damper forces, their slopes, forces of the groups, z' and mean z' of a step, and the inputs by
+        inputs: damper forces, their slopes, forces of groups and laws, z' and mean z' of a step, and the inputs by
             `vehicle.engines.reduced.feedback`.
         viscous: damping constants in the poles.
         velocity, earlier: current velocities and those of the last step.
@@ -60,6 +62,10 @@ class TableRows(NamedTuple):
         slider: forces of the elements at the beginning of the step.
         place: displacements of the groups there.
         static: side forces at rest.
+        corner: `corners` numbers (side, breakpoint, slope change) of each law, over the displacement without its force
+            at the end of the step.
+        own: halves of the effects of the forces of the laws on their displacements.
+        excess: forces g of the laws. heard: contributions of these to each sensor.
         work: work space for the solution of a step.
     """
 
@@ -68,6 +74,8 @@ class TableRows(NamedTuple):
     iterations: int
     groups: tuple[float, ...]
     elements: int
+    curves: tuple[float, ...]
+    corners: int
     real: int
     slip: int
     level: int
@@ -93,6 +101,10 @@ class TableRows(NamedTuple):
     slider: int
     place: int
     static: int
+    corner: int
+    own: int
+    excess: int
+    heard: int
     work: int
 
 
@@ -103,6 +115,7 @@ class OutputTiles(NamedTuple):
         positions, levels: tiles of the positions of acceleration channels, and of forces and displacements.
         rotations: one tile of rotations for each body.
         loads: number of the levels that are tyre loads, which come first.
+        tyres: level of the tyre of each law over displacement; -1 for a law that is no tyre.
         watched: number of the levels whose extremes are kept, a multiple of TILE.
         every: samples from one check of rotations and tyre loads to the next.
         always: compute levels at every sample; otherwise only at the checks.
@@ -115,6 +128,7 @@ class OutputTiles(NamedTuple):
     levels: Any
     rotations: Any
     loads: int
+    tyres: Any
     watched: int
     every: int
     always: bool

@@ -17,6 +17,19 @@ of the displacement over the step: second order, and no work is added at any ste
 equation u + G f(u) = r of a group is monotone and piecewise linear. Its solution lies between the corners with the
 nearest values of the left side, in whatever order the corners are.
 
+A law g over displacement (`vehicle.engines.linear.displacement_laws`) acts with the mean of both ends of the step, too:
+
+    x+ = w - G (g_n + g+)/2,    g+ = g(x+).
+
+G <= 2/K, because the compliance of a passive car with the tangent K of the law in it is at most 1/K at rest, and a step
+response at most twice that. The slope of g is at least -K, so x+ + G g(x+)/2 = r = w - G g_n/2 is monotone at any step,
+and also for a tyre that lifts off. Each segment of slope k gets the slope k/(1 + G k/2) over r, so
+
+    g+ = sum over j of a_j max(0, sign(p_j) (r - p_j)),    with p_j + G g(p_j)/2 as breakpoints,
+
+is a closed form without any search, and exactly zero in the segment in which the car is at rest. The work of the mean
+force is the change of the energy of the law in a step within one segment: second order.
+
 This module imports numba at the top, so only runs that compile import it.
 """
 
@@ -77,7 +90,7 @@ def prepare_groups(t: Any, r: TableRows, owners: Any, count: int, work: int) -> 
         work: first row of the corners: for each group the smallest and the largest mean force, then left side and mean
             force at each corner.
     """
-    half, size, width = filled(t, 0.5), 2 + 4 * r.elements, count + len(r.groups)
+    half, size, width = filled(t, 0.5), 2 + 4 * r.elements, count + len(r.groups) + len(r.curves)
     for group in range(len(r.groups)):
         at, first, limit = work + size * group, r.elements * group, load(t, r.limit + owners[group])
         gain = load(t, r.gain + (count + group) * (width + 1))
@@ -116,6 +129,16 @@ def group_force(t: Any, at: int, corners: int, value: Any) -> Any:
 
 
 @inlined
+def law_force(t: Any, r: TableRows, curve: int, value: Any) -> Any:
+    """Return the force g of a law over displacement at the end of a step from r, see above."""
+    force, zero = filled(t, 0.0), filled(t, 0.0)
+    for corner in range(r.corners):
+        row = r.corner + 3 * (r.corners * curve + corner)
+        force = force + load(t, row + 2) * maximum(load(t, row) * value - load(t, row + 1), zero)
+    return force
+
+
+@inlined
 def advance_groups(t: Any, r: TableRows, owners: Any, moved: int) -> None:
     """Advance the Jenkins elements over a step.
 
@@ -134,12 +157,13 @@ def advance_groups(t: Any, r: TableRows, owners: Any, moved: int) -> None:
 
 @inlined
 def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
-    """Solve for the forces of a step, damper velocities and displacements of the groups of Jenkins elements.
+    """Solve for the forces of a step, damper velocities and displacements of the scalar elements.
 
     The work space begins with the velocities and displacements without forces.
     """
     count = len(dampers)
-    sums = count + len(r.groups)
+    scalars = len(r.groups) + len(r.curves)
+    sums = count + scalars
     step, old = r.work + sums, r.inputs
     nodes = r.pieces + 1
     width = 3 * nodes
@@ -148,11 +172,16 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
     corners, slider = work + 4 * nodes * count, old + 2 * count
     zeros, ones = filled(t, 0.0), filled(t, 1.0)
     prepare_groups(t, r, owners, count, corners)
-    for group in range(len(r.groups)):
-        row = r.work + count + group
-        arriving = load(t, row) - load(t, r.place + group)
+    for scalar in range(scalars):
+        row = r.work + count + scalar
+        arriving = load(t, row)
+        if scalar < len(r.groups):
+            arriving = arriving - load(t, r.place + scalar)
+        else:
+            curve = scalar - len(r.groups)
+            arriving = arriving - load(t, r.own + curve) * load(t, r.excess + curve)
         for j in range(count):
-            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + (count + group) * count + j) * load(
+            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + (count + scalar) * count + j) * load(
                 t, old + j
             )
         store(t, row, arriving)
@@ -182,7 +211,7 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
                 if j != i:
                     other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
                     arriving = arriving + other * load(t, old + j)
-            for j in range(len(r.groups)):
+            for j in range(scalars):
                 arriving = arriving + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
             at, law = work + 4 * nodes * i, r.law + width * i
             force, hold = load(t, at + 2), load(t, law + 1)
@@ -195,18 +224,25 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
             store(t, old + i, zeros - force - load(t, r.hold + i))
             if iteration == r.iterations - 1:
                 store(t, step + i, hold)
-        for group in range(len(r.groups)):
-            i, value = count + group, load(t, r.work + count + group)
+        for scalar in range(scalars):
+            i, value = count + scalar, load(t, r.work + count + scalar)
             for j in range(count):
                 other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
                 value = value + other * load(t, old + j)
-            for j in range(len(r.groups)):
-                if j != group:
+            for j in range(scalars):
+                if j != scalar:
                     value = value + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
-            force = group_force(t, corners + (2 + 4 * r.elements) * group, 2 * r.elements, value)
-            store(t, slider + group, zeros - force)
-            if iteration == r.iterations - 1:
-                store(t, r.work + i, value - load(t, r.gain + i * (sums + 1)) * force)
+            if scalar < len(r.groups):
+                force = group_force(t, corners + (2 + 4 * r.elements) * scalar, 2 * r.elements, value)
+                store(t, slider + scalar, zeros - force)
+                if iteration == r.iterations - 1:
+                    store(t, r.work + i, value - load(t, r.gain + i * (sums + 1)) * force)
+            else:
+                curve = scalar - len(r.groups)
+                force = law_force(t, r, curve, value)
+                store(t, slider + scalar, zeros - filled(t, 0.5) * (load(t, r.excess + curve) + force))
+                if iteration == r.iterations - 1:
+                    store(t, r.excess + curve, force)
     advance_groups(t, r, owners, r.work + count)
     for i in range(count):
         stick = load(t, r.stick + i)
@@ -247,7 +283,7 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
         step: index of the step.
     """
     count, plates = len(dampers), rates.shape[1] // 4
-    row = r.inputs + 2 * count + len(r.groups)
+    row = r.inputs + 2 * count + len(r.groups) + len(r.curves)
     for k in range(2 * plates):
         store(t, row + k, broadcast(rates[step, k]))
     row += 2 * plates
@@ -282,7 +318,7 @@ def set_inputs(t: Any, r: TableRows, feedback: Feedback, rates: Any, laws: Any, 
 
 @inlined
 def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors: int) -> None:
-    """Add the direct terms of forces and plates at the end of a step to the sums of the sensors.
+    """Add the terms of forces, plates and laws over displacement at the end of a step to the sums of the sensors.
 
     Args:
         t, r, rates: see `vehicle.engines.reduced.time_stepping.step_cars`.
@@ -290,7 +326,7 @@ def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors
         count, sensors: numbers of dampers and of sensors.
     """
     plates = rates.shape[1] // 4
-    row, forces = r.direct, 2 * count + len(r.groups)
+    row, forces, curves = r.direct, 2 * count + len(r.groups) + len(r.curves), len(r.curves)
     for i in range(sensors):
         value = load(t, r.sensors + i)
         for k in range(forces):
@@ -298,6 +334,8 @@ def read_sensors(t: Any, r: TableRows, rates: Any, end: int, count: int, sensors
         for k in range(plates):
             value = value + load(t, row + forces + k) * broadcast(rates[end, k])
             value = value + load(t, row + forces + plates + k) * broadcast(rates[end, 2 * plates + k])
+        for k in range(curves):
+            value = value + load(t, r.heard + i * curves + k) * load(t, r.excess + k)
         store(t, r.sensors + i, value)
         row += forces + 2 * plates
 
@@ -330,7 +368,8 @@ def advance(
         step: index of the step.
     """
     count, plates = len(dampers), rates.shape[1] // 4
-    size, width, kept, solved = len(inputs), len(sums), changes.shape[0] > 0, count + len(r.groups)
+    size, width, kept = len(inputs), len(sums), changes.shape[0] > 0
+    solved = count + len(r.groups) + len(r.curves)
     pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
     set_inputs(t, r, feedback, rates, laws, step, dampers)
     for i in range(width):

@@ -10,7 +10,7 @@ from typing import Any
 
 from vehicle.compiler import numba_module, stamp
 from vehicle.engines.reduced.feedback import Feedback
-from vehicle.engines.reduced.sample_outputs import fill_outputs, update_peaks, write_channels
+from vehicle.engines.reduced.sample_outputs import fill_outputs, subtract_excess, update_peaks, write_channels
 from vehicle.engines.reduced.simd_vector import broadcast, filled, less, load, load_tuple, store
 from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, TILE, OutputTiles, TableRows
 from vehicle.engines.reduced.time_step import EXACT, advance, compiled_once, inlined
@@ -122,13 +122,15 @@ def step_cars(
     """
     count, plates = len(dampers), rates.shape[1] // 4
     poles = 2 * r.pairs + r.reals
-    forces = 2 * count + len(r.groups)
+    forces = 2 * count + len(r.groups) + len(r.curves)
     states = poles + forces + plates
     weights = (states + plates) * TILE
     positions = TILE * (reading.positions.shape[0] // weights)
-    # Rows of a sample: positions, levels, then of the dampers: velocities, forces, friction, coefficients.
+    # Rows of a sample: positions, levels, then of the dampers: velocities, forces, friction, coefficients, then the
+    # forces of the laws over displacement.
     speeds = positions + TILE * (reading.levels.shape[0] // weights)
-    width = speeds + 3 * count + feedback.dampers.shape[0]
+    curves = speeds + 3 * count + feedback.dampers.shape[0]
+    width = curves + len(r.curves)
     for i in range(TILE):
         store(t, r.work + i, filled(t, 0.0))
     zero = load_tuple(t, r.work, _TILE)
@@ -152,6 +154,8 @@ def step_cars(
                 store(x, at + poles + i, load(t, r.inputs + i))
             for i in range(plates):
                 store(x, at + poles + forces + i, broadcast(rates[step, i]))
+            for i in range(len(r.curves)):
+                store(y, (PAST + sample) * width + curves + i, load(t, r.excess + i))
             begin_damper_outputs(t, r, feedback, y, row, count)
             add_damper_outputs(t, r, feedback, y, row, count, 1.0)
         first_check = (1 - first - done) % reading.every
@@ -161,6 +165,7 @@ def step_cars(
         fill_outputs(
             reading.levels, x, x, states, 0, plate_z, done, False, zero, begin, stride, size, y, width, positions
         )
+        subtract_excess(reading, r.curves, begin, stride, size, y, width, positions, curves)
         update_peaks(reading, x, states, plate_z, done, zero, first_check, size, y, width, positions, peaks)
         for k in range(states):
             store(x, k, load(x, size * states + k))

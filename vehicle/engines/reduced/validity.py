@@ -1,8 +1,7 @@
-"""Valid range of the reduced engine: small rotations, tyres in contact, laws within their linear segments.
+"""Valid range of the reduced engine: small rotations, and tyres in contact if they are linear.
 
 The matrices belong to the design position. A part that rotates by an angle a changes the direction of its forces by a
-and lengths by a^2/2. A linear tyre that lifts off would pull. A spring with a table, or a bump stop, is linear only in
-the segment in which the car is at rest. All three are monitored during a run and reported as warnings.
+and lengths by a^2/2. A linear tyre that lifts off would pull. Both are monitored during a run and reported as warnings.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.car_matrices import CarMatrices, LinearSegment
+from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 Vector = npt.NDArray[np.float64]
@@ -55,13 +54,11 @@ class Validity:
         angles: largest rotation of each body [rad].
         loads: lowest tyre load of each wheel [N].
         one_sided: wheels whose tyres cannot pull.
-        exceeded: element name to displacement beyond its linear segment [m].
     """
 
     angles: Mapping[str, float]
     loads: Mapping[str, float]
     one_sided: frozenset[str]
-    exceeded: Mapping[str, float]
 
     @property
     def small_angles(self) -> bool:
@@ -71,12 +68,7 @@ class Validity:
     @property
     def within_limits(self) -> bool:
         """Return True if the motion stayed within the valid range of the matrices."""
-        return self.small_angles and not self.exceeded and not self.lifted
-
-    @property
-    def lifted(self) -> dict[str, float]:
-        """Return the lowest loads [N] of lifted one-sided tyres, by wheel; MuJoCo releases a lifted tyre."""
-        return {wheel: load for wheel, load in self.loads.items() if wheel in self.one_sided and load < 0.0}
+        return self.small_angles
 
     def warnings(self) -> tuple[str, ...]:
         """Return warnings for the exceeded limits."""
@@ -84,20 +76,11 @@ class Validity:
         largest = max(self.angles, key=lambda body: self.angles[body])
         if not self.small_angles:
             messages.append(
-                f"{largest} rotated by {self.angles[largest]:.3f} rad; the reduced engine, in which only the dampers "
-                f"are nonlinear, is valid up to {LARGEST_ANGLE:g} rad{REMEDY}"
-            )
-        for name, distance in self.exceeded.items():
-            messages.append(
-                f"{name} left the linear segment of its table by {1e3 * distance:.2g} mm; the reduced engine is valid "
-                f"only in the segment in which the car is at rest{REMEDY}"
-            )
-        for wheel, load in self.lifted.items():
-            messages.append(
-                f"tyre {wheel} lifts off its plate (load {load:.0f} N in the reduced engine, which is linear){REMEDY}"
+                f"{largest} rotated by {self.angles[largest]:.3f} rad; the reduced engine, whose geometry is linear, "
+                f"is valid up to {LARGEST_ANGLE:g} rad{REMEDY}"
             )
         for wheel, load in self.loads.items():
-            if load < 0.0 and wheel not in self.lifted:
+            if load < 0.0 and wheel not in self.one_sided:
                 messages.append(
                     f"tyre {wheel} would lift off its plate (lowest load {load:.0f} N); its linear tyre pulls, so the "
                     "result is outside the valid range"
@@ -120,25 +103,6 @@ def rotation_outputs(model: PoleModel, bodies: Sequence[str]) -> Outputs:
     return Outputs(poles=rotations, height=no_plates, velocity=no_plates)
 
 
-def segment_outputs(model: PoleModel) -> Outputs:
-    """Return the displacements of the laws with linear segments as outputs; (segments, ...)."""
-    segments, wheels = model.matrices.segments, len(model.matrices.system.inputs)
-    displacements = np.array([segment.row @ model.modal for segment in segments], dtype=complex).reshape(
-        -1, len(model.poles)
-    )
-    height = np.array([-1.0 * (np.arange(wheels) == segment.plate) for segment in segments]).reshape(-1, wheels)
-    return Outputs(poles=displacements, height=height, velocity=np.zeros_like(height))
-
-
 def tyre_outputs(model: PoleModel) -> Outputs:
     """Return the dynamic tyre loads, without static values, as outputs."""
     return model.outputs([f"tyre_{wheel}_force_z" for wheel in model.matrices.system.inputs])
-
-
-def exceeded_segments(segments: Sequence[LinearSegment], low: Vector, high: Vector) -> dict[str, float]:
-    """Return the displacement beyond each exceeded segment [m] by element; low, high: extremes [m], (segments,)."""
-    excess = [
-        max(segment.low - a, b - segment.high)
-        for segment, a, b in zip(segments, low.tolist(), high.tolist(), strict=True)
-    ]
-    return {segment.name: distance for segment, distance in zip(segments, excess, strict=True) if distance > 0.0}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -24,6 +24,9 @@ Vector = npt.NDArray[np.float64]
 
 CHUNK = 512
 """Number of samples between two flushes of the buffers, state checks and progress calls."""
+
+NO_LOAD = 1e-6
+"""Maximum load of a tyre that has left its plate over its static load: round-off in both engines, 1e-10 and 1e-8."""
 
 
 class Recorder:
@@ -343,15 +346,11 @@ class Recorder:
 
     def notices(self) -> tuple[str, ...]:
         """Return notices about one-sided tyres that left their plates."""
-        messages, e, rate = [], self.rows.layout, self.car.vehicle.solver.record_rate
-        for wheel, tyre in zip(self.wheels, e.tyres, strict=True):
-            away = self.channels[f"tyre_{wheel}_force_z"] <= 0.0
-            if tyre in e.bushings.one_sided and away.any():
-                messages.append(
-                    f"tyre {wheel} left its plate at t = {int(np.argmax(away)) / rate:.3f} s, for "
-                    f"{np.count_nonzero(away) / rate:.3g} s in all"
-                )
-        return tuple(messages)
+        e = self.rows.layout
+        one_sided = [wheel for wheel, tyre in zip(self.wheels, e.tyres, strict=True) if tyre in e.bushings.one_sided]
+        return lift_off_notices(
+            self.channels, one_sided, self.car.static.tyre_load, self.car.vehicle.solver.record_rate
+        )
 
     def recording(self, signal: Signal, statistics: Statistics) -> Recording:
         """Return the finished recording."""
@@ -368,3 +367,25 @@ class Recorder:
             poses=self.poses,
             statistics=statistics,
         )
+
+
+def lift_off_notices(
+    channels: Mapping[str, Vector], one_sided: Iterable[str], tyre_load: Mapping[str, float], record_rate: float
+) -> tuple[str, ...]:
+    """Return notices about one-sided tyres that left their plates, if their load is recorded.
+
+    Args:
+        channels: time histories by channel name.
+        one_sided: wheels whose tyres cannot pull.
+        tyre_load: static tyre loads [N] by wheel.
+        record_rate: rate of the samples [Hz].
+    """
+    messages = []
+    for wheel in one_sided:
+        away = channels.get(f"tyre_{wheel}_force_z", np.full(1, np.inf)) <= NO_LOAD * tyre_load[wheel]
+        if away.any():
+            messages.append(
+                f"tyre {wheel} left its plate at t = {int(np.argmax(away)) / record_rate:.3f} s, for "
+                f"{np.count_nonzero(away) / record_rate:.3g} s in all"
+            )
+    return tuple(messages)

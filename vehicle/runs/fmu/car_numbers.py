@@ -105,7 +105,7 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
         raise ConfigurationError(f"{car.vehicle.name}: has no damper; an FMU needs a car with dampers at its wheels")
     for damper in composition:
         _require_known(damper.name, damper.law)
-    model, wheels = car.poles, car.poles.matrices.system.inputs
+    model, wheels = car.poles.without_laws(), car.poles.matrices.system.inputs
     columns, rolling = list(range(len(wheels))), car.poles.slope.shape[1] > 0
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)
     sensors = sensor_outputs(model, laws, columns, car.static.tyre_load if rolling else None)

@@ -14,13 +14,7 @@ import numpy.typing as npt
 
 from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
-from vehicle.engines.reduced.validity import (
-    LARGEST_ANGLE,
-    rotating_bodies,
-    rotation_outputs,
-    segment_outputs,
-    tyre_outputs,
-)
+from vehicle.engines.reduced.validity import LARGEST_ANGLE, rotating_bodies, rotation_outputs, tyre_outputs
 from vehicle.errors import ConfigurationError
 from vehicle.names import channel_units, point_words
 
@@ -76,7 +70,7 @@ class OutputRows:
 
 def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], OutputRows]:
     """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers."""
-    model, vehicle = car.poles, car.vehicle
+    model, vehicle = car.poles.without_laws(), car.vehicle
     system, d = model.matrices.system, len(vehicle.composition.dampers)
     units, dampers = channel_units(channels), [damper.name for damper in vehicle.composition.dampers]
     outputs: list[Output] = []
@@ -174,8 +168,9 @@ def _each(rows: OutputRows) -> list[OutputRows]:
     for k in range(len(rows.fixed)):
         at = slice(k, k + 1)
         outputs = rows.outputs
-        single = Outputs(poles=outputs.poles[at], height=outputs.height[at], velocity=outputs.velocity[at])
-        parts.append(OutputRows(outputs=single, fixed=rows.fixed[at], force=rows.force[at], slope=rows.slope[at]))
+        parts.append(
+            OutputRows(outputs=outputs.part(at), fixed=rows.fixed[at], force=rows.force[at], slope=rows.slope[at])
+        )
     return parts
 
 
@@ -202,13 +197,16 @@ def watched_outputs(car: Car) -> tuple[OutputRows, Vector, list[str]]:
     model, matrices = car.poles, car.poles.matrices
     wheels, bodies = matrices.system.inputs, rotating_bodies(matrices)
     load = np.array([car.static.tyre_load[wheel] for wheel in wheels])
-    parts = [_linear(model, tyre_outputs(model), load), _linear(model, segment_outputs(model))]
+    # Tables come before tyres that cannot pull.
+    tables = [law for law in model.laws if not law.one_sided]
+    parts = [_linear(model, tyre_outputs(model), load)]
+    parts.append(_linear(model, model.law_outputs.part(slice(0, len(tables)))))
     parts.append(_linear(model, rotation_outputs(model, bodies)))
     limits = [(0.0, np.inf)] * len(wheels)
-    limits += [(segment.low, segment.high) for segment in matrices.segments]
+    limits += [(law.low, law.high) for law in tables]
     limits += [(-LARGEST_ANGLE, LARGEST_ANGLE)] * (3 * len(bodies))
     notices = [f"tyre {wheel} would lift off; this car is linear there, so the result is not valid" for wheel in wheels]
-    notices += [f"{segment.name} left the linear segment of its table" for segment in matrices.segments]
+    notices += [f"{law.name} left the linear segment of its table" for law in tables]
     notices += [
         f"{body} turned by more than {LARGEST_ANGLE:g} rad about {axis}; this car is valid up to there"
         for body in bodies

@@ -1,0 +1,157 @@
+"""Nonlinear laws over displacement about the static equilibrium: tables of springs and bushings, bump stops, tyres.
+
+K of the linear car contains the tangent k of each law. A law F(x) of the displacement x = d + tau d' from the static
+equilibrium, with d = row u - z over the plate of a tyre, adds the force -g(x) along its row,
+
+    g(x) = F(x) - F(0) - k x = sum over j of a_j max(0, sign(p_j) (x - p_j)),
+
+with the slope changes a_j at the breakpoints p_j. In the segment in which the car is at rest, g is exactly zero. A tyre
+that cannot pull has the force max(0, F_0 - K d - D d'): tau = D/K, one breakpoint F_0/K, and the slope change -K. The
+operating points of the tables are those of `vehicle.engines.simulation.force_curves`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.force_curves import curve_of
+from vehicle.engines.simulation.row_layout import wheels_of
+from vehicle.engines.simulation.rows import Rows
+from vehicle.names import AXES
+
+Vector = npt.NDArray[np.float64]
+
+BUSHING, SPRING, STOP, DECOUPLER = range(4)
+"""Types of elements, see `vehicle.engines.simulation.element_records.Tables`."""
+
+DIFFERENCE_STEP = 1e-6
+"""Step [m, rad, kg^1/2 m] of the central differences of the forces: truncation and round-off are both below 1e-8."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class DisplacementLaw:
+    """Nonlinear law over a displacement of the car.
+
+    Attributes:
+        name: name of the element.
+        element: type of the element, index among the elements of this type, and axis.
+        row: displacement d of the element over the velocity coordinates; (n,).
+        plate: index of the input under a tyre; -1 for other elements.
+        breakpoints: p_j [m], the sign of 0.0 and -0.0 is that of its side; (k,).
+        changes: a_j [N/m]; (k,).
+        rate_time: tau [s].
+        one_sided: True for a tyre that cannot pull.
+    """
+
+    name: str
+    element: tuple[int, int, int]
+    row: Vector
+    plate: int
+    breakpoints: Vector
+    changes: Vector
+    rate_time: float = 0.0
+    one_sided: bool = False
+
+    @property
+    def low(self) -> float:
+        """Lower end of the segment in which the car is at rest [m]."""
+        return float(np.max(self.breakpoints[np.signbit(self.breakpoints)], initial=-np.inf))
+
+    @property
+    def high(self) -> float:
+        """Upper end of the segment in which the car is at rest [m]."""
+        return float(np.min(self.breakpoints[~np.signbit(self.breakpoints)], initial=np.inf))
+
+    def force(self, position: npt.ArrayLike) -> Vector:
+        """Return g(x) [N]; x in m."""
+        distance = np.copysign(1.0, self.breakpoints) * (np.asarray(position)[..., None] - self.breakpoints)
+        return np.asarray(np.maximum(distance, 0.0) @ self.changes)
+
+    @property
+    def slopes(self) -> tuple[float, float]:
+        """Smallest and largest slope of g [N/m], at most and at least 0."""
+        extremes = [0.0]
+        for side in (True, False):
+            on_side = np.signbit(self.breakpoints) == side
+            outwards = np.argsort(np.abs(self.breakpoints[on_side]), kind="stable")
+            extremes += np.cumsum((-1.0 if side else 1.0) * self.changes[on_side][outwards]).tolist()
+        return min(extremes), max(extremes)
+
+
+def displacement_laws(rows: Rows, jacobian: Vector, preload: Vector) -> tuple[DisplacementLaw, ...]:
+    """Return the nonlinear laws over displacement of a car: its tables, then its tyres that cannot pull.
+
+    Args:
+        rows: rows of the car at rest.
+        jacobian: Jacobian of the rows; (rows, n).
+        preload: static forces of the rows.
+    """
+    laws, e, tables = [], rows.layout, rows.layout.tables
+    for index, (element_type, element, axis, position) in enumerate(
+        zip(tables.kinds.tolist(), tables.elements.tolist(), tables.axes.tolist(), tables.at.tolist(), strict=True)
+    ):
+        if element_type == BUSHING:
+            row, name = jacobian[e.bushings.rows[element, axis]], f"{rows.names[element]} along {AXES[axis]}"
+        elif element_type == SPRING:
+            row, name = jacobian[e.springs.rows[element]], f"spring {element + 1}"
+        elif element_type == DECOUPLER:
+            dof = int(e.fluids.dofs[element])
+            row, name = np.eye(rows.model.nv)[dof], str(rows.model.joint(rows.model.dof_jntid[dof]).name)
+            name = name.replace("/", " of ", 1)
+        else:
+            row, name = np.eye(rows.model.nv)[e.dampers.dofs[element]], f"stop of damper {element + 1}"
+        curve = curve_of(tables, index)
+        changes = np.diff(curve.slopes)
+        # A point on the line through its neighbours is not a breakpoint.
+        corners = np.abs(changes) > 1e-9 * np.max(curve.slopes)
+        plate = list(e.tyres).index(element) if element_type == BUSHING and axis == 2 and element in e.tyres else -1
+        breakpoints, changes = _about_rest(curve.knots[corners] - position, changes[corners])
+        laws.append(
+            DisplacementLaw(
+                name=name,
+                element=(element_type, element, axis),
+                row=row,
+                plate=plate,
+                breakpoints=breakpoints,
+                changes=changes,
+            )
+        )
+    bushings = e.bushings
+    for element in bushings.one_sided.tolist():
+        stiffness, row = float(bushings.stiffness[element, 2]), int(bushings.rows[element, 2])
+        plate = list(e.tyres).index(element)
+        laws.append(
+            DisplacementLaw(
+                name=f"tyre {wheels_of(rows.model)[plate]}",
+                element=(BUSHING, element, 2),
+                row=jacobian[row],
+                plate=plate,
+                breakpoints=np.array([float(preload[row]) / stiffness]),
+                changes=np.array([-stiffness]),
+                rate_time=float(bushings.damping[element, 2]) / stiffness,
+                one_sided=True,
+            )
+        )
+    return tuple(laws)
+
+
+def _about_rest(breakpoints: Vector, changes: Vector) -> tuple[Vector, Vector]:
+    """Return breakpoints and slope changes of g; a breakpoint at rest is one on either side.
+
+    There the tangent is a central difference over `DIFFERENCE_STEP`, between the slopes of both segments.
+    """
+    near = np.abs(breakpoints) < DIFFERENCE_STEP
+    share = 0.5 * (breakpoints[near] / DIFFERENCE_STEP + 1.0)
+    return (
+        np.concatenate([breakpoints[~near], np.zeros(len(share)), np.full(len(share), -0.0)]),
+        np.concatenate([changes[~near], changes[near] * share, changes[near] * (1.0 - share)]),
+    )
+
+
+def law_rows(laws: Sequence[DisplacementLaw], size: int) -> Vector:
+    """Return the displacements of laws over the velocity coordinates; (laws, n)."""
+    return np.array([law.row for law in laws]).reshape(len(laws), size)
