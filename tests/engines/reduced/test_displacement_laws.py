@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 import pytest
@@ -64,7 +65,10 @@ def quarter_cars(case):
     return dataclasses.replace(plain, laws=laws, one_sided=frozenset({"fr", "fl"} if tyre in CASES[case] else ()))
 
 
-RUN = {"record_rate": 1000.0, "channels": ["tyre_fr_force_z", "damper_fr_velocity", "suspension_mount_fr_acc_z"]}
+RUN: dict[str, Any] = {
+    "record_rate": 1000.0,
+    "channels": ["tyre_fr_force_z", "damper_fr_velocity", "suspension_mount_fr_acc_z"],
+}
 
 
 def reduced(case, step):
@@ -132,7 +136,12 @@ def test_a_batch_follows_the_single_run():
         dataclasses.replace(law, changes=0.7 * law.changes) if "stop" in law.name else law for law in soft.laws
     )
     cars = [quarter_cars("both"), dataclasses.replace(soft, laws=scaled), matrices(TYRE_DAMPING)]
-    run = {"tyre_load": [dict.fromkeys(("fr", "fl"), LOAD)] * 3, "dampers": [[damper()] * 2] * 3, "step": 5e-4, **RUN}
+    run: dict[str, Any] = {
+        "tyre_load": [dict.fromkeys(("fr", "fl"), LOAD)] * 3,
+        "dampers": [[damper()] * 2] * 3,
+        "step": 5e-4,
+        **RUN,
+    }
     batch = simulate_batch([pole_model(car) for car in cars], ROAD_OF_STOPS, **run)
     alone = simulate_batch(
         [pole_model(cars[1])], ROAD_OF_STOPS, **run | {"tyre_load": run["tyre_load"][:1], "dampers": run["dampers"][:1]}
