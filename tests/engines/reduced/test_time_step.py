@@ -8,10 +8,11 @@ import pytest
 
 from vehicle.compiler import numba_module
 from vehicle.engines.reduced.car_table import CarTable
+from vehicle.engines.reduced.inlining import EXACT
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, SINGLE
-from vehicle.engines.reduced.time_step import EXACT, solve_forces
+from vehicle.engines.reduced.time_step import solve_forces
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.vehicle import load_vehicle
 

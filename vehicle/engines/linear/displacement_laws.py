@@ -155,3 +155,16 @@ def _about_rest(breakpoints: Vector, changes: Vector) -> tuple[Vector, Vector]:
 def law_rows(laws: Sequence[DisplacementLaw], size: int) -> Vector:
     """Return the displacements of laws over the velocity coordinates; (laws, n)."""
     return np.array([law.row for law in laws]).reshape(len(laws), size)
+
+
+def forces_at_start(laws: Sequence[DisplacementLaw], columns: Sequence[int], plates: Vector) -> Vector:
+    """Return the forces g of laws of a car at rest over plates that are displaced and move; (laws,).
+
+    Args:
+        laws: the laws.
+        columns: indices of the driven plates.
+        plates: displacements [m] and velocities [m/s] of the driven plates; (2, m).
+    """
+    relative = dict(zip(columns, -plates.T, strict=True))
+    motions = [relative.get(law.plate, np.zeros(2)) for law in laws]
+    return np.array([law.force(d + law.rate_time * rate) for law, (d, rate) in zip(laws, motions, strict=True)])

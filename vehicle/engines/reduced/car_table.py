@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.displacement_laws import DisplacementLaw
+from vehicle.engines.linear.displacement_laws import DisplacementLaw, forces_at_start
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, TILE, TableRows, aligned_table
@@ -137,7 +137,10 @@ class CarTable:
             if laws:
                 effect = np.diag(gain)[d + groups :]
                 values |= {"own": 0.5 * effect, "corner": _corners(cars[car].laws, effect, corners)}
-                values |= {"excess": cars[car].initial_excess(*start), "heard": heard[car] if heard else np.zeros(0)}
+                values |= {
+                    "excess": forces_at_start(cars[car].laws, cars[car].columns, start),
+                    "heard": heard[car] if heard else np.zeros(0),
+                }
             values |= {"spring": sliders.stiffness, "share": sliders.limit}
             values["give"] = np.divide(
                 1.0, sliders.stiffness, out=np.zeros_like(sliders.stiffness), where=sliders.stiffness > 0.0

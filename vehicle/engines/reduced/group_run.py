@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.displacement_laws import forces_at_start
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
 from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_laws, sensor_outputs
@@ -179,7 +180,7 @@ class GroupRun:
             outputs, columns = linear[car], self.factors[car].columns
             initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ self.start.ravel()
             first_sample[levels:, lane][: len(initial)] = initial
-            excess = self.factors[car].initial_excess(*self.start)
+            excess = forces_at_start(laws, columns, self.start)
             first_sample[curves:, lane] = excess
             for law, force in zip(laws, excess, strict=True):
                 if law.plate >= 0:

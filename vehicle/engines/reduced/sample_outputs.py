@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from vehicle.engines.reduced.inlining import compiled_once, inlined
 from vehicle.engines.reduced.simd_vector import add_scaled, broadcast, load, maximum, minimum, of_cars, store
 from vehicle.engines.reduced.table_layout import PAST, TILE, OutputTiles
-from vehicle.engines.reduced.time_step import compiled_once, inlined
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
 
 TOGETHER = 4

@@ -128,13 +128,13 @@ class CarFactors:
     @property
     def _effects(self) -> Vector:
         """Return the largest change of each force over the change of another; 1 on the diagonal."""
-        (least, most), gain = self.steepness, np.abs(self.gains[1])
-        diagonal, stiff = np.diag(gain), np.isinf(most)
-        most = np.where(stiff, 0.0, most)
-        slope = np.maximum(most / (1.0 + diagonal * most), -least / (1.0 + diagonal * least))
+        (lowest, highest), gain = self.steepness, np.abs(self.gains[1])
+        diagonal, stiff = np.diag(gain), np.isinf(highest)
+        highest = np.where(stiff, 0.0, highest)
+        slope = np.maximum(highest / (1.0 + diagonal * highest), -lowest / (1.0 + diagonal * lowest))
         effects = np.where(stiff, 1.0 / diagonal, slope)[:, None] * gain
         # A force that is zero at every velocity does not change.
-        effects = np.where(stiff | (most > 0.0) | (least < 0.0), effects, 0.0)
+        effects = np.where(stiff | (highest > 0.0) | (lowest < 0.0), effects, 0.0)
         np.fill_diagonal(effects, 1.0)
         return np.asarray(effects)
 
@@ -171,19 +171,6 @@ class CarFactors:
         """
         eta = -self.direct[self.integrated, -2 * len(self.columns) :] @ np.append(rates, displacements)
         return eta[: self.pairs], eta[self.pairs :].real
-
-    def initial_excess(self, displacements: Vector, rates: Vector) -> Vector:
-        """Return the forces g of the laws over displacement of a car at rest; arguments: see `start`."""
-        positions = [
-            law.rate_time * row @ rates + row @ displacements
-            for law, row in zip(self.laws, self._law_plates(), strict=True)
-        ]
-        return np.array([law.force(position) for law, position in zip(self.laws, positions, strict=True)])
-
-    def _law_plates(self) -> Vector:
-        """Return the displacements of the laws over the driven plates; (laws, m)."""
-        plates = np.array([law.plate for law in self.laws], dtype=int)
-        return np.where(plates[:, None] == np.array(self.columns), -1.0, 0.0)
 
     def rows(self, sensors: Complex) -> tuple[Vector, Vector]:
         """Return the rows of the pairs and of the real poles for `vehicle.engines.reduced.time_step.advance`.

@@ -12,36 +12,20 @@ the force is linear with the slope (f_n - f_(n-1))/h: third order in the step. I
 damper curve, which acts with the mean of both ends. The forces depend on the velocities at the end of the step. They
 are solved by Gauss-Seidel iterations over the dampers, each by its inverse law (`vehicle.engines.reduced.car_table`).
 
-The Jenkins elements of a group act with the mean of their forces at both ends, t = clamp(t + k u, L) with the change u
-of the displacement over the step: second order, and no work is added at any step and stiffness, because u is exact. The
-equation u + G f(u) = r of a group is monotone and piecewise linear. Its solution lies between the corners with the
-nearest values of the left side, in whatever order the corners are.
-
-A law g over displacement (`vehicle.engines.linear.displacement_laws`) acts with the mean of both ends of the step, too:
-
-    x+ = w - G (g_n + g+)/2,    g+ = g(x+).
-
-G <= 2/K, because the compliance of a passive car with the tangent K of the law in it is at most 1/K at rest, and a step
-response at most twice that. The slope of g is at least -K, so x+ + G g(x+)/2 = r = w - G g_n/2 is monotone at any step,
-and also for a tyre that lifts off. Each segment of slope k gets the slope k/(1 + G k/2) over r, so
-
-    g+ = sum over j of a_j max(0, sign(p_j) (r - p_j)),    with p_j + G g(p_j)/2 as breakpoints,
-
-is a closed form without any search, and exactly zero in the segment in which the car is at rest. The work of the mean
-force is the change of the energy of the law in a step within one segment: second order.
+Scalar elements over one displacement, see `vehicle.engines.reduced.scalar_elements`, are solved with the dampers.
 
 This module imports numba at the top, so only runs that compile import it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from vehicle.compiler import OPTIONS, numba_module
 from vehicle.engines.reduced.feedback import Feedback, excess_coefficient
+from vehicle.engines.reduced.inlining import inlined
+from vehicle.engines.reduced.scalar_elements import advance_groups, group_force, law_force, prepare_groups
 from vehicle.engines.reduced.simd_vector import (
     add_scaled,
     broadcast,
@@ -52,107 +36,11 @@ from vehicle.engines.reduced.simd_vector import (
     maximum,
     minimum,
     of_cars,
-    select_below,
     store,
     weighted_sum,
 )
 from vehicle.engines.reduced.table_layout import TableRows
 from vehicle.model.laws.damper import friction_limit
-
-numba = numba_module()
-
-# Sums in the order of the source: the values of a car must not depend on the number of poles of other cars.
-EXACT = OPTIONS | {"fastmath": {"contract"}}
-
-
-def inlined(function: Callable[..., Any]) -> Any:
-    """Compile a function that is inlined in its callers, without reference counting."""
-    return numba.njit(no_cpython_wrapper=True, forceinline=True, _nrt=False, **EXACT)(function)
-
-
-def compiled_once(function: Callable[..., Any]) -> Any:
-    """Compile a function separately, without inlining: it is called once for many samples."""
-    return numba.njit(no_cpython_wrapper=True, _nrt=False, **EXACT)(function)
-
-
-FAR = 1e30
-"""Value of the left side of the equation of a group at an infinite displacement: the force is constant there."""
-
-
-@inlined
-def prepare_groups(t: Any, r: TableRows, owners: Any, count: int, work: int) -> None:
-    """Set the corners of the equation u + G f(u) = r of each group of Jenkins elements.
-
-    Args:
-        t, r: table and sections.
-        owners: index of the damper of each group.
-        count: number of dampers.
-        work: first row of the corners: for each group the smallest and the largest mean force, then left side and mean
-            force at each corner.
-    """
-    half, size, width = filled(t, 0.5), 2 + 4 * r.elements, count + len(r.groups) + len(r.curves)
-    for group in range(len(r.groups)):
-        at, first, limit = work + size * group, r.elements * group, load(t, r.limit + owners[group])
-        gain = load(t, r.gain + (count + group) * (width + 1))
-        low, high = filled(t, 0.0), filled(t, 0.0)
-        for i in range(r.elements):
-            slider, end = load(t, r.slider + first + i), limit * load(t, r.share + first + i)
-            low, high = low + half * (slider - end), high + half * (slider + end)
-        store(t, at, low)
-        store(t, at + 1, high)
-        for corner in range(2 * r.elements):
-            i = first + corner // 2
-            end = limit * load(t, r.share + i)
-            if corner % 2 == 0:
-                end = filled(t, 0.0) - end
-            u, force = (end - load(t, r.slider + i)) * load(t, r.give + i), filled(t, 0.0)
-            for j in range(r.elements):
-                slider, bound = load(t, r.slider + first + j), limit * load(t, r.share + first + j)
-                moved = slider + load(t, r.spring + first + j) * u
-                force = force + half * (slider + minimum(maximum(moved, filled(t, 0.0) - bound), bound))
-            store(t, at + 2 + 2 * corner, u + gain * force)
-            store(t, at + 3 + 2 * corner, force)
-
-
-@inlined
-def group_force(t: Any, at: int, corners: int, value: Any) -> Any:
-    """Return the mean force of a group from the left side of its equation; see `prepare_groups`."""
-    low, high = load(t, at), load(t, at + 1)
-    below, above, lower, upper = filled(t, -FAR), filled(t, FAR), low, high
-    for corner in range(corners):
-        left, force = load(t, at + 2 + 2 * corner), load(t, at + 3 + 2 * corner)
-        below = maximum(below, select_below(value, left, below, left))
-        lower = maximum(lower, select_below(value, left, low, force))
-        above = minimum(above, select_below(value, left, left, above))
-        upper = minimum(upper, select_below(value, left, force, high))
-    return lower + (upper - lower) * ((value - below) / (above - below))
-
-
-@inlined
-def law_force(t: Any, r: TableRows, curve: int, value: Any) -> Any:
-    """Return the force g of a law over displacement at the end of a step from r, see above."""
-    force, zero = filled(t, 0.0), filled(t, 0.0)
-    for corner in range(r.corners):
-        row = r.corner + 3 * (r.corners * curve + corner)
-        force = force + load(t, row + 2) * maximum(load(t, row) * value - load(t, row + 1), zero)
-    return force
-
-
-@inlined
-def advance_groups(t: Any, r: TableRows, owners: Any, moved: int) -> None:
-    """Advance the Jenkins elements over a step.
-
-    Args:
-        t, r, owners: see `prepare_groups`.
-        moved: first row of the changes of the displacements over the step.
-    """
-    for group in range(len(r.groups)):
-        u, limit = load(t, moved + group), load(t, r.limit + owners[group])
-        store(t, r.place + group, load(t, r.place + group) + u)
-        for i in range(r.elements * group, r.elements * (group + 1)):
-            end = limit * load(t, r.share + i)
-            force = load(t, r.slider + i) + load(t, r.spring + i) * u
-            store(t, r.slider + i, minimum(maximum(force, filled(t, 0.0) - end), end))
 
 
 @inlined

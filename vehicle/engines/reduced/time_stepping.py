@@ -10,10 +10,11 @@ from typing import Any
 
 from vehicle.compiler import numba_module, stamp
 from vehicle.engines.reduced.feedback import Feedback
+from vehicle.engines.reduced.inlining import EXACT, compiled_once, inlined
 from vehicle.engines.reduced.sample_outputs import fill_outputs, subtract_excess, update_peaks, write_channels
 from vehicle.engines.reduced.simd_vector import broadcast, filled, less, load, load_tuple, store
 from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, TILE, OutputTiles, TableRows
-from vehicle.engines.reduced.time_step import EXACT, advance, compiled_once, inlined
+from vehicle.engines.reduced.time_step import advance
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
 from vehicle.model.laws.control_laws import PRESENT
 
