@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-sha
 
 from tests.runs.fmu.master import Instance, drive, plates_of, written
 from tests.validation import validated
+from vehicle.engines.reduced.validity import LARGEST_ANGLE
 from vehicle.runs.car import Car, Road
 from vehicle.signals.excitation.signal import Signal
 
@@ -112,3 +114,21 @@ def test_a_lifted_tyre_gives_one_warning(tmp_path):
         instance.step(1e-3)
     lifted = [text for text in instance.messages if "tyre fl would lift off" in text]
     assert len(lifted) == 1 and lifted[0].startswith("at 0.0")
+
+
+def test_a_part_that_turns_too_far_gives_a_warning(tmp_path):
+    """The part and the amplitude of the plate at which the reduced engine, too, leaves its valid range."""
+    car, time = Car.load("focus_road"), np.arange(0.0, 0.8001, 1e-3)
+    lift = 0.5 * (1.0 - np.cos(2.0 * np.pi * time / 1.6))
+    signal = Signal(time=time, displacement={wheel: 0.06 * lift * (wheel == "fl") for wheel in car.vehicle.wheels})
+    (warning, *_) = car.run(signal, engine="reduced").recording.statistics.warnings
+    part, angle = re.match(r"(\w+) rotated by (\S+) rad", warning).groups()  # type: ignore[union-attr]
+    fmu = written(car, tmp_path)
+    for share, expected in ((0.8, False), (1.25, True)):
+        height = 0.06 * share * LARGEST_ANGLE / float(angle) * lift
+        instance = Instance(fmu)
+        for z, rate in zip(height[1:], np.gradient(height, time)[1:], strict=True):
+            instance.set({"plate_fl_displacement": z, "plate_fl_velocity": rate})
+            instance.step(1e-3)
+        turned = [text for text in instance.messages if "turned by more than 0.05 rad" in text]
+        assert any(f"{part} turned" in text for text in turned) == expected == bool(turned)
