@@ -20,6 +20,7 @@ COMMANDS = (
     "tune",
     "new",
     "fmu",
+    "bench",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 
