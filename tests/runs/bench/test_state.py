@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import threading
 
@@ -10,7 +11,7 @@ import pytest
 from vehicle import read_signal
 from vehicle.errors import ConfigurationError
 from vehicle.runs.bench.drive import bench_drive
-from vehicle.runs.bench.results import write_car
+from vehicle.runs.bench.results import write_car, write_comparison, write_run
 from vehicle.runs.bench.state import BenchState, LatestOnly
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
@@ -130,3 +131,15 @@ def test_the_written_vehicle_file_is_the_shown_car(state, tmp_path):
     paths = [write_car(state, tmp_path) for _ in range(2)]
     assert [path.relative_to(tmp_path).as_posix() for path in paths] == ["car/vehicle.toml", "car-2/vehicle.toml"]
     assert Car.load(paths[0])[FRICTION].value == 60.0
+
+
+def test_run_and_report_are_those_of_the_shown_cars(state, tmp_path):
+    state.change(FRICTION, 60.0)
+    assert state.update()
+    folder = write_run(state, tmp_path)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    value = summary["comfort"]["seat_rail"]["rms_2_50_hz"]["overall"]
+    assert value == pytest.approx(state.present[1].comfort.unweighted.overall, rel=1e-6)
+    report = write_comparison(state, tmp_path).read_text(encoding="utf-8")
+    assert "coulomb_friction" in report and "60" in report
+    assert sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith(".")) == ["report.html", "run"]
