@@ -52,7 +52,8 @@ ROOMS: dict[str, set[str]] = {
     "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
     "car": {"analysis", "excitation", "flexbody", "laws", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
-    "bench": {"analysis", "car", "excitation", "threads"},
+    "bench": {"analysis", "assembly", "car", "excitation", "linear", "output", "parameters", "records", "reduced"}
+    | {"rendering", "report", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "reduced", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
@@ -66,8 +67,9 @@ ROOMS: dict[str, set[str]] = {
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
     | {"simulation", "trial", "version"},
-    "commands": {"analysis", "assembly", "car", "comparison", "design", "excitation", "flexbody", "fmu", "linear"}
-    | {"mounts", "optimisation", "output", "parameters", "records", "rendering", "replication", "report", "simulation"}
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "design", "excitation", "flexbody", "fmu"}
+    | {"linear", "mounts", "optimisation", "output", "parameters", "records", "rendering", "replication", "report"}
+    | {"simulation"}
     | {"sweeps", "threads", "tuning", "version"},
     "threads": set(),
     "version": set(),

@@ -29,6 +29,7 @@ _UNITS = {
     r"suspension_travel_\w+": "m",
     r"\w+_torque": "N m",
     r"\w+_coefficient": "N s/m",
+    r"coordinate_\d+": "-",
 }
 
 

@@ -21,6 +21,7 @@ COMMANDS = (
     "fit-mount",
     "new",
     "fmu",
+    "bench",
 )
 """Each is a module with `parser()` and `main(arguments)`, and is called as `python -m vehicle NAME`."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,7 +33,8 @@ class BenchDrive:
         inputs: inputs of the FRFs, with the density of the excerpt.
         probe: the same as a signal.
         overrides: parameters that the input sets on its car: the speed of rolling tyres.
-        words: the input in words.
+        road: description of the road for files of a run; None for a signal.
+        label: description of the input.
     """
 
     record: Signal
@@ -40,7 +42,8 @@ class BenchDrive:
     inputs: PhaseInputs
     probe: Signal
     overrides: tuple[str, ...]
-    words: str
+    road: Mapping[str, object] | None
+    label: str
 
 
 def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds: float = SECONDS) -> BenchDrive:
@@ -62,28 +65,32 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
         raise ConfigurationError(f"--seconds {seconds:g}: must be {SHORTEST:g} to {LONGEST:g} s")
     delays: dict[str, float] = {}
     overrides: tuple[str, ...] = ()
+    summary: Mapping[str, object] | None = None
     if isinstance(source, Road):
         if isinstance(source.speed, str):
             raise ConfigurationError("bench: a road recorded over time has no constant speed; use a class or a profile")
         drive = source.under(car.vehicle, car.overrides)
-        skip, overrides, words = drive.skip, drive.overrides, drive.name.replace("_", " ")
+        skip, overrides, label = drive.skip, drive.overrides, drive.name.replace("_", " ")
         if source.duration is None:
             drive = replace(source, duration=skip + seconds).under(car.vehicle, car.overrides)
-        record = drive.signal()
+        record = replace(drive.signal(), source=drive.name)
+        summary = drive.summary(record)
         delays = {name: 3.6 * behind / source.speed for name, behind, _ in drive.wheels}
     else:
         record, skip = excerpt(source, begin, seconds)
-        words = f"{source.source.rpartition('/')[2]}, {begin:g} to {begin + record.duration - skip:g} s"
+        label = f"{source.source.rpartition('/')[2]}, {begin:g} to {begin + record.duration - skip:g} s"
     moving = {name: z[round(skip / record.timestep) :] for name, z in record.displacement.items() if np.any(z != z[0])}
     inputs = phase_inputs(record.timestep, moving or record.displacement, delays)
     size = next(iter(inputs.samples.values())).size
     probe = Signal(
         time=uniform_time(samples=size, timestep=record.timestep),
         displacement=inputs.samples,
-        source=f"random phases of {words}",
+        source=f"random phases of {label}",
         highest=record.highest,
     )
-    return BenchDrive(record=record, skip=skip, inputs=inputs, probe=probe, overrides=overrides, words=words)
+    return BenchDrive(
+        record=record, skip=skip, inputs=inputs, probe=probe, overrides=overrides, road=summary, label=label
+    )
 
 
 def excerpt(signal: Signal, begin: float, seconds: float) -> tuple[Signal, float]:

@@ -55,11 +55,11 @@ class BenchNumbers:
     def table(self) -> dict[str, tuple[float, str]]:
         """Return the numbers of the table: name to value and unit."""
         rows = {
-            "comfort, unweighted": (self.comfort.unweighted.overall, "m/s2"),
-            "comfort, weighted": (self.comfort.weighted.overall, "m/s2"),
+            "comfort unweighted": (self.comfort.unweighted.overall, "m/s2"),
+            "comfort weighted": (self.comfort.weighted.overall, "m/s2"),
         }
         if self.comfort.cushion is not None:
-            rows["comfort on the seat, weighted"] = (self.comfort.cushion.weighted.overall, "m/s2")
+            rows["on the seat, weighted"] = (self.comfort.cushion.weighted.overall, "m/s2")
         if self.comfort.seat_value is not None:
             rows["SEAT value"] = (self.comfort.seat_value, "-")
         return rows | {f"slip {wheel}": (100.0 * share, "%") for wheel, share in self.slip.items()}

@@ -1,0 +1,50 @@
+"""Curves of the plots of the bench: the present car A over the reference B on the same axes."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.runs.bench.numbers import BenchNumbers
+
+Vector = npt.NDArray[np.float64]
+
+CLASSES = 120
+"""Classes of the damper velocity in the plot of its force."""
+
+BAND = 1.96
+"""Half width of the band of an FRF in standard errors: 95 %."""
+
+
+def frf_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
+    """Return frequency [Hz], |H| of A, lower and upper end of its 95 % band, and |H| of B [m/s2 per m]; seat rail."""
+    frf, other = present.frf, reference.frf
+    size, error = np.abs(frf.response[0]), BAND * frf.random_error[0]
+    # The axis is logarithmic: a band that reaches zero ends far below it.
+    return frf.frequency, size, np.maximum(size - error, 1e-3 * size), size + error, np.abs(other.response[0])
+
+
+def density_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
+    """Return frequency [Hz] and density of the vertical seat rail, A and B [(cm/s2)^2/Hz]; small powers of ten."""
+    spectra = present.spectra[0], reference.spectra[0]
+    return spectra[0].frequency, 1e4 * spectra[0].density, 1e4 * spectra[1].density
+
+
+def damper_curves(present: BenchNumbers, reference: BenchNumbers, wheel: str) -> tuple[Vector, ...]:
+    """Return velocity [m/s], and lowest and highest force [N] in each class of it, of A and of B; NaN in empty classes.
+
+    Args:
+        present, reference: numbers of A and B.
+        wheel: wheel of the damper.
+    """
+    both = present, reference
+    highest = max(float(np.abs(values.damper_velocity[wheel]).max()) for values in both)
+    edges = np.linspace(-1.0, 1.0, CLASSES + 1) * max(highest, 1e-6) * (1.0 + 1e-9)
+    curves = [0.5 * (edges[1:] + edges[:-1])]
+    for values in both:
+        index = np.clip(np.searchsorted(edges, values.damper_velocity[wheel]) - 1, 0, CLASSES - 1)
+        low, high = np.full(CLASSES, np.inf), np.full(CLASSES, -np.inf)
+        np.minimum.at(low, index, values.damper_force[wheel])
+        np.maximum.at(high, index, values.damper_force[wheel])
+        curves += [np.where(np.isfinite(low), low, np.nan), np.where(np.isfinite(high), high, np.nan)]
+    return tuple(curves)

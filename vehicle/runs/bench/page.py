@@ -1,0 +1,267 @@
+"""Page of the bench: sliders, search, plots, table of A and B, and buttons around the moving car."""
+
+from __future__ import annotations
+
+import threading
+import time as clock
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.errors import VehicleError
+from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
+from vehicle.runs.bench.motion import car_motion
+from vehicle.runs.bench.results import write_car, write_comparison, write_run
+from vehicle.runs.bench.stage import LARGER, SLOWER, Stage
+from vehicle.runs.bench.state import BenchState, LatestOnly
+
+FIRST = ("coulomb_friction", "damper.viscous", "main_spring.stiffness", "tyre.stiffness.z", "body.mass")
+"""Ends of the paths of the sliders at the start; the first path with each."""
+
+RED, PALE, GREY = "#c0392b", "rgba(192,57,43,0.35)", "#888888"
+"""Colours of A, of its band, and of B."""
+
+DECADES = 3e4
+"""Highest over lowest value of a logarithmic axis."""
+
+
+class Page:
+    """Page of a state on a viser server.
+
+    Args:
+        server: viser server.
+        state: state of the bench, with the numbers of the unchanged car.
+        folder: folder of the files that a click writes.
+
+    Attributes:
+        state, stage: what the page shows.
+        worker: thread that computes after changes.
+        delays: time from a request to its numbers on the page [s].
+    """
+
+    def __init__(self, server: Any, state: BenchState, folder: Path) -> None:
+        self.server, self.state, self.folder = server, state, folder
+        self.stage = Stage(server, state.car)
+        self.delays: list[float] = []
+        self._sliders: dict[str, Any] = {}
+        self._lock = threading.RLock()
+        self._moved = 0.0
+        self._build()
+        self._show()
+        self.stage.show(car_motion(state.car, state.drive))
+        self.worker = LatestOnly(self._update)
+
+    def _build(self) -> None:
+        """Add all elements of the page."""
+        gui = self.server.gui
+        gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+        gui.main_panel.dock_right()
+        self._table = gui.add_markdown("")
+        self._note = gui.add_markdown("")
+        with gui.add_folder("Parameters"):
+            for end in FIRST:
+                if path := next((path for path in self.state.settings if path.endswith(end)), None):
+                    self.add_slider(path)
+        self._added = gui.add_folder("Any parameter", expand_by_default=False)
+        with self._added:
+            search = gui.add_text("search", "", hint="words in path or meaning, as: strut top")
+            paths = gui.add_dropdown(
+                "parameter", self._matches(""), hint="points and stiffnesses have an axis at the end"
+            )
+            add = gui.add_button("Add slider")
+        self._plots = self._add_plots()
+        with gui.add_folder("Reference and files"):
+            keep, reset = gui.add_button("Keep as B"), gui.add_button("Undo all changes")
+            files = [
+                (gui.add_button("Write vehicle file"), write_car),
+                (gui.add_button("Write run"), write_run),
+                (gui.add_button("Write report of A and B"), write_comparison),
+            ]
+        with gui.add_folder("Picture", expand_by_default=False):
+            playing = gui.add_checkbox("playing", True)
+            slower = gui.add_slider("slow motion", 1.0, 100.0, 1.0, SLOWER)
+            larger = gui.add_slider("exaggeration", 1.0, 200.0, 1.0, LARGER)
+        self._on(search, lambda: setattr(paths, "options", self._matches(search.value)))
+        self._on(playing, lambda: setattr(self.stage, "playing", bool(playing.value)))
+        self._on(slower, lambda: setattr(self.stage, "slower", min(max(float(slower.value), 1.0), 100.0)))
+        self._on(larger, lambda: setattr(self.stage, "larger", min(max(float(larger.value), 1.0), 200.0)))
+        add.on_click(lambda _: self._guarded(lambda: self.add_slider(self.state.setting(paths.value).path, more=True)))
+        keep.on_click(lambda _: self._guarded(self._keep))
+        reset.on_click(lambda _: self._guarded(self._reset))
+        for button, write in files:
+            button.on_click(lambda _, write=write: self._guarded(lambda: self._write(write)))
+
+    def _on(self, handle: Any, act: Callable[[], None]) -> None:
+        """Call a function after each change of an element."""
+        handle.on_update(lambda _: self._guarded(act))
+
+    def _matches(self, text: str) -> tuple[str, ...]:
+        """Return the paths of a search for the list; a message without any, since a list needs an entry."""
+        return tuple(self.state.search(text)) or ("no parameter has these words",)
+
+    def _guarded(self, act: Callable[[], object]) -> None:
+        """Handle an event of the page under the lock; show the message of an error."""
+        with self._lock:
+            try:
+                act()
+            except VehicleError as error:
+                self._say(str(error))
+
+    def _say(self, text: str) -> None:
+        """Show a message with escaped markup."""
+        self._note.content = "".join(f"\\{sign}" if sign in "\\`*_{}[]<>()#+!|~$" else sign for sign in text)
+
+    def add_slider(self, path: str, *, more: bool = False) -> None:
+        """Add the slider of a setting, if the page has no slider of this path.
+
+        Args:
+            path: path of the setting.
+            more: add it below the first sliders, for a searched parameter.
+
+        Raises:
+            ConfigurationError: an unknown path.
+        """
+        if path in self._sliders:
+            return
+        setting = self.state.setting(path)
+        unit = "" if setting.unit in ("", "-") else f" [{setting.unit}]"
+
+        def add() -> Any:
+            return self.server.gui.add_slider(
+                f"{path}{unit}", setting.low, setting.high, setting.step, setting.value, hint=setting.meaning
+            )
+
+        if more:
+            with self._added:
+                slider = add()
+        else:
+            slider = add()
+        self._sliders[path] = slider
+        self._on(slider, lambda: self._change(path))
+
+    def _change(self, path: str) -> None:
+        """Take the value of a slider; put the slider back if the value is outside its range."""
+        slider = self._sliders[path]
+        try:
+            self.state.change(path, slider.value)
+        except VehicleError:
+            slider.value = self.state.changes.get(path, self.state.settings[path].value)
+            raise
+        self._request()
+
+    def _request(self) -> None:
+        if not self.worker.pending:
+            self._moved = clock.monotonic()
+        self.worker.request()
+
+    def _keep(self) -> None:
+        self.state.keep()
+        self._show()
+
+    def _reset(self) -> None:
+        self.state.reset()
+        for path, slider in self._sliders.items():
+            slider.value = self.state.settings[path].value
+        self._request()
+
+    def _write(self, write: Callable[[BenchState, Path], Path]) -> None:
+        with self.state.computing:
+            path = write(self.state, self.folder)
+        self._say(f"written: {path}")
+
+    def _update(self) -> None:
+        """Compute and show the numbers, then the motion unless a newer change waits; called by the worker."""
+        with self._lock:
+            moved = self._moved
+        if not self.state.update():
+            with self._lock:
+                self._say(self.state.message)
+            return
+        with self._lock:
+            self._show()
+        self.delays.append(clock.monotonic() - moved)
+        if not self.worker.pending:
+            with self.state.computing:
+                motion = car_motion(self.state.present[0], self.state.drive)
+            self.stage.show(motion)
+
+    def _show(self) -> None:
+        """Write the numbers of A and B on the page."""
+        state = self.state
+        (car, present), (other, reference) = state.present, state.reference
+        lines = ["| | A | B | change |", "|---|---|---|---|"]
+        for name, a, b, change, unit in state.rows():
+            text = "" if change is None else f"{change:+.1f}\u00a0%"
+            lines.append(f"| {name} [{unit}] | {a:.3g} | {b:.3g} | {text} |")
+        base = len(state.car.overrides)
+        texts = ["; ".join(shown.overrides[base:]) or "unchanged" for shown in (car, other)]
+        lines.append(f"\n**A** {texts[0]} · **B** {texts[1]}\n\n{state.drive.label}; {1e3 * present.seconds:.0f} ms")
+        with self.server.atomic():
+            self._table.content = "\n".join(lines)
+            for plot, curves in self._plots:
+                plot.data = curves(present, reference)
+            self._note.content = ""
+            if present.warnings:
+                self._say("outside the valid range: " + "; ".join(present.warnings))
+
+    def _add_plots(self) -> list[tuple[Any, Callable[..., Any]]]:
+        """Add the plots; return each with the function of its curves."""
+        uplot, gui = import_module("viser.uplot"), self.server.gui
+        both = self.state.present[1], self.state.reference[1]
+        wheel = next(iter(self.state.drive.inputs.samples))
+        wheel = wheel if wheel in both[0].damper_velocity else next(iter(both[0].damper_velocity))
+
+        def line(label: str, colour: str, width: float) -> Any:
+            return uplot.Series(label=label, stroke=colour, width=width, points={"show": False}, spanGaps=True)
+
+        def logarithmic(values: Any) -> dict[str, Any]:
+            top = 3.0 * float(values.max())
+            return {
+                "x": uplot.Scale(time=False, distr=3, range=(1.0, 50.0)),
+                "y": uplot.Scale(distr=3, range=(top / DECADES, top)),
+            }
+
+        axis = uplot.Series(label="f [Hz]")
+        force = 1.5 * float(np.abs(both[0].damper_force[wheel]).max())
+        plots: list[tuple[Any, Callable[..., Any]]] = []
+        shown = (
+            (
+                "FRF seat rail z [m/s² per m], 95 % band",
+                frf_curves,
+                (axis, line("A", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("B", GREY, 1)),
+                logarithmic(frf_curves(*both)[1]),
+            ),
+            (
+                "PSD seat rail z [(cm/s²)²/Hz]",
+                density_curves,
+                (axis, line("A", RED, 2), line("B", GREY, 1)),
+                logarithmic(density_curves(*both)[1]),
+            ),
+            (
+                f"damper {wheel}: force [N] over velocity [m/s]",
+                lambda a, b: damper_curves(a, b, wheel),
+                (
+                    uplot.Series(label="v [m/s]"),
+                    *(line(f"A {end}", RED, 2) for end in ("low", "high")),
+                    *(line(f"B {end}", GREY, 1) for end in ("low", "high")),
+                ),
+                {"x": uplot.Scale(time=False), "y": uplot.Scale(range=(-force, force))},
+            ),
+        )
+        for title, curves, series, scales in shown:
+            legend = uplot.Legend(show=False)
+            ticks = {"show": False}
+            axes = (uplot.Axis(ticks=ticks), uplot.Axis(size=64, ticks=ticks))
+            plot = gui.add_uplot(
+                curves(*both), series, title=title, scales=scales, axes=axes, legend=legend, height=150
+            )
+            plots.append((plot, curves))
+        return plots
+
+    def close(self) -> None:
+        """End the threads of the page."""
+        self.worker.stop()
+        self.stage.stop()
