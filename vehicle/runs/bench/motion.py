@@ -88,5 +88,6 @@ def _identity(car: Car) -> LoadRows:
         height=none(wheels),
         height_rate=none(wheels),
         friction=none(len(matrices.dampers)),
+        law=none(len(matrices.laws)),
         slope=none(matrices.slope.shape[1]),
     )
