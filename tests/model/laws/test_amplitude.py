@@ -13,7 +13,8 @@ from scipy.optimize import brentq
 from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.amplitude import ELEMENTS, behind_spring, friction_elements
-from vehicle.model.parameters.force_elements import Bushing, ForceTable, Hydromount
+from vehicle.model.parameters.force_elements import Bushing, Hydromount
+from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.vehicle import load_vehicle
 

@@ -22,7 +22,8 @@ from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.model.laws.presliding import presliding_elements
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
-from vehicle.model.parameters.force_elements import Damper, ForceTable, Tyre
+from vehicle.model.parameters.force_elements import Damper, Tyre
+from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 

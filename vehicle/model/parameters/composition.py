@@ -15,13 +15,13 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes
 from vehicle.model.parameters.force_elements import (
     Damper,
-    ForceTable,
     Hydromount,
     LinearBushing,
     MainSpring,
     SlideSpring,
     Stabilizer,
 )
+from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.paths import value_at

@@ -8,6 +8,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.curves import require_curve
+from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.quantity import quantity, validate
 from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
@@ -33,18 +34,6 @@ NUMBERS = {
 
 MAX_SLIDERS = 8
 """Maximum number of segments of a presliding curve: each is a friction row of the solver."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ForceTable:
-    """Force over displacement through points, positive in extension; outer segments are extrapolated."""
-
-    displacement: tuple[float, ...] = quantity("m", "displacements, compression negative", at_least=-2.0, at_most=2.0)
-    force: tuple[float, ...] = quantity("N", "forces, compression negative", at_least=-1e7, at_most=1e7)
-
-    def __post_init__(self) -> None:
-        validate(self)
-        require_curve("ForceTable", "displacement", self.displacement, self.force)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

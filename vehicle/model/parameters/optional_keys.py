@@ -11,7 +11,8 @@ from typing import Any
 from vehicle.model.parameters.body import MAX_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
-from vehicle.model.parameters.force_elements import Bushing, Damper, ForceTable, Hydromount, MainSpring, Tyre
+from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, Tyre
+from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.names import SIDE_SIGN

@@ -1,0 +1,20 @@
+"""Force of an element over its displacement, as a table of a vehicle file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle.model.parameters.curves import require_curve
+from vehicle.model.parameters.quantity import quantity, validate
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ForceTable:
+    """Force over displacement through points, positive in extension; outer segments are extrapolated."""
+
+    displacement: tuple[float, ...] = quantity("m", "displacements, compression negative", at_least=-2.0, at_most=2.0)
+    force: tuple[float, ...] = quantity("N", "forces, compression negative", at_least=-1e7, at_most=1e7)
+
+    def __post_init__(self) -> None:
+        validate(self)
+        require_curve("ForceTable", "displacement", self.displacement, self.force)
