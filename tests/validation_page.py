@@ -165,7 +165,8 @@ def headline(rows: list[Row]) -> str:
 
 
 def page(rows: list[Row]) -> str:
-    """Return the page as Markdown."""
+    """Return the page as Markdown; its rows are in the order of the subjects."""
+    rows = sorted(rows, key=lambda row: list(SUBJECTS).index(row.subject))
     wrong = [row for row in rows if not row.agrees]
     lines = ["# Validation", "", "<!-- Written by `python -m tests.validation`; never edit by hand. -->", ""]
     lines += [f"**{headline(rows)}.**", "", INTRODUCTION, *_summary(rows), "## Claims that do not hold", ""]
