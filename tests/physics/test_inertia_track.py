@@ -267,9 +267,11 @@ def test_a_decoupler_against_a_stiff_solver(force, said):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(("level", "said", "limit"), [(0.02, "within", 2e-3), (1.0, "beyond", 1e-2)])
+@pytest.mark.parametrize(("level", "said", "limit"), [(0.02, "within", 2e-3), (1.0, "beyond", 5e-3)])
 def test_a_decoupler_in_both_engines(tracked, high_piece, level, said, limit):
-    car = tracked.with_({**DECOUPLED, "hydromount.decoupler_gap": 5e-5, "solver.timestep": 1.25e-4})
+    # A softer seat: on the stiff one the disc bounces at 225 Hz, and 1 % is the error of a step of 0.2 ms.
+    changes = {"hydromount.decoupler_gap": 5e-5, "hydromount.decoupler_seat": 2e5, "solver.timestep": 1.25e-4}
+    car = tracked.with_({**DECOUPLED, **changes})
     signal = Signal(time=high_piece.time, displacement={"fr": level * high_piece.displacement["fr"]})
     runs = [car.run(signal, engine=engine) for engine in ("mujoco", "reduced")]
     assert runs[0].recording.statistics.energies.residual < 1e-3 and not runs[1].recording.statistics.warnings

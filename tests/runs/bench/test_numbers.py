@@ -51,7 +51,7 @@ def test_frf_of_the_car_without_friction_is_that_of_its_matrices(car, drive):
             f"{name.replace('_', ' ')} of the car without friction, periodic inputs of the bench: RMS error over |H|",
             np.linalg.norm(computed - expected) / np.linalg.norm(expected),
             0.0,
-            abs=5e-4,
+            abs=2e-5,
             source="second derivation: FRF of the matrices",
         )
 
