@@ -10,7 +10,7 @@ import pytest
 from scenarios.road.__main__ import main
 from scenarios.road.findings import friction_claims, ratio, scaling_claim
 from scenarios.road.runs import Ride, RideRuns, one_sided_tyres
-from vehicle.model.parameters.force_elements import Bushing
+from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle
 
@@ -64,5 +64,5 @@ def test_one_sided_tyres_are_those_of_all_wheels():
         connection.name: connection.law
         for connection in load_vehicle(VEHICLES / "focus_road" / "vehicle.toml", changes).composition.connections
     }
-    one_sided = {name: law.one_sided for name, law in laws.items() if isinstance(law, Bushing) and law.one_sided}
+    one_sided = {name: law.one_sided for name, law in laws.items() if isinstance(law, Tyre) and law.one_sided}
     assert sorted(one_sided) == ["tyre_fl", "tyre_fr", "tyre_rl", "tyre_rr"]

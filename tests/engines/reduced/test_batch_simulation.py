@@ -48,7 +48,11 @@ def with_idle_poles(model, pairs, reals):
         model,
         poles=np.insert(model.poles, at, [-5.0 + 3.0j] * pairs + [-7.0] * reals),
         pairs=model.pairs + pairs,
-        **{name: np.insert(getattr(model, name), at, 0.0, axis=0) for name in ("height", "velocity", "force", "slope")},
+        scalar_rows=dataclasses.replace(model.scalar_rows, poles=np.insert(model.scalar_rows.poles, at, 0.0, axis=1)),
+        **{
+            name: np.insert(getattr(model, name), at, 0.0, axis=0)
+            for name in ("height", "velocity", "force", "slope", "scalar_force")
+        },
         **{name: np.insert(getattr(model, name), at, 0.0, axis=1) for name in ("slip", "modal", "branch")},
     )
 

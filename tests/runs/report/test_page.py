@@ -105,7 +105,8 @@ def test_the_page_says_the_numbers_of_the_summary(reported, outline):
 def test_a_report_of_the_folder_is_that_of_the_command(reported, tmp_path, capsys):
     """The same bytes again, from the files alone: the car is built from vehicle.toml."""
     again = tmp_path / "again.html"
-    assert main([str(reported.folder), "--output", str(again), "--quiet"]) == 0
+    options = ["--project", "Ride", "--author", "A. Engineer"]
+    assert main([str(reported.folder), "--output", str(again), "--quiet", *options]) == 0
     assert again.read_bytes() == reported.page.read_bytes()
     assert main([str(reported.folder), "--output", str(again), "--quiet"]) == 2
     assert "exists; give --force" in capsys.readouterr().err

@@ -81,6 +81,13 @@ class DisplacementLaw:
             extremes += np.cumsum((-1.0 if side else 1.0) * self.changes[on_side][outwards]).tolist()
         return min(extremes), max(extremes)
 
+    @property
+    def stiffness_increase(self) -> float:
+        """Slope of the steepest segment less that of the segment at rest [N/m], the softer of two at a breakpoint."""
+        at_rest = self.changes * (self.breakpoints == 0.0)
+        below = np.signbit(self.breakpoints)
+        return self.slopes[1] - min(0.0, float(np.sum(at_rest[~below])), -float(np.sum(at_rest[below])))
+
 
 def displacement_laws(rows: Rows, jacobian: Vector, preload: Vector) -> tuple[DisplacementLaw, ...]:
     """Return the nonlinear laws over displacement of a car: its tables, then its tyres that cannot pull.

@@ -163,13 +163,13 @@ class _StepCheck:
 
     def _stiff_segments(self, rows: StepRows, step: float) -> list[StepError]:
         """Return the law over displacement with a segment too stiff for the step, if any."""
-        laws = [law for law in self.matrices.laws if law.slopes[1] > 0.0]
+        laws = [law for law in self.matrices.laws if law.stiffness_increase > 0.0]
         if not laws:
             return []
         basis = self.forms[False].basis
         directions = law_rows(laws, self.matrices.system.size)
         mobility = basis @ np.linalg.solve(basis.T @ rows.mass @ basis, basis.T @ directions.T)  # (n, laws)
-        frequencies = np.sqrt([law.slopes[1] for law in laws] * np.sum(directions * mobility.T, axis=1))
+        frequencies = np.sqrt([law.stiffness_increase for law in laws] * np.sum(directions * mobility.T, axis=1))
         worst = int(np.argmax(frequencies))
         angle = float(frequencies[worst]) * step
         if angle <= SEGMENT_LIMIT:
@@ -180,7 +180,7 @@ class _StepCheck:
             else "at which a vibration on a stiffer segment of a table is "
             f"{100.0 * (2.0 * np.arcsin(angle / 2.0) / angle - 1.0):.0f} % high"
         )
-        element = f"{laws[worst].name}, up to {laws[worst].slopes[1]:.3g} N/m stiffer than at rest"
+        element = f"{laws[worst].name}, up to {laws[worst].stiffness_increase:.3g} N/m stiffer than at rest"
         severity = angle / SEGMENT_LIMIT
         shape = mobility[:, worst].astype(np.complex128)
         return [
