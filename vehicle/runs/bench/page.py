@@ -145,10 +145,12 @@ class Page:
     def _change(self, path: str) -> None:
         """Take the value of a slider; put the slider back if the value is outside its range."""
         slider = self._sliders[path]
+        value = slider.value
         try:
-            self.state.change(path, slider.value)
+            self.state.change(path, value)
         except VehicleError:
-            slider.value = self.state.changes.get(path, self.state.settings[path].value)
+            if slider.value is value:  # otherwise a newer value has arrived, whose event follows
+                slider.value = self.state.changes.get(path, self.state.settings[path].value)
             raise
         self._request()
 
