@@ -83,7 +83,7 @@ def test_parameters_of_laws_that_the_car_does_not_have(parameter, focus_fmu):
         (math.inf, "must be a multiple of the internal step"),
         (1e-4, "communication step of 0.0001 s: must be a multiple of the internal step of 0.0002 s"),
         (2.5e-4, "write the FMU with another --step"),
-        (1e-300, "must be a multiple of the internal step"),
+        (1e-6, "must be a multiple of the internal step"),
     ],
 )
 def test_steps(length, text, focus_fmu):
@@ -101,6 +101,28 @@ def test_points_in_time(focus_fmu):
         refused(instance, lambda: instance.step(1e-3), "the car is at 0.001 s")
     instance.time = 1e-3
     instance.step(1e-3)
+
+
+@pytest.mark.parametrize("remainder", [1e-300, 1e-13, 1e-7])
+def test_a_remainder_of_round_off_before_the_stop_time(remainder, focus_fmu):
+    """OMSimulator adds up its time and ends with a step of about 1e-13 s: it is accepted, and the car stays."""
+    instance = Instance(focus_fmu)
+    instance.set({"plate_fl_displacement": 1e-4, "plate_fl_velocity": 0.1})
+    instance.step(1e-3)
+    before = instance.get(["seat_rail_acc_z"])
+    instance.step(remainder)
+    assert instance.get(["seat_rail_acc_z"]) == before
+    instance.time = 1e-3 + remainder
+    instance.step(1e-3)
+    assert instance.get(["seat_rail_acc_z"]) != before
+    assert instance.messages == []
+
+
+def test_remainders_do_not_add_up(focus_fmu):
+    instance = Instance(focus_fmu)
+    instance.step(1.5e-7)
+    instance.step(1.5e-7)
+    refused(instance, lambda: instance.step(1.5e-7), "communication point 3e-07 s: the car is at 0 s")
 
 
 def test_a_plate_that_moves_without_velocity(focus_fmu):
