@@ -170,13 +170,20 @@ def test_both_engines_agree_and_the_energy_balances(tracked, high_piece):
     )  # fmt: skip
 
 
-def test_a_changed_track_changes_the_matrices_as_a_new_model_does(tracked):
-    change = {"hydromount.track_mass": 30.0, "hydromount.track_damping": 700.0, "hydromount.chamber_stiffness": 3e5}
-    varied, built = tracked.with_(change).matrices.system, Car.load("focus", {
-        "body.attachment_flexibility": False, **TRACK, **change}).matrices.system  # fmt: skip
+@pytest.mark.parametrize("flexible", [False, True])
+def test_a_changed_track_changes_the_matrices_as_a_new_model_does(flexible):
+    # On a flexible attachment the share of the rubber in the fluid, Kb/K0, changes too.
+    fixed = {"body.attachment_flexibility": flexible, **TRACK, **DECOUPLED}
+    change = {"hydromount.track_mass": 30.0, "hydromount.track_damping": 700.0, "hydromount.chamber_stiffness": 3e6}
+    varied, built = Car.load("focus", fixed).with_(change), Car.load("focus", {**fixed, **change})
+    assert varied._from_terms is not None
     for name in ("mass", "damping", "stiffness"):
-        scale = np.max(np.abs(getattr(built, name)))
-        np.testing.assert_allclose(getattr(varied, name), getattr(built, name), rtol=1e-6, atol=1e-9 * scale)
+        scale = np.max(np.abs(getattr(built.matrices.system, name)))
+        np.testing.assert_allclose(
+            getattr(varied.matrices.system, name), getattr(built.matrices.system, name), rtol=1e-6, atol=1e-9 * scale
+        )
+    preload = built.static.preload
+    np.testing.assert_allclose(varied.static.preload, preload, rtol=1e-6, atol=1e-9 * np.max(np.abs(preload)))
 
 
 def test_the_track_names_its_mode_and_carries_no_weight(rubber, tracked):

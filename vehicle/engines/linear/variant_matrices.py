@@ -1,6 +1,7 @@
 """Matrices of a car that differs from a reference car in parameter values only, from terms read once from that car.
 
-With unchanged geometry the rows J, the shapes of all outputs and the rotation of forces with parts are unchanged:
+With unchanged geometry the rows J (but the share Kb/K0 of a fluid), the shapes of all outputs and the rotation of
+forces with parts are unchanged:
 
     K = J' K_e J + sum of K_rot T' T + joint springs + stops + hold of the course + sum of p_i H_i + sum of m_b g G_b,
     C = J' B_e J + joint dampers + rolling terms,    M = M0 + sum of J_b' (M_b - M_b0) J_b,
@@ -120,7 +121,7 @@ class VariantTerms:
             springs[dof], dampers[dof] = stiffness, damping
         to_new, parts = change.columns, self._masses(element_values, change)
         rest_state = AtRest(
-            jacobian=to_new(self.rest_state.jacobian),
+            jacobian=to_new(_with_fluid_columns(self.rest_state.jacobian, rows)),
             turned=change.rotations(self.rest_state.turned),
             weight=parts.weight,
         )
@@ -285,6 +286,14 @@ def _same_fields(values: Numbers, reference: Numbers) -> bool:
 def _fields(values: Mapping[str, Vector], prefix: str) -> Iterator[tuple[str, Vector]]:
     """Return the fields whose name has a prefix, by the rest of their name."""
     return ((name.removeprefix(prefix), value) for name, value in values.items() if name.startswith(prefix))
+
+
+def _with_fluid_columns(jacobian: Vector, rows: Rows) -> Vector:
+    """Return the Jacobian of the rows with the factors of the fluids of the rows: they contain Kb/K0 of the mounts."""
+    fluids = rows.layout.fluids
+    changed = jacobian.copy()
+    changed[rows.layout.bushings.rows[fluids.elements, 2], fluids.dofs] = fluids.factors
+    return changed
 
 
 def _near_breakpoint(rows: Rows) -> bool:

@@ -45,7 +45,7 @@ def connection_numbers(connection: PlacedConnection, body: TrimmedBody, superele
         return {}
     name, numbers = connection_name(connection), Numbers()
     for axis, local in zip(AXES, law.local, strict=True):
-        numbers |= _table(f"{name}/{axis}", getattr(connection.law, f"table_{axis}", None), float(local))
+        numbers |= _table(f"{name}/{axis}", connection.table(axis), float(local))
     for axis, friction in zip(AXES, law.friction, strict=True):
         if friction is not None:
             numbers[f"friction/{name}/{axis}"] = np.column_stack([friction.stiffness, friction.limit]).ravel()

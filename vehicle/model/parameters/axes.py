@@ -13,7 +13,8 @@ Axes = tuple[Point, Point, Point]
 def axes_along(start: Point, end: Point) -> Axes:
     """Return axes with x from one point to another, y horizontal and z perpendicular; a vertical line keeps y.
 
-    For the mirrored line the axes are mirrored up to the sign of y, on which K and D do not depend.
+    For the mirrored line the axes are mirrored up to the sign of y, on which K and D do not depend; see
+    `vehicle.model.parameters.composition.PlacedConnection.table` for a table.
 
     Args:
         start, end: two different points [m].

@@ -135,6 +135,7 @@ class PlacedConnection(_WithLaw):
         radius: loaded radius R of a round tyre at rest [m]; 0 for all other connections.
         lowest_stiffness: limit of the template along each axis [N/m].
         reason: reason of that limit.
+        mirrored: True if the table along y is that of the right side, and the connection is on the left.
     """
 
     name: str
@@ -151,6 +152,12 @@ class PlacedConnection(_WithLaw):
     tables: tuple[str, ...] = field(default=(), compare=False)
     lowest_stiffness: float = 0.0
     reason: str = ""
+    mirrored: bool = False
+
+    def table(self, axis: str) -> ForceTable | None:
+        """Return the force over the displacement along an axis of the law; None for a linear axis."""
+        table: ForceTable | None = getattr(self.law, f"table_{axis}", None)
+        return table.opposite if table is not None and self.mirrored and axis == "y" else table
 
     def __post_init__(self) -> None:
         for axis, stiffness in zip(AXES, self.law.stiffness if self.law else (), strict=False):

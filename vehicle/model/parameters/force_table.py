@@ -18,3 +18,10 @@ class ForceTable:
     def __post_init__(self) -> None:
         validate(self)
         require_curve("ForceTable", "displacement", self.displacement, self.force)
+
+    @property
+    def opposite(self) -> ForceTable:
+        """Table -F(-x) of the opposite direction, as that of the y axis on the other side of a car."""
+        return ForceTable(
+            displacement=tuple(-x for x in reversed(self.displacement)), force=tuple(-f for f in reversed(self.force))
+        )

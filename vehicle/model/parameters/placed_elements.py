@@ -25,7 +25,7 @@ from vehicle.model.parameters.force_elements import (
     SlideSpring,
     Stabilizer,
 )
-from vehicle.model.parameters.instance import Instance, elements
+from vehicle.model.parameters.instance import LEFT, Instance, elements
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.names import SIDE_SIGN
 
@@ -92,6 +92,7 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
     has_law = not e.ideal or i.has("bushings", e.name)
     law = i.get(_law_kind(i, e), side, "bushings", e.name) if has_law else None
     rolling = _rolling(i, side) if e.carrier == "plate" else None
+    own = i.numbers.get(LEFT, {}).get("bushings", {}).get(e.name, {})
     return PlacedConnection(
         name=i.label(e.name, side),
         moving=i.part(e.moving, side),
@@ -107,6 +108,7 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
         tables=i.table_paths(side, "bushings", e.name) if has_law else (),
         lowest_stiffness=e.least,
         reason=e.why,
+        mirrored=side == LEFT and "table_y" not in own,
     )
 
 
