@@ -51,7 +51,7 @@ class RankedCars:
 
     @property
     def point(self) -> str:
-        """Return the words of the point of both values."""
+        """Point at which both comfort values are evaluated, in words."""
         return "on the cushion" if self.prefix else "at the seat rail"
 
     @property

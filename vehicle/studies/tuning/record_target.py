@@ -64,7 +64,7 @@ class RecordTarget:
 
     @property
     def kept(self) -> npt.NDArray[np.int64]:
-        """Return the indices of the samples in the window after decimation."""
+        """Return the indices of the samples in the window after decimation, (samples,)."""
         every = max(int(1.0 / (KEPT * self.lowpass * self.record.step) + 1e-9), 1)
         return np.flatnonzero(self.inside)[::every]
 
