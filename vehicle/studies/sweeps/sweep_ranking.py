@@ -51,7 +51,7 @@ class RankedCars:
 
     @property
     def point(self) -> str:
-        """Point at which both comfort values are evaluated, in words."""
+        """Words for the measurement point of the comfort values."""
         return "on the cushion" if self.prefix else "at the seat rail"
 
     @property
