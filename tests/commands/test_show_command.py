@@ -45,7 +45,7 @@ def test_search(capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["sedan", "--search", "nowhere"], "--search 'nowhere': no parameter of sedan has these words"),
+        (["sedan", "--search", "nowhere"], "no parameter of sedan has 'nowhere' in its path"),
         (["sedan", "--search", "mass", "--output", "x"], "--search: prints parameters only"),
         (["--vehicle", "sedan"], "--vehicle: the car comes first"),
         (["lorry"], "lorry: no such file, and no shipped car"),

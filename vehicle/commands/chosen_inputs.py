@@ -47,7 +47,9 @@ def _roads(options: argparse.Namespace) -> list[Road]:
     ]
     profile = next((road.file for road in roads if road.file is not None), None)
     if len(seeds) > 1 and profile is not None:
-        raise ConfigurationError(f"--seed: given {len(seeds)} times, and {profile} is a measured profile")
+        raise ConfigurationError(
+            f"--seed: given {len(seeds)} times, and {profile} is a measured profile, without a seed; leave it out"
+        )
     return roads
 
 

@@ -40,6 +40,7 @@ CAR, RUN = "the car", "the run"
 def parser() -> Parser:
     """Return the parser of the options."""
     parser = command_parser("compare", "Compare a measurement with a run: responses, time histories, or mode shapes.")
+    parser.advise("two runs are compared by python -m vehicle report RUN RUN")
     parser.add_argument(
         "run",
         nargs="?",

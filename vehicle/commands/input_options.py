@@ -292,7 +292,10 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
     units = {name: unit for name, unit in asked.items() if not name or name in channels or name in known}
     unknown = next((name for name in asked if name not in units), None)
     if unknown is not None and getattr(options, "measured", None) is None:  # else of what was measured
-        raise ConfigurationError(f"--unit {unknown}=...: no --channel {unknown}=NAME is given")
+        raise ConfigurationError(
+            f"--unit {unknown}=...: no --channel {unknown}=NAME on the command line; the roles there are "
+            f"{', '.join(filter(None, channels)) or 'none'}, and --unit UNIT applies to all of them"
+        )
     choice = Choice(
         channels=channels,
         units=units,

@@ -106,7 +106,7 @@ def nearest(modes: Sequence[Any], frequency: float) -> Any:
     """
     swinging = [mode for mode in modes if mode.frequency > 0.0 and not mode.grows]
     if not swinging:
-        raise ConfigurationError(f"--animate {frequency:g}: this car has no mode up to 60 Hz")
+        raise ConfigurationError(f"--animate {frequency:g}: this car has no mode up to 60 Hz; leave it out")
     return min(swinging, key=lambda mode: abs(mode.frequency - frequency))
 
 

@@ -54,16 +54,31 @@ class Parser(argparse.ArgumentParser):
     """Argument parser whose errors are one message and exit code 2.
 
     A word that begins with a single minus is a value, except -h, the only short option.
+
+    Attributes:
+        advice: text in the help and at the end of each message about usage.
+        scopes: title of a group to the object of its options.
+        former_words: pattern of an option of an earlier version, and the message with its replacement.
     """
 
     def __init__(self, *args: Any, **keywords: Any) -> None:
         super().__init__(*args, **keywords)
+        self.advice = ""
         self.scopes: dict[str, Scope] = {}
         self.former_words: list[tuple[re.Pattern[str], str]] = []
 
     def add_version(self) -> None:
         """Add --version, which prints the version of the package."""
         self.add_argument("--version", action=_Version, nargs=0, help="print the version and exit")
+
+    def advise(self, advice: str) -> None:
+        """Add advice to the help and to each message about usage.
+
+        Args:
+            advice: names the command for a task that this command does not do; no full stop.
+        """
+        self.advice = advice
+        self.epilog = f"{advice[0].upper()}{advice[1:]}. {self.epilog or ''}"
 
     def scoped_group(self, title: str, *, needs: str, active: Condition | None) -> argparse._ArgumentGroup:
         """Add a group of options that act on an object which not every command line contains.
@@ -128,8 +143,8 @@ class Parser(argparse.ArgumentParser):
         return super()._parse_optional(arg_string)
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        """Raise a ConfigurationError with the message; argparse would end the process."""
-        raise ConfigurationError(f"{message}; see {self.prog} --help")
+        """Raise a ConfigurationError with the message and the advice; argparse would end the process."""
+        raise ConfigurationError(f"{message}; {f'{self.advice}; ' if self.advice else ''}see {self.prog} --help")
 
 
 def refuse_idle(options: argparse.Namespace, title: str) -> None:

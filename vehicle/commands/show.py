@@ -63,9 +63,12 @@ def _print_parameters(car: Any, options: argparse.Namespace) -> None:
 
     parameters = car.search(options.search)
     if not parameters:
+        searched = options.search.split()
+        unknown = [word for word in searched if not car.search(word)]
+        shown = " or ".join(map(repr, unknown)) or f"all of {', '.join(map(repr, searched))}"
         raise ConfigurationError(
-            f"--search {options.search!r}: no parameter of {car.vehicle.name} has these words in its path or meaning; "
-            "use other words, or --search alone for all"
+            f"--search {options.search!r}: no parameter of {car.vehicle.name} has {shown} in its path or meaning; "
+            "use other words, as bushings, damper, mass, or --search alone for all"
         )
     if options.json:
         print(json.dumps([dataclasses.asdict(parameter) for parameter in parameters], indent=2, allow_nan=False))

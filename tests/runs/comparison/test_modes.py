@@ -38,6 +38,18 @@ def test_mac_by_hand():
     assert mac(first, [[0.0, 0.0]]).max() == 0.0
 
 
+def test_mac_with_a_mass_matrix_does_not_depend_on_the_coordinates():
+    """MAC of a equals that of T^-1 a with T^T M T, and that of L^T a without a mass matrix, M = L L^T."""
+    rng = np.random.default_rng(3)
+    first, second = (rng.normal(size=(4, 5)) + 1j * rng.normal(size=(4, 5)) for _ in range(2))
+    root, change = np.tril(rng.normal(size=(5, 5))), rng.normal(size=(5, 5)) + 3.0 * np.eye(5)
+    mass, back = root @ root.T, np.linalg.inv(change).T
+    expected = mac(first @ root, second @ root)
+    np.testing.assert_allclose(mac(first, second, mass), expected, rtol=1e-12)
+    np.testing.assert_allclose(mac(first @ back, second @ back, change.T @ mass @ change), expected, rtol=1e-9)
+    np.testing.assert_allclose(np.diag(mac(first, 2j * first, mass)), 1.0, rtol=1e-12)
+
+
 def test_the_file_holds_places_and_modes(file, car, capsys):
     found, ours = read_record(file), car.modes()
     places = [one.name for one in car.vehicle.composition.outputs]

@@ -121,7 +121,8 @@ def test_5_no_header(tmp_path):
 def test_5_unknown_and_missing_columns(tmp_path):
     assert refused_lines(tmp_path, ["time [s],displacement [m],force [N]", "0,0,0"]) == (
         ":1: unknown column 'force [N]'; found 'time [s]', 'displacement [m]', 'force [N]'; needed are "
-        f"{NEEDED}; remove the others, or assign a column to a wheel: --channel fr=NAME"
+        f"{NEEDED}; remove the others, or assign a column to a wheel: --channel fr=NAME (python -m vehicle "
+        "inspect FILE prints the command)"
     )
     assert refused_lines(tmp_path, ["zeit [s],weg [m]", "0,0"]).startswith(
         ":1: unknown column 'zeit [s]', 'weg [m]'; found"

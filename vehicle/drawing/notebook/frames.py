@@ -64,8 +64,8 @@ def response_frame(response: FrequencyResponse, names: tuple[str, ...]) -> Any:
     """Return a pandas table of magnitude, phase [deg], coherence and random error of each channel over frequency [Hz].
 
     Args:
-        response: the FRFs [m/s2 per m].
-        names: names of the rows.
+        response: FRFs over the plate displacement [unit of the channel per m]; (channels, frequencies).
+        names: names of its channels, the first level of the columns; (channels,).
 
     Raises:
         MissingPartError: pandas is not installed.

@@ -100,7 +100,10 @@ class BodyChange:
         return matrix if self.whole is None else self.whole.T @ matrix @ self.whole
 
     def displaced_matrix(self, matrix: Vector) -> Vector:
-        """Transform a matrix A to T' A T for a displaced origin of the body: for terms that do not act on its modes."""
+        """Transform a matrix A, (n, n), to T' A T for a displaced origin of the body.
+
+        For terms that do not act on the modes of the body, which T leaves unchanged.
+        """
         return matrix if self.move is None else self.move.T @ matrix @ self.move
 
     def displaced_rows(self, rows: Vector) -> Vector:

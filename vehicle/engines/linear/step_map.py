@@ -65,7 +65,13 @@ class StepRows:
 
 
 def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows:
-    """Return the terms of the rows of a car for a time step [s]; `matrices` must belong to the same car."""
+    """Return the terms that a MuJoCo step adds to the matrices of a car: inertia of rows and joints, branches.
+
+    Args:
+        car: compiled and trimmed car.
+        matrices: matrices of the same car.
+        timestep: time step h [s].
+    """
     model = copy.copy(car.model)
     model.opt.timestep = timestep
     rows = Rows(model, car.static.preload)

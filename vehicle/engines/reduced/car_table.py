@@ -171,13 +171,13 @@ class CarTable:
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
 
     def tiles(self, weights: Sequence[Vector]) -> Table:
-        """Arrange the weights of outputs in tiles of TILE outputs.
+        """Arrange the weights of outputs in tiles of TILE outputs, zero for the outputs that fill the last tile.
 
         Args:
-            weights: weights of each car, see `CarFactors.weights`.
+            weights: weights of each car, (outputs, states and plate displacements); see `CarFactors.weights`.
 
         Returns:
-            Table (..., columns) whose rows are (tiles, states and plate displacements, TILE).
+            Table (rows, columns), a column for each car; rows: (tiles, states and plates, TILE) in C order.
         """
         tile_count, poles = (
             -(-len(weights[0]) // TILE),

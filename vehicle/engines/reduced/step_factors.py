@@ -122,7 +122,7 @@ class CarFactors:
 
     @property
     def coupling(self) -> float:
-        """Return the largest total effect of other forces on a force, over the effect of the force on itself."""
+        """Return the largest total effect of other forces on a force, over the effect of the force on itself [-]."""
         return float(np.max(self._effects.sum(axis=1) - 1.0))
 
     @property

@@ -206,7 +206,9 @@ def axle_parts(model: mujoco.MjModel, preload: Vector, wheels: Sequence[str], *,
                     )
                 )
     if not ties:
-        raise ConfigurationError(f"axle of {', '.join(wheels)}: nothing ties its wheels to the body")
+        raise ConfigurationError(
+            f"axle of {', '.join(wheels)}: nothing ties its wheels to the body; add joints or bushings"
+        )
     return AxleParts(
         wheels=tuple(numbers),
         bodies=frozenset(bodies),

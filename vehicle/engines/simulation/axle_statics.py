@@ -286,11 +286,17 @@ class AxleStatics:
         return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
 
     def contact(self, index: int) -> Vector:
-        """Return the point of a wheel at which the horizontal force of the ground acts [m], (3,)."""
+        """Return the point at which the horizontal force of the ground acts on a wheel, vehicle axes [m]; (3,).
+
+        Tyres at rest: the contact patch, fixed to the wheel. Rolling tyres: the lowest point of the wheel.
+        """
         return self.places(index)[1] if self.standing else self.lowest_point(index)
 
     def vertical_contact(self, index: int) -> Vector:
-        """Return the point of a wheel at which the vertical force of the ground acts [m], (3,)."""
+        """Return the point at which the vertical force of the ground acts on a wheel, vehicle axes [m]; (3,).
+
+        Tyres at rest that are not round: the contact patch, fixed to the wheel. Others: the lowest point of the wheel.
+        """
         fixed = self.standing and self.wheels[index] not in self.parts.round
         return self.places(index)[1] if fixed else self.lowest_point(index)
 

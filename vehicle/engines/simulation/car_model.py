@@ -60,7 +60,9 @@ def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     try:
         model = assembly.spec.compile()
     except ValueError as error:
-        raise SimulationError(f"MuJoCo refuses the generated car: {' '.join(str(error).split())}") from None
+        raise SimulationError(
+            f"MuJoCo refuses the generated car: {' '.join(str(error).split())}; check the parameters changed last"
+        ) from None
     rows = Rows(model)
     static = trim(rows)
     require_standing(vehicle, rows, static)

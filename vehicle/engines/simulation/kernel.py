@@ -390,6 +390,10 @@ def rewrite(time: float, d: Fields, efc: Efc, e: Layout, c: Weights, s: State) -
 
 @jitable
 def damper_force(damper: int, d: Fields, e: Layout, s: State) -> float:
-    """Return the force of a user actuator [N]: -D v or -c v at the present velocity, and the constant part."""
+    """Return the force -c v - F0 [N] of a damper, whose friction is a row; c is its coefficient at the velocity v.
+
+    Args:
+        damper: index of the damper.
+    """
     force: float = -s.coefficient[damper] * d.actuator_velocity[damper] - e.dampers.laws[damper]["shift"]
     return force

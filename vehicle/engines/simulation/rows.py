@@ -126,16 +126,24 @@ class Rows:
             rewrite(data.time, self.fields(data), Efc(**efc), self.layout, self.weights, self.state)
 
     def actuator_bias(self, model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
-        """Return the viscous force of a damper, as `mjcb_act_bias`."""
+        """Return the viscous force of a damper [N], as `mjcb_act_bias`."""
         return float(damper_force(index, self.fields(data), self.layout, self.state))
 
     @staticmethod
     def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
-        """Return zero, as `mjcb_act_gain`: dampers have no control input."""
+        """Return 0 N, as `mjcb_act_gain`: dampers have no control input."""
         return 0.0
 
     def whole(self, held: Vector, modal: Vector) -> Vector:
-        """Insert all modal coordinates into positions or velocities of the model."""
+        """Return positions or velocities of the model with all modal coordinates of the body.
+
+        Args:
+            held: positions (nq,) or velocities (nv,) of the compiled model, which holds some of the modes.
+            modal: all modal coordinates [kg^1/2 m], or their rates; (modes,).
+
+        Returns:
+            Coordinates with the modal range replaced by `modal`.
+        """
         modes = self.layout.modes
         modal_range = modes.positions if held.size == self.model.nq else modes.velocities
         return np.concatenate([held[: modal_range.start], modal, held[modal_range.stop :]])

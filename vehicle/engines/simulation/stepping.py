@@ -123,7 +123,10 @@ def simulate(
         wall = clock.perf_counter() - started
     warnings = _warnings(data)
     if warnings:
-        raise SimulationError(f"MuJoCo warned during the run: {'; '.join(warnings)}; discard its results")
+        raise SimulationError(
+            f"MuJoCo warned during the run: {'; '.join(warnings)}; its results are discarded: check the input and the "
+            "changed parameters, or reduce solver.timestep"
+        )
     energies = recorder.energies()
     statistics = Statistics(
         engine="mujoco",

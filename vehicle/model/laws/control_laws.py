@@ -104,7 +104,7 @@ def demanded(numbers: Any, body: Any, wheel: Any) -> Any:
 
     Args:
         numbers: record from `in_steps`.
-        body, wheel: vb and vw [m/s].
+        body, wheel: velocities vb, vw of the ends along the damper, from the wheel to the body [m/s].
     """
     if numbers["controller"] > 0.0:
         coefficient = result_at(numbers["controller"], body, wheel)

@@ -194,7 +194,7 @@ def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
 
 
 def value_of(vehicle: Any, path: str) -> float:
-    """Return the value of a number in a parameter object.
+    """Return the value of a number in a parameter object, in its SI unit.
 
     Args:
         vehicle: the parameter object.

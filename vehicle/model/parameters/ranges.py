@@ -49,7 +49,7 @@ class Range:
         return 0.5 * math.log(self.high / self.low)
 
     def value(self, logarithm: float) -> float:
-        """Return the value at u = ln(value / start)."""
+        """Return the value at u = ln(value / start) [-], in the unit of the parameter."""
         return self.start * math.exp(logarithm)
 
 

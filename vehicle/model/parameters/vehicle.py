@@ -211,7 +211,7 @@ class Vehicle:
             ConfigurationError: the car has no damper.
         """
         if not self.composition.dampers:
-            raise ConfigurationError(f"{self.name}: has no damper")
+            raise ConfigurationError(f"{self.name}: has no damper; add [front.damper], or use another car")
         return self.composition.dampers[0].law
 
     def quantity_of(self, path: str) -> Mapping[str, Any]:

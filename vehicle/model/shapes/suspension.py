@@ -42,7 +42,13 @@ class StrutAxis(NamedTuple):
     """distance of the strut top [m]"""
 
     def turned(self, profile: ArrayLike, sections: int, *, closed: bool = False) -> trimesh.Trimesh:
-        """Build the body of revolution of a profile (r, distance along the axis) [m] about the axis."""
+        """Build the body of revolution of a profile about the axis of the strut.
+
+        Args:
+            profile: radius and distance from the damper bottom along the axis [m]; (n, 2).
+            sections: number of divisions of the full turn.
+            closed: join the last point to the first, for a ring that does not touch the axis.
+        """
         return self.place(lathe(profile, sections=sections, closed=closed))
 
     def place(self, mesh: trimesh.Trimesh) -> trimesh.Trimesh:

@@ -42,7 +42,7 @@ class Setting:
 
     @property
     def step(self) -> float:
-        """Distance of two positions of the slider: a round number."""
+        """Distance of two positions of the slider [`unit`]: a power of ten, at least `STEPS` positions in the range."""
         step = (self.high - self.low) / STEPS
         return float(10.0 ** math.floor(math.log10(step)))
 

@@ -168,7 +168,10 @@ def comparison_of(
             )
             notices += response_faults(response.channel, response.measured, response.simulated, weight)
     if not responses and not records:
-        raise DataError(f"{measured.file.path}: no channel is also in the run {simulated.name}")
+        raise DataError(
+            f"{measured.file.path}: no channel is also in the run {simulated.name}; set --map CHANNEL=NAME, or record "
+            "the channel in the run (--channels)"
+        )
     return Comparison(
         measured=measured.file.path.name,
         simulated=simulated.name,

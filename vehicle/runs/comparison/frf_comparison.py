@@ -115,7 +115,8 @@ def compare_responses(
     if not frequency.size:
         raise DataError(
             f"measured from {measured.frequency[0]:g} to {measured.frequency[-1]:g} Hz, simulated from "
-            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no common line"
+            f"{simulated.frequency[0]:g} to {simulated.frequency[-1]:g} Hz: no common line; "
+            "measure FRFs in the band of the run"
         )
     bands = list(pairwise(edges))
     comparisons = []

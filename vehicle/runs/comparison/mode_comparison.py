@@ -199,7 +199,10 @@ def compare_modes(
         )
     measured = [shape for shape in measurement.shapes if set(nodes.values()) <= set(shape.points)]
     if not measured:
-        raise DataError(f"{measurement.path}: no mode holds all of the nodes {', '.join(nodes.values())}")
+        raise DataError(
+            f"{measurement.path}: no mode contains all of the nodes {', '.join(nodes.values())}; set --map PLACE=NODE "
+            "for the nodes of a mode"
+        )
     simulated = car.modes(damper)
     truth = np.array(
         [[shape.shape[shape.points.index(node), :3] for node in nodes.values()] for shape in measured]

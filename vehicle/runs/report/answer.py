@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
@@ -223,7 +224,8 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     parts = [f"{share} of the change (mean square) {_is_within(band)}"]
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
-        parts.append(f"mainly by the mode {_moved(mode, counterpart(mode, run_modes.get(damper_state(run), ())))}")
+        other = counterpart(mode, run_modes.get(damper_state(run), ()), first.car.matrices.system.mass)
+        parts.append(f"mainly by the mode {_moved(mode, other)}")
     if shares := changed_paths(first, run, band, spectra):
         parts.append(f"carried into the body by {main_path(shares)}")
     slips = [slip_shares(each.summary) for each in (first, run)]
@@ -274,12 +276,21 @@ def changed_paths(
     return {name: (shares[1][name] * powers[1] - share * powers[0]) / change for name, share in shares[0].items()}
 
 
-def counterpart(mode: Mode, modes: Sequence[Mode]) -> Mode | None:
-    """Return the mode of another car with the most similar shape (MAC above 0.5), or None."""
+def counterpart(mode: Mode, modes: Sequence[Mode], mass: npt.NDArray[np.float64]) -> Mode | None:
+    """Return the mode of another car with the most similar shape (MAC with the mass matrix above 0.5), or None.
+
+    The coordinates are displacements [m], angles [rad] and modal coordinates; without the mass matrix the angles of
+    rolling wheels, of 1/r rad for a travel of 1 m, decide which modes are similar.
+
+    Args:
+        mode: mode of the first car.
+        modes: modes of the other car.
+        mass: mass matrix of the first car at the coordinates of its modes; (n, n).
+    """
     same = [other for other in modes if other.shape.shape == mode.shape.shape]
     if not same:
         return None
-    criteria = mac([mode.shape], [other.shape for other in same])[0]
+    criteria = mac([mode.shape], [other.shape for other in same], mass)[0]
     return same[int(np.argmax(criteria))] if criteria.max() > 0.5 else None
 
 

@@ -67,7 +67,11 @@ CAUSES = (
 
 
 def rounding_step(samples: Real) -> float:
-    """Return the rounding step of samples, of which all small differences are multiples; 0 if there is no step."""
+    """Return the rounding step of samples, of which all small differences are multiples; 0 without a step.
+
+    Args:
+        samples: record in any unit, that of the result; (n,).
+    """
     steps = np.diff(np.sort(samples))
     steps = steps[steps > 1e-9 * np.ptp(samples)]
     if not steps.size:

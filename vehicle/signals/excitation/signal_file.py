@@ -193,7 +193,8 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
     if unknown:
         raise DataError(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
-            f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME"
+            f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect "
+            "FILE prints the command)"
         )
     if "time" not in columns or len(columns) == 1:
         missing = "displacement" if "time" in columns else "time"

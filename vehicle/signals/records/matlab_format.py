@@ -99,7 +99,9 @@ def channels_of(
         raise DataError(f"{path}: no numeric array; {remedy}")
     if not channels:
         names = ", ".join(name for name in list(variables)[:12] if not name.startswith("__")) or "nothing"
-        raise DataError(f"{path}: no structure with x_values and y_values and no numeric array; it contains {names}")
+        raise DataError(
+            f"{path}: no structure with x_values and y_values and no numeric array; it contains {names}; save numbers"
+        )
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if objects:
         notices.append(f"ignored: {remedy}")
@@ -187,7 +189,8 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
     axis_values, stated_count = _field(x, "values"), _number(_field(x, "number_of_values"))
     if stated_count is not None and int(stated_count) != columns.shape[0]:
         raise DataError(
-            f"{path}: {label}: {stated_count:g} values stated, {columns.shape[0]} present; the file is damaged"
+            f"{path}: {label}: {stated_count:g} values stated, {columns.shape[0]} present; the file is damaged; "
+            "save it again"
         )
     axis_unit = find_unit(_text(_field(x, "quantity", "label")))
     axis_quantity = axis_unit.quantity if axis_unit is not None else ""

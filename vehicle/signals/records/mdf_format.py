@@ -80,7 +80,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     if identifiers and not databases:
         notices.append(f"{len(identifiers)} raw frames of a CAN bus are ignored; set --dbc FILE to decode them")
     if not channels:
-        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types")
+        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types; export numbers")
     return Measurement(
         path=path,
         format="mdf",

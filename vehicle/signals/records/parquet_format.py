@@ -57,7 +57,8 @@ def read(path: Path) -> Measurement:
             channels.append(Channel(name=text, values=np.asarray(values, dtype=np.float64), unit=unit, axis=axis))
     if not channels or not rows:
         raise DataError(
-            f"{path}: no numeric column; it contains {', '.join(map(repr, fields.names[:12])) or 'nothing'}"
+            f"{path}: no numeric column; it contains {', '.join(map(repr, fields.names[:12])) or 'nothing'}; "
+            "export numbers"
         )
     return Measurement(
         path=path,

@@ -183,9 +183,11 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     rate = first.rate
     for channel in channels:
         if channel.kind != "time" or channel.values.size != first.values.size or channel.rate != rate or rate is None:
-            raise DataError(f"{path}: RPC III needs time histories of one rate; {channel.name} has another rate")
+            raise DataError(
+                f"{path}: RPC III needs time histories of one rate; {channel.name} has another rate; resample it"
+            )
         if not np.isfinite(channel.values).all():
-            raise DataError(f"{path}: {channel.name} has a missing value, not supported by RPC III")
+            raise DataError(f"{path}: {channel.name} has a missing value, not supported by RPC III; leave it out")
     samples, count = first.values.size, len(channels)
     frame = min(FRAMES, key=lambda size: -samples % size)
     frames = math.ceil(samples / frame)

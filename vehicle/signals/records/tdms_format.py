@@ -79,7 +79,7 @@ def read(path: Path) -> Measurement:
     except Exception as error:  # npTDMS raises errors of any type for damaged files
         raise DataError(f"{path}: cannot be read as TDMS ({error}); it may be truncated; export it again") from None
     if not channels:
-        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types")
+        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types; export numbers")
     return Measurement(
         path=path,
         format="tdms",

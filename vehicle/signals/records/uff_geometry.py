@@ -25,14 +25,19 @@ BEAMS = (11, 21, 22, 23, 24)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Units:
-    """Units of dataset 164: SI value = value in the file / factor."""
+    """Units of dataset 164: SI value = value in the file / factor.
+
+    Attributes:
+        length: factor of lengths [file unit per m].
+        force: factor of forces [file unit per N].
+    """
 
     length: float = 1.0
     force: float = 1.0
 
     @property
     def mass(self) -> float:
-        """Factor of masses, which are forces over accelerations."""
+        """Factor of masses, which are forces over accelerations [file unit per kg]."""
         return self.force / self.length
 
 

@@ -39,7 +39,7 @@ def read(path: Path) -> Measurement:
     ) as error:
         raise DataError(f"{path}: cannot be read as WAV ({error}); export it as uncompressed WAV") from None
     if data.size == 0 or rate <= 0:
-        raise DataError(f"{path}: {data.size} samples at {rate} Hz, must be a record")
+        raise DataError(f"{path}: {data.size} samples at {rate} Hz, must be a record; export it again")
     if not np.isfinite(data).all():
         raise DataError(f"{path}: contains numbers that are not finite; repair the record")
     values = data.reshape(len(data), -1).astype(np.float64)

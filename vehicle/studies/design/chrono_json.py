@@ -98,7 +98,7 @@ class ChronoFile:
         return value
 
     def number(self, name: str) -> float:
-        """Return a number.
+        """Return a number, in the unit of the file: Chrono has SI units.
 
         Raises:
             DataError: it is missing, or no finite number.

@@ -211,7 +211,7 @@ def _plane_of(arm: ChronoFile) -> Vector:
     )
     across, along = np.cross(back - ball, front - ball), front - back
     if not np.linalg.norm(across) > 0.0:
-        raise DataError(f"{arm.path}: the three points of {arm.inside[-1]} lie on a line")
+        raise DataError(f"{arm.path}: the three points of {arm.inside[-1]} lie on a line; move one of them")
     across, along = across / np.linalg.norm(across), along / np.linalg.norm(along)
     return np.column_stack([along, np.cross(across, along), across])
 

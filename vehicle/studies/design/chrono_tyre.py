@@ -83,7 +83,14 @@ class ChronoTyre:
         return float(self.force[0] + 2.0 * self.force[1] * z)
 
     def slip_stiffness(self, name: str, load: float) -> float:
-        """Return the slope of a horizontal force over slip at a static load."""
+        """Return the slope of a horizontal force over slip at a static load [N or N/rad].
+
+        Quadratic in the load, with the slopes of `slip` at the nominal load and at twice that load, as in TMeasy.
+
+        Args:
+            name: direction, a key of `slip`.
+            load: static load of the tyre [N].
+        """
         low, high = self.slip[name]
         if math.isinf(self.nominal):
             return low

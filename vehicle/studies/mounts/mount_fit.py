@@ -65,11 +65,14 @@ class MountFit:
 
 
 def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
-    """Fit one law.
+    """Fit a law by least squares of ln(S/S_measured), real part (stiffness) and imaginary part (loss angle) alike.
 
     Args:
-        data: measured points.
-        law: the law.
+        data: measured points of the complex dynamic stiffness S [N/m].
+        law: law of the mount with start values for these points.
+
+    Returns:
+        Parameters with standard errors, BIC, and errors of stiffness and loss angle: best fit of all start values.
     """
     omega, amplitude, measured = 2.0 * np.pi * data.frequency, data.amplitude, data.stiffness
 

@@ -80,9 +80,13 @@ def thinned(costs: Vector, first: Sequence[int], maximum: int) -> Indices:
 
 
 def hypervolume(costs: Vector, like: Vector) -> float:
-    """Return the volume dominated by the rows of `costs`, in extents of the front `like`.
+    """Return the volume dominated by a front, in extents of another front [-].
 
-    The reference point is `MARGIN` extents beyond the worst values of `like`.
+    The reference point is `MARGIN` extents above the largest values of the other front.
+
+    Args:
+        costs: criteria of the cars of the front, smaller is better; (cars, criteria).
+        like: criteria of the front that defines the scales; (cars, criteria).
 
     Source: Zitzler and Thiele, Multiobjective optimization using evolutionary algorithms, PPSN V (1998).
     """
@@ -91,7 +95,7 @@ def hypervolume(costs: Vector, like: Vector) -> float:
 
 
 def distance(costs: Vector, other: Vector) -> float:
-    """Return the mean distance from the rows of a front to the nearest row of another front, in extents of both."""
+    """Return the mean distance from the rows of a front to the nearest row of another front, in extents of both [-]."""
     both = np.concatenate([costs, other])
     gaps = scaled(costs, both)[:, None] - scaled(other, both)
     return float(np.mean(np.min(np.linalg.norm(gaps, axis=2), axis=1)))

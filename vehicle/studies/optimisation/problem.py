@@ -91,7 +91,7 @@ class Tolerance:
     relative: bool
 
     def value_at(self, value: float, position: float) -> float:
-        """Return the value at a position from -1 to 1 in the band."""
+        """Return the value at a position from -1 to 1 in the band, in the unit of the parameter."""
         return value * (1.0 + position * self.width) if self.relative else value + position * self.width
 
 

@@ -121,7 +121,7 @@ class RideMeasure:
 
 
 def split_name(number: str) -> tuple[str, str]:
-    """Return quantity and suffix (axis or wheel; empty for all) of the name of a number."""
+    """Split the name of a ride value, as "tyre_load_fr", into quantity and suffix (axis or wheel; empty for all)."""
     quantity = max(
         (quantity for quantity in QUANTITIES if f"{number}_".startswith(f"{quantity}_")), key=len, default=""
     )

@@ -55,7 +55,7 @@ def read_other_front(folder: Path, problem: Problem) -> OtherFront:
             "finished search with these objectives"
         ) from None
     if not rows:
-        raise DataError(f"--beside {folder}: {FRONT} has no rows")
+        raise DataError(f"--beside {folder}: {FRONT} has no rows; specify a finished search")
     return OtherFront(folder=folder, values=values)
 
 

@@ -279,7 +279,7 @@ def _checked(values: dict[str, float]) -> dict[str, float]:
     # NaN is an undefined value, as the first slip of a damper that never slips.
     infinite = [name for name, value in values.items() if math.isinf(value)]
     if infinite:
-        raise SimulationError(f"{', '.join(infinite)}: infinite; the run overflowed")
+        raise SimulationError(f"{', '.join(infinite)}: infinite; the run overflowed: narrow the varied ranges")
     return values
 
 

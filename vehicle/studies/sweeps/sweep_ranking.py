@@ -51,7 +51,7 @@ class RankedCars:
 
     @property
     def point(self) -> str:
-        """Return the words of the point of both values."""
+        """Words for the measurement point of the comfort values."""
         return "on the cushion" if self.prefix else "at the seat rail"
 
     @property

@@ -35,7 +35,7 @@ def r_hat(chains: Vector) -> float:
 
 
 def effective_samples(chains: Vector) -> float:
-    """Return the bulk effective sample size S / (1 + 2 sum rho_t) with Geyer's initial monotone sequence.
+    """Return the bulk effective sample size S / (1 + 2 sum rho_t) [-] with Geyer's initial monotone sequence.
 
     Args:
         chains: samples, (chains, n).

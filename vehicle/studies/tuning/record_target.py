@@ -60,11 +60,14 @@ class RecordTarget:
         for channel, values in self.record.channels.items():
             channel_units([channel])
             if not np.any(values[self.inside]):
-                raise DataError(f"{self.name}: {channel} is zero throughout {self.window[0]:g} to {self.window[1]:g} s")
+                raise DataError(
+                    f"{self.name}: {channel} is zero throughout {self.window[0]:g} to {self.window[1]:g} s; leave it "
+                    "out, or choose another part of the record"
+                )
 
     @property
     def kept(self) -> npt.NDArray[np.int64]:
-        """Return the indices of the samples in the window after decimation."""
+        """Return the indices of the samples in the window after decimation, (samples,)."""
         every = max(int(1.0 / (KEPT * self.lowpass * self.record.step) + 1e-9), 1)
         return np.flatnonzero(self.inside)[::every]
 

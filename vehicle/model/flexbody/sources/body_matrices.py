@@ -101,10 +101,13 @@ class BodyMatrices(BodyNodes):
                     "the list of degrees of freedom of these matrices, in the same order."
                 )
             if not np.all(np.isfinite(matrix.data)):
-                raise DataError(f"{name}: contains {np.sum(~np.isfinite(matrix.data))} entries that are not finite.")
+                raise DataError(
+                    f"{name}: contains {np.sum(~np.isfinite(matrix.data))} entries that are not finite. Export it "
+                    "again."
+                )
             largest = np.abs(matrix.data).max(initial=0.0)
             if largest == 0.0:
-                raise DataError(f"{name}: all entries are zero.")
+                raise DataError(f"{name}: all entries are zero. Export it again, with the mass or stiffness.")
             if np.abs((matrix - matrix.T).data).max(initial=0.0) > 1e-6 * largest:
                 raise DataError(
                     f"{name}: not symmetric. Export the complete matrix or one triangle, without gyroscopic and "

@@ -77,7 +77,7 @@ def read_frd(path: Path, length: float, mass: float = 1.0) -> GivenModes:
     numbers = sorted(shapes[0])
     unplaced = [number for number in numbers if number not in positions]
     if unplaced:
-        raise DataError(f"{path}: node {unplaced[0]} of the modes has no position.")
+        raise DataError(f"{path}: node {unplaced[0]} of the modes has no position. Write all nodes.")
     index = {number: i for i, number in enumerate(numbers)}
     count = len(numbers)
     return GivenModes(

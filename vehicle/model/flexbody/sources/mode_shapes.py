@@ -121,7 +121,7 @@ def normalised(
     """
     frequencies, vectors, modal_mass = modes.frequencies, modes.vectors, modes.modal_mass
     for k in np.flatnonzero(~(np.isfinite(frequencies) & np.isfinite(vectors).all(axis=0))):
-        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its frequency or shape is not finite.")
+        raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its frequency or shape is not finite. Omit it.")
     for k in np.flatnonzero(~vectors.any(axis=0)):
         raise DataError(f"mode {k + 1}, at {frequencies[k]:g} Hz: its shape is zero everywhere. Omit the mode.")
     order = np.argsort(frequencies, kind="stable")
