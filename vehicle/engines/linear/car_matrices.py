@@ -15,13 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.damper_elements import (
-    RubberElements,
     SideRows,
     SliderElements,
-    no_rubber,
     no_side_forces,
     no_sliders,
-    rubber_elements,
     side_rows,
     slider_elements,
 )
@@ -63,7 +60,6 @@ class CarMatrices:
         spinning: bodies that rotate with a rolling wheel; their angle is not a state.
         carried_by: body to which each body is fixed; the body itself if it can move on its parent.
         sliders: Jenkins elements of the dampers; their forces are not in the matrices.
-        rubber: Jenkins elements of the bushings; their tangent at rest is in the stiffness matrix.
         sides: side forces of the dampers whose friction depends on them.
         slope: generalised forces per velocity of a plate, due to the static load of a rolling tyre on the slope of
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
@@ -88,7 +84,6 @@ class CarMatrices:
     modal: slice
     fluids: dict[str, int] = field(default_factory=dict)
     sliders: SliderElements = field(default_factory=no_sliders)
-    rubber: RubberElements = field(default_factory=no_rubber)
     sides: SideRows = field(default_factory=no_side_forces)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
@@ -205,7 +200,6 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
             "viscous": viscous,
             "laws": over_displacement,
             "sliders": slider_elements(rows),
-            "rubber": rubber_elements(rows, jacobian),
             "sides": side_rows(rows, jacobian, preload, over_displacement),
             "tyre_rows": vertical,
             **{f"tyre_{term}": values for term, values in tyres.items()},

@@ -1,4 +1,4 @@
-"""Jenkins elements of dampers and bushings, and side forces of dampers, as rows over the coordinates of the car."""
+"""Jenkins elements of dampers, and side forces of dampers, as rows over the coordinates of the car."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from vehicle.engines.linear.displacement_laws import BUSHING, DisplacementLaw
 from vehicle.engines.simulation.rows import Rows
-from vehicle.names import AXES
 
 Vector = npt.NDArray[np.float64]
 
@@ -32,26 +31,6 @@ class SliderElements:
     stiffness: Vector
     limit: Vector
     steepness: Vector
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RubberElements:
-    """Groups of parallel Jenkins elements (`vehicle.model.laws.amplitude`), g axes of bushings with rubber friction.
-
-    The displacement d = row u is that of the moving part relative to the carrier, along the axis of the law; the force
-    on u is -row' t. The stiffness matrix of the car contains the tangent at rest, the sum of k of each group, so that
-    only t - k d is nonlinear. At rest d and t are zero: friction carries no static load.
-
-    Attributes:
-        names: names of the axes, as "bushing/arm_rear_fr along x"; (g,).
-        rows: displacements d over the velocity coordinates; (g, n).
-        stiffness: k [N/m]; (g, e). limit: largest force of each element [N]; (g, e).
-    """
-
-    names: tuple[str, ...]
-    rows: Vector
-    stiffness: Vector
-    limit: Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -91,26 +70,6 @@ def no_sliders() -> SliderElements:
     none = np.zeros((0, 0))
     return SliderElements(
         rows=none, dampers=np.zeros(0, dtype=np.int64), stiffness=none, limit=none, steepness=np.zeros(0)
-    )
-
-
-def no_rubber() -> RubberElements:
-    """Return no groups of Jenkins elements of bushings."""
-    none = np.zeros((0, 0))
-    return RubberElements(names=(), rows=none, stiffness=none, limit=none)
-
-
-def rubber_elements(rows: Rows, jacobian: Vector) -> RubberElements:
-    """Return the Jenkins elements of the bushings; arguments: see `car_matrices.law_matrices`."""
-    r = rows.layout.rubber
-    if not r.elements.size:
-        return no_rubber()
-    groups = list(dict.fromkeys(zip(r.elements.tolist(), r.axes.tolist(), strict=True)))
-    return RubberElements(
-        names=tuple(f"{rows.names[element]} along {AXES[axis]}" for element, axis in groups),
-        rows=np.array([jacobian[rows.layout.bushings.rows[group]] for group in groups]),
-        stiffness=r.stiffness.reshape(len(groups), -1),
-        limit=r.limit.reshape(len(groups), -1),
     )
 
 

@@ -1,4 +1,4 @@
-"""Nonlinear laws over displacement about the static equilibrium: tables of springs and bushings, bump stops, tyres.
+"""Nonlinear laws over displacement about the static equilibrium: tables, bump stops, tyres, rubber friction.
 
 K of the linear car contains the tangent k of each law. A law F(x) of the displacement x = d + tau d' from the static
 equilibrium, with d = row u - z over the plate of a tyre, adds the force -g(x) along its row,
@@ -8,6 +8,14 @@ equilibrium, with d = row u - z over the plate of a tyre, adds the force -g(x) a
 with the slope changes a_j at the breakpoints p_j. In the segment in which the car is at rest, g is exactly zero. A tyre
 that cannot pull has the force max(0, F_0 - K d - D d'): tau = D/K, one breakpoint F_0/K, and the slope change -K. The
 operating points of the tables are those of `vehicle.engines.simulation.force_curves`.
+
+Rubber friction (`vehicle.model.laws.amplitude`) has the force t of Jenkins elements with the stiffness k_i and the
+stroke x_i = l_i/k_i, and K contains their sum: g = t - (sum of k_i) d. Element i has its slider at q_i, and so the force
+k_i (d - q_i): d moves q_i when it is farther than x_i from it,
+
+    q_i = max(d - x_i, min(d + x_i, q_i)),    g = -sum of k_i q_i.
+
+On first loading from rest, q_i = 0, this is a law with the breakpoints +-x_i and the slope changes -+k_i.
 """
 
 from __future__ import annotations
@@ -45,6 +53,8 @@ class DisplacementLaw:
         changes: a_j [N/m]; (k,).
         rate_time: tau [s].
         one_sided: True for a tyre that cannot pull.
+        friction: True for rubber friction; breakpoints and slope changes are those of first loading from rest, first
+            -x_i with k_i, then x_i with -k_i, x_i ascending.
     """
 
     name: str
@@ -55,6 +65,12 @@ class DisplacementLaw:
     changes: Vector
     rate_time: float = 0.0
     one_sided: bool = False
+    friction: bool = False
+
+    @property
+    def elements(self) -> Vector:
+        """Return stiffness k_i [N/m] and stroke x_i [m] of the Jenkins elements of rubber friction; (2, e)."""
+        return np.stack([self.changes, -self.breakpoints])[:, : len(self.breakpoints) // 2 * self.friction]
 
     @property
     def low(self) -> float:
@@ -90,7 +106,7 @@ class DisplacementLaw:
 
 
 def displacement_laws(rows: Rows, jacobian: Vector, preload: Vector) -> tuple[DisplacementLaw, ...]:
-    """Return the nonlinear laws over displacement of a car: its tables, then its tyres that cannot pull.
+    """Return the nonlinear laws over displacement of a car: its tables, tyres that cannot pull, then rubber friction.
 
     Args:
         rows: rows of the car at rest.
@@ -143,7 +159,27 @@ def displacement_laws(rows: Rows, jacobian: Vector, preload: Vector) -> tuple[Di
                 one_sided=True,
             )
         )
-    return tuple(laws)
+    return (*laws, *_rubber_laws(rows, jacobian))
+
+
+def _rubber_laws(rows: Rows, jacobian: Vector) -> list[DisplacementLaw]:
+    """Return the rubber friction of the bushings, a law for each axis; arguments: see `displacement_laws`."""
+    rubber, laws = rows.layout.rubber, []
+    for element, axis in dict.fromkeys(zip(rubber.elements.tolist(), rubber.axes.tolist(), strict=True)):
+        chosen = (rubber.elements == element) & (rubber.axes == axis)
+        stiffness, stroke = rubber.stiffness[chosen], rubber.limit[chosen] / rubber.stiffness[chosen]
+        laws.append(
+            DisplacementLaw(
+                name=f"{rows.names[element]} along {AXES[axis]}",
+                element=(BUSHING, element, axis),
+                row=jacobian[rows.layout.bushings.rows[element, axis]],
+                plate=-1,
+                breakpoints=np.concatenate([-stroke, stroke]),
+                changes=np.concatenate([stiffness, -stiffness]),
+                friction=True,
+            )
+        )
+    return laws
 
 
 def _about_rest(breakpoints: Vector, changes: Vector) -> tuple[Vector, Vector]:

@@ -184,5 +184,5 @@ def _single_precision_factors(
 def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:
     """Return what is equal in a group: dampers with Jenkins elements, their number, dampers with side forces, laws."""
     sliders, sides = model.matrices.sliders, model.matrices.sides
-    laws = tuple((law.element, law.one_sided) for law in model.laws)
+    laws = tuple((law.element, law.one_sided, law.friction) for law in model.laws)
     return tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist()), laws

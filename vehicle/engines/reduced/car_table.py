@@ -96,7 +96,9 @@ class CarTable:
         self.cars = cars
         d, m, g, laws = len(dampers[0]), start.shape[1], len(cars[0].strokes), len(cars[0].laws)
         groups, e = cars[0].sliders.stiffness.shape
-        corners = max((len(law.breakpoints) for car in cars for law in car.laws), default=0)
+        rubbers = sum(law.friction for law in cars[0].laws)
+        corners = max((len(law.breakpoints) for car in cars for law in car.laws if not law.friction), default=0)
+        layers = max((law.elements.shape[1] for car in cars for law in car.laws), default=0)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         count = len(sensors[0].poles)
@@ -110,7 +112,8 @@ class CarTable:
         sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": groups}
         sizes["static"] = len(static[0]) if static else 0
         sizes |= dict.fromkeys(("spring", "give", "share", "slider"), groups * e)
-        sizes |= {"corner": 3 * laws * corners, "own": laws, "excess": laws, "heard": count * laws}
+        sizes |= {"corner": 3 * (laws - rubbers) * corners, "own": laws, "excess": laws, "heard": count * laws}
+        sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach", "anchor", "middle"), rubbers * layers)
         sizes |= {"work": d * (4 + 4 * node_count) + groups * (2 + 4 * e) + 2 * self.sums + TILE}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
@@ -136,7 +139,9 @@ class CarTable:
             values |= {"static": static[car]} if static else {}
             if laws:
                 effect = np.diag(gain)[d + groups :]
-                values |= {"own": 0.5 * effect, "corner": _corners(cars[car].laws, effect, corners)}
+                tables, friction = cars[car].laws[: laws - rubbers], cars[car].laws[laws - rubbers :]
+                values |= {"own": 0.5 * effect, "corner": _corners(tables, effect[: laws - rubbers], corners)}
+                values |= _rubber(friction, effect[laws - rubbers :], layers)
                 values |= {
                     "excess": forces_at_start(cars[car].laws, cars[car].columns, start),
                     "heard": heard[car] if heard else np.zeros(0),
@@ -163,6 +168,8 @@ class CarTable:
             elements=e,
             curves=(0.0,) * laws,
             corners=corners,
+            rubbers=rubbers,
+            layers=layers,
             pieces=node_count - 1,
             **first_rows,
         )
@@ -213,11 +220,7 @@ def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Ve
             chosen = np.flatnonzero(np.copysign(1.0, law.breakpoints) == side)
             chosen = chosen[np.argsort(np.abs(law.breakpoints[chosen]), kind="stable")]
             slopes = side * np.cumsum(law.changes[chosen])
-            if np.any(1.0 + 0.5 * effect * slopes <= 0.0):
-                raise SimulationError(
-                    f"{law.name}: its tangent at rest is not positive in this car, so the reduced engine cannot follow "
-                    "its softer segments; use the MuJoCo engine"
-                )
+            _require_rising(law, 1.0 + 0.5 * effect * slopes)
             steepness = slopes / (1.0 + 0.5 * effect * slopes)
             part = row[filled : filled + len(chosen)]
             part[:, 0] = side
@@ -225,3 +228,40 @@ def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Ve
             part[:, 2] = side * np.diff(steepness, prepend=0.0)
             filled += len(chosen)
     return numbers
+
+
+def _rubber(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> dict[str, Vector]:
+    """Return the elements of rubber friction for the time step; see `vehicle.engines.reduced.scalar_elements`.
+
+    Args:
+        laws: rubber friction.
+        effects: effects G of their forces on their displacements [m/N]; (laws,).
+        count: number of elements; laws with fewer have elements without stiffness.
+
+    Returns:
+        Sections of the table by name; (laws, count) each.
+    """
+    stiff, stroke, part, reach, weight = np.zeros((5, len(laws), count))
+    for row, (law, effect) in enumerate(zip(laws, effects.tolist(), strict=True)):
+        stiffness, strokes = law.elements
+        size = len(stiffness)
+        sliding = np.cumsum(np.append(0.0, stiffness))
+        rising = 1.0 - 0.5 * effect * sliding
+        _require_rising(law, rising)
+        stiff[row, :size], stroke[row, :size], part[row, :size] = stiffness, strokes, rising[:-1]
+        reach[row, :size] = rising[:-1] * strokes + 0.5 * effect * np.cumsum(np.append(0.0, (stiffness * strokes)[:-1]))
+        weight[row, :size] = np.diff(sliding / rising)
+    return {"stiff": stiff, "stroke": stroke, "part": part, "reach": reach, "weight": weight}
+
+
+def _require_rising(law: DisplacementLaw, slopes: Vector) -> None:
+    """Check the slopes of x + G g(x)/2 of a law.
+
+    Raises:
+        SimulationError: a slope is not positive.
+    """
+    if np.any(slopes <= 0.0):
+        raise SimulationError(
+            f"{law.name}: its tangent at rest is not positive in this car, so the reduced engine cannot follow its "
+            "softer segments; use the MuJoCo engine"
+        )

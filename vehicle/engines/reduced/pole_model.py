@@ -23,7 +23,6 @@ import numpy.typing as npt
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import DisplacementLaw, law_rows
 from vehicle.engines.linear.first_order import first_order
-from vehicle.errors import ConfigurationError
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -135,16 +134,6 @@ class PoleModel:
         return -(spring + drag), m.tyre_stiffness[index] * at_wheel, m.tyre_damping[index] * at_wheel
 
 
-def only_in_mujoco(matrices: CarMatrices) -> str:
-    """Return why the reduced engine cannot compute a car; an empty text if it can."""
-    if not matrices.rubber.names:
-        return ""
-    return (
-        f"{matrices.rubber.names[0]}: has rubber friction (friction_force), which the reduced engine does not contain; "
-        "use engine mujoco or auto, or set friction_force to 0"
-    )
-
-
 def pole_model(matrices: CarMatrices) -> PoleModel:
     """Return poles, residues and outputs of a car in continuous time.
 
@@ -153,12 +142,7 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
 
     Returns:
         The pole model.
-
-    Raises:
-        ConfigurationError: the car has elements that only MuJoCo computes.
     """
-    if message := only_in_mujoco(matrices):
-        raise ConfigurationError(message)
     form = first_order(matrices.system)
     w = len(form.system.inputs)
     scalars = np.concatenate(

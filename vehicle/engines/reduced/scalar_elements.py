@@ -93,17 +93,48 @@ def law_force(t: Any, r: TableRows, curve: int, value: Any) -> Any:
 
 
 @inlined
-def advance_groups(t: Any, r: TableRows, owners: Any, moved: int) -> None:
-    """Advance the Jenkins elements over a step.
+def rubber_change(t: Any, r: TableRows, rubber: int, value: Any) -> Any:
+    """Return the change g_n - g+ of the force of rubber friction in a step from r', see above."""
+    change = filled(t, 0.0)
+    for i in range(r.layers * rubber, r.layers * (rubber + 1)):
+        distance, reach = value - load(t, r.middle + i), load(t, r.reach + i)
+        inside = minimum(maximum(distance, filled(t, 0.0) - reach), reach)
+        change = change + load(t, r.weight + i) * (distance - inside)
+    return change
+
+
+@inlined
+def advance_rubber(t: Any, r: TableRows, rubber: int, displacement: Any) -> None:
+    """Move the sliders of rubber friction to the end of a step, and set its force g and the middles of the next step.
+
+    Args:
+        t, r: table and sections.
+        rubber: index of the rubber friction.
+        displacement: displacement at the end of the step.
+    """
+    curve = len(r.curves) - r.rubbers + rubber
+    held, half = filled(t, 0.0), load(t, r.own + curve)
+    for i in range(r.layers * rubber, r.layers * (rubber + 1)):
+        stroke, anchor = load(t, r.stroke + i), load(t, r.anchor + i)
+        anchor = maximum(displacement - stroke, minimum(displacement + stroke, anchor))
+        store(t, r.anchor + i, anchor)
+        store(t, r.middle + i, load(t, r.part + i) * anchor + half * held)
+        held = held + load(t, r.stiff + i) * anchor
+    store(t, r.excess + curve, filled(t, 0.0) - held)
+
+
+@inlined
+def advance_group(t: Any, r: TableRows, owners: Any, group: int, u: Any) -> None:
+    """Advance the Jenkins elements of a group over a step.
 
     Args:
         t, r, owners: see `prepare_groups`.
-        moved: first row of the changes of the displacements over the step.
+        group: index of the group.
+        u: change of its displacement over the step.
     """
-    for group in range(len(r.groups)):
-        u, limit = load(t, moved + group), load(t, r.limit + owners[group])
-        store(t, r.place + group, load(t, r.place + group) + u)
-        for i in range(r.elements * group, r.elements * (group + 1)):
-            end = limit * load(t, r.share + i)
-            force = load(t, r.slider + i) + load(t, r.spring + i) * u
-            store(t, r.slider + i, minimum(maximum(force, filled(t, 0.0) - end), end))
+    limit = load(t, r.limit + owners[group])
+    store(t, r.place + group, load(t, r.place + group) + u)
+    for i in range(r.elements * group, r.elements * (group + 1)):
+        end = limit * load(t, r.share + i)
+        force = load(t, r.slider + i) + load(t, r.spring + i) * u
+        store(t, r.slider + i, minimum(maximum(force, filled(t, 0.0) - end), end))

@@ -44,6 +44,8 @@ class TableRows(NamedTuple):
         elements: number of elements of a group.
         curves: tuple with the length of the laws over displacement, which the compiler knows.
         corners: number of breakpoints of a law.
+        rubbers: number of the laws that are rubber friction, which come last.
+        layers: number of elements of a rubber friction.
         slip: contribution of z' at the end of a step to the damper velocities and to the displacements of groups and
             laws, by plates. level: contribution of z to the latter.
         gain, ramp: contributions of the mean forces of dampers, groups and laws, and of the slopes of damper forces.
@@ -66,6 +68,10 @@ class TableRows(NamedTuple):
             at the end of the step.
         own: halves of the effects of the forces of the laws on their displacements.
         excess: forces g of the laws. heard: contributions of these to each sensor.
+        stiff, stroke: stiffness k and stroke x of the elements of rubber friction.
+        part, weight, reach: shares, weights and half widths of these over the displacement without their own force, see
+            `vehicle.engines.reduced.scalar_elements`.
+        anchor, middle: positions of their sliders, and the middles over that displacement.
         work: work space for the solution of a step.
     """
 
@@ -76,6 +82,8 @@ class TableRows(NamedTuple):
     elements: int
     curves: tuple[float, ...]
     corners: int
+    rubbers: int
+    layers: int
     real: int
     slip: int
     level: int
@@ -105,6 +113,13 @@ class TableRows(NamedTuple):
     own: int
     excess: int
     heard: int
+    stiff: int
+    stroke: int
+    part: int
+    weight: int
+    reach: int
+    anchor: int
+    middle: int
     work: int
 
 

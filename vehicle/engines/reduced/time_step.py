@@ -25,7 +25,14 @@ import numpy as np
 
 from vehicle.engines.reduced.feedback import Feedback, excess_coefficient
 from vehicle.engines.reduced.inlining import inlined
-from vehicle.engines.reduced.scalar_elements import advance_groups, group_force, law_force, prepare_groups
+from vehicle.engines.reduced.scalar_elements import (
+    advance_group,
+    advance_rubber,
+    group_force,
+    law_force,
+    prepare_groups,
+    rubber_change,
+)
 from vehicle.engines.reduced.simd_vector import (
     add_scaled,
     broadcast,
@@ -44,42 +51,67 @@ from vehicle.model.laws.damper import friction_limit
 
 
 @inlined
+def add_effects(t: Any, r: TableRows, count: int, sums: int, force: int, change: Any, last: bool) -> None:
+    """Add the effects of the change of a force to the velocities and displacements without the own force.
+
+    Args:
+        t, r: table and sections; the work space begins with these velocities and displacements.
+        count, sums: numbers of dampers, and of dampers and scalar elements.
+        force: index of the force.
+        change: its change.
+        last: add to those after it only.
+    """
+    for i in range(force if last else 0, sums):
+        if i != force:
+            effect = load(t, r.gain + i * sums + force)
+            if force < count:
+                effect = effect + load(t, r.stick + force) * load(t, r.ramp + i * count + force)
+            store(t, r.work + i, load(t, r.work + i) + effect * change)
+
+
+@inlined
 def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
     """Solve for the forces of a step, damper velocities and displacements of the scalar elements.
 
-    The work space begins with the velocities and displacements without forces.
+    The work space begins with the velocities and displacements without forces. The iterations begin with the forces of
+    the last step; a force adds the effects of its change to all others.
     """
     count = len(dampers)
-    scalars = len(r.groups) + len(r.curves)
-    sums = count + scalars
+    groups, tables = len(r.groups), len(r.groups) + len(r.curves) - r.rubbers
+    sums = count + len(r.groups) + len(r.curves)
     step, old = r.work + sums, r.inputs
     nodes = r.pieces + 1
     width = 3 * nodes
     kept = step + count  # forces of the last step
     work = kept + count  # nodes of each inverse law: velocity without forces, 1/length, force, rise of force
     corners, slider = work + 4 * nodes * count, old + 2 * count
-    zeros, ones = filled(t, 0.0), filled(t, 1.0)
+    zeros, ones, half = filled(t, 0.0), filled(t, 1.0), filled(t, 0.5)
     prepare_groups(t, r, owners, count, corners)
-    for scalar in range(scalars):
-        row = r.work + count + scalar
-        arriving = load(t, row)
-        if scalar < len(r.groups):
-            arriving = arriving - load(t, r.place + scalar)
-        else:
-            curve = scalar - len(r.groups)
-            arriving = arriving - load(t, r.own + curve) * load(t, r.excess + curve)
+    for i in range(sums):
+        arriving = load(t, r.work + i)
         for j in range(count):
-            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + (count + scalar) * count + j) * load(
-                t, old + j
-            )
-        store(t, row, arriving)
+            if j != i:
+                arriving = arriving + load(t, r.gain + i * sums + j) * load(t, old + j)
+            else:
+                arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + i * count + j) * load(t, old + j)
+        for j in range(count, sums):
+            if j != i:
+                arriving = arriving + load(t, r.gain + i * sums + j) * load(t, old + count + j)
+        if i >= count:
+            scalar = i - count
+            if scalar < groups:
+                arriving = arriving - load(t, r.place + scalar)
+            else:
+                effect = load(t, r.own + scalar - groups) * load(t, r.excess + scalar - groups)
+                arriving = arriving - effect
+                if scalar >= tables:
+                    arriving = arriving - effect
+        store(t, r.work + i, arriving)
     for i in range(count):
-        force = load(t, old + i)
-        store(t, kept + i, force)
-        stick = load(t, r.stick + i)
-        diagonal = load(t, r.gain + i * sums + i) + stick * load(t, r.ramp + i * count + i)
+        store(t, kept + i, load(t, old + i))
+        diagonal = load(t, r.gain + i * sums + i) + load(t, r.stick + i) * load(t, r.ramp + i * count + i)
         store(t, step + i, diagonal)
-        arriving = load(t, r.work + i) - diagonal * load(t, r.hold + i)
+        store(t, r.work + i, load(t, r.work + i) - diagonal * load(t, r.hold + i))
         limit = load(t, r.limit + i)
         at, law = work + 4 * nodes * i, r.law + width * i
         for j in range(nodes):
@@ -89,18 +121,10 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
         for j in range(r.pieces):
             store(t, at + 4 * j + 1, ones / (load(t, at + 4 * j + 4) - load(t, at + 4 * j)))
             store(t, at + 4 * j + 3, load(t, at + 4 * j + 6) - load(t, at + 4 * j + 2))
-        for j in range(count):
-            arriving = arriving - load(t, r.stick + j) * load(t, r.ramp + i * count + j) * load(t, old + j)
-        store(t, r.work + i, arriving)
     for iteration in range(r.iterations):
+        last = iteration == r.iterations - 1
         for i in range(count):
             arriving = load(t, r.work + i)
-            for j in range(count):
-                if j != i:
-                    other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
-                    arriving = arriving + other * load(t, old + j)
-            for j in range(scalars):
-                arriving = arriving + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
             at, law = work + 4 * nodes * i, r.law + width * i
             force, hold = load(t, at + 2), load(t, law + 1)
             for j in range(r.pieces):
@@ -109,29 +133,30 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
                 force = force + load(t, at + 4 * j + 3) * share
                 hold = hold + (load(t, law + 3 * j + 4) - load(t, law + 3 * j + 1)) * share
             store(t, r.velocity + i, arriving - load(t, step + i) * force)
-            store(t, old + i, zeros - force - load(t, r.hold + i))
-            if iteration == r.iterations - 1:
+            force = zeros - force - load(t, r.hold + i)
+            add_effects(t, r, count, sums, i, force - load(t, old + i), last)
+            store(t, old + i, force)
+            if last:
                 store(t, step + i, hold)
-        for scalar in range(scalars):
-            i, value = count + scalar, load(t, r.work + count + scalar)
-            for j in range(count):
-                other = load(t, r.gain + i * sums + j) + load(t, r.stick + j) * load(t, r.ramp + i * count + j)
-                value = value + other * load(t, old + j)
-            for j in range(scalars):
-                if j != scalar:
-                    value = value + load(t, r.gain + i * sums + count + j) * load(t, slider + j)
-            if scalar < len(r.groups):
-                force = group_force(t, corners + (2 + 4 * r.elements) * scalar, 2 * r.elements, value)
-                store(t, slider + scalar, zeros - force)
-                if iteration == r.iterations - 1:
-                    store(t, r.work + i, value - load(t, r.gain + i * (sums + 1)) * force)
+        for scalar in range(sums - count):
+            i, curve = count + scalar, scalar - groups
+            value = load(t, r.work + i)
+            if scalar < groups:
+                force = zeros - group_force(t, corners + (2 + 4 * r.elements) * scalar, 2 * r.elements, value)
+                if last:
+                    advance_group(t, r, owners, scalar, value + load(t, r.gain + i * (sums + 1)) * force)
+            elif scalar < tables:
+                at_end = law_force(t, r, curve, value)
+                force = zeros - half * (load(t, r.excess + curve) + at_end)
+                if last:
+                    store(t, r.excess + curve, at_end)
             else:
-                curve = scalar - len(r.groups)
-                force = law_force(t, r, curve, value)
-                store(t, slider + scalar, zeros - filled(t, 0.5) * (load(t, r.excess + curve) + force))
-                if iteration == r.iterations - 1:
-                    store(t, r.excess + curve, force)
-    advance_groups(t, r, owners, r.work + count)
+                change = rubber_change(t, r, scalar - tables, value)
+                force = half * change - load(t, r.excess + curve)
+                if last:
+                    advance_rubber(t, r, scalar - tables, value + load(t, r.own + curve) * change)
+            add_effects(t, r, count, sums, i, force - load(t, slider + scalar), last)
+            store(t, slider + scalar, force)
     for i in range(count):
         stick = load(t, r.stick + i)
         store(t, old + count + i, stick * (load(t, old + i) - load(t, kept + i)))

@@ -20,7 +20,7 @@ from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
-from vehicle.engines.reduced.pole_model import PoleModel, only_in_mujoco, pole_model
+from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.judgement import require_finite, require_samples
@@ -217,11 +217,6 @@ class Car:
         """Modal form of the same matrices, one scalar equation per pole, for the reduced engine."""
         return pole_model(self.matrices)
 
-    @property
-    def needs_mujoco(self) -> str:
-        """Return why the reduced engine cannot compute the car; an empty text if it can."""
-        return only_in_mujoco(self.matrices)
-
     @cached_property
     @one_blas_thread()
     def load_rows(self) -> LoadRows:
@@ -236,14 +231,13 @@ class Car:
             engine: engine of the run, see `run`; the time step is checked for "mujoco" only.
 
         Raises:
-            ConfigurationError: the car cannot be built, is unstable, its time step is too large, or the reduced engine
-                does not contain an element of it.
+            ConfigurationError: the car cannot be built, is unstable, or its time step is too large.
             DataError, MissingPartError: the FMU of a controller cannot be used.
         """
         if engine in self._checked:
             return
         require_controllers([damper.law.controlled for damper in self.vehicle.composition.dampers])
-        if engine == "mujoco" or (engine == "auto" and self.needs_mujoco):
+        if engine == "mujoco":
             self.stepped()
         elif np.any(grows(self.poles.poles)):
             require_stable(self.model, self.matrices, self.poles.poles)
@@ -356,9 +350,7 @@ class Car:
         loads = [name for name in more if name in self.vehicle.load_channels]
         require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
         reason = "asked for"
-        if engine == "auto" and self.needs_mujoco:
-            reason = self.needs_mujoco
-        elif engine != "mujoco":
+        if engine != "mujoco":
             self.check("reduced")
             recording = simulate_reduced(
                 self.poles,

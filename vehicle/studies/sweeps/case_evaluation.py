@@ -150,10 +150,7 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
         except OF_A_RUN as error:
             finished[number] = _failed(error)
             continue
-        if case.engine != "reduced" and cars[number].needs_mujoco:
-            finished[number] = None
-        else:
-            groups.setdefault((case.source, case.engine, batch_key(cars[number])), []).append(number)
+        groups.setdefault((case.source, case.engine, batch_key(cars[number])), []).append(number)
     for group in groups.values():
         case, rate = cases[group[0]], cars[group[0]].vehicle.solver.record_rate
         signal = signal_of(case.source)
