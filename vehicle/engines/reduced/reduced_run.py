@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle.engines.linear.load_rows import LoadRows
+from vehicle.engines.reduced.finite_rotation import rotation_notices
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
@@ -85,7 +86,10 @@ def simulate_reduced(
     histories = dict(zip(names, table[: len(names), 0], strict=True))
     statistics = group.statistics(validity, samples, clock.perf_counter() - started)
     one_sided = [wheel for wheel in inputs if wheel in model.matrices.one_sided]
-    notices = lift_off_notices(histories, one_sided, tyre_load, record_rate)
+    notices = (
+        *lift_off_notices(histories, one_sided, tyre_load, record_rate),
+        *rotation_notices(histories, validity.angles, inputs),
+    )
     return Recording(
         time=time,
         channels=histories,

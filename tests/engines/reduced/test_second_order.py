@@ -1,0 +1,167 @@
+"""What the linear geometry of the reduced engine lacks: products of two motions, from the equations and from MuJoCo."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import numpy.typing as npt
+
+from tests.engines.reduced.second_order import Equations, Motion, linear_motion, second_order
+from tests.validation import validated
+from vehicle.engines.reduced.finite_rotation import rotation_products
+from vehicle.runs.car import Car
+from vehicle.signals.excitation.band import period_of
+from vehicle.signals.excitation.rest import half_cosine
+from vehicle.signals.excitation.signal import Signal, uniform_time
+
+Vector = npt.NDArray[np.float64]
+
+RATE, PERIOD, PERIODS = 1000, 2000, 4
+"""Sample rate [Hz], samples of a period, periods of a run."""
+
+RMS = 5e-3
+"""RMS of the plates [m]: wheel travel as on class C at 80 km/h."""
+
+WITHOUT_FRICTION = {
+    "sedan": [
+        "front.damper.viscous_law=linear",
+        "front.damper.viscous=2500",
+        "front.damper.coulomb_friction=0",
+        "rear.damper.coulomb_friction=0",
+        "driving.speed=22",
+        "solver.timestep=0.0005",
+    ],
+}
+"""Cars that are nonlinear by their geometry alone."""
+
+
+@cache
+def heights() -> Vector:
+    """Return a period of the plates [m], lines from 0.5 to 30 Hz with equal velocity; (4, samples)."""
+    lines = np.arange(1, 61)
+    phases = 2.0 * np.pi * np.random.Generator(np.random.PCG64(3)).random((4, lines.size))
+    z = np.array([period_of(np.exp(1j * phase) / lines, lines, PERIOD) for phase in phases])
+    return np.asarray(z * (RMS / np.std(z)))
+
+
+@cache
+def car(name: str) -> Car:
+    """Return a car with linear laws."""
+    return Car.load(name, WITHOUT_FRICTION[name])
+
+
+@cache
+def last_period(name: str, scale: float) -> dict[str, Vector]:
+    """Return the last period of the accelerations in MuJoCo on plates with `scale` times the heights."""
+    z = np.tile(heights(), PERIODS)
+    z = np.hstack([z, z[:, :1]]) * half_cosine(samples=z.shape[1] + 1, timestep=1.0 / RATE, length=0.5)
+    wheels = car(name).vehicle.wheels
+    signal = Signal(
+        time=uniform_time(samples=z.shape[1], timestep=1.0 / RATE),
+        displacement={wheel: scale * z[car(name).matrices.system.inputs.index(wheel)] for wheel in wheels},
+    )
+    run = car(name).run(signal)
+    return {channel: run.recording[channel][-1 - PERIOD : -1] for channel in car(name).vehicle.acceleration_channels}
+
+
+def even_part(name: str, scale: float = 1.0) -> dict[str, Vector]:
+    """Return the part of the accelerations in MuJoCo that does not change sign with the plates, without its mean."""
+    up, down = last_period(name, scale), last_period(name, -scale)
+    parts = {channel: 0.5 * (up[channel] + down[channel]) for channel in up}
+    return {channel: part - part.mean() for channel, part in parts.items()}
+
+
+def test_rotation_of_a_part_by_hand() -> None:
+    """A place at r from the origin of a free part that rotates by theta moves by theta x r + theta x (theta x r)/2."""
+    equations, size = Equations(car("sedan")), car("sedan").matrices.system.size
+    model, data = equations.model, equations.data
+    first = int(model.jnt_dofadr[model.body("arm_rl").jntadr[0]]) + 3
+    displacement = np.zeros((size, 1))
+    displacement[first : first + 3, 0] = angle = np.array([3e-4, -5e-4, 4e-4])
+    still = linear_motion(car("sedan").matrices, np.zeros((4, 2)), 1.0)
+    still = still._replace(**{name: values[:, :1] for name, values in still._asdict().items()})
+    equations.at(still, 0, 0.0)
+    arm = data.site_xpos[model.site("place/knuckle_rl").id] - data.xpos[model.body("arm_rl").id]
+    places = equations.products(still._replace(displacement=displacement)).places[:, 0]
+    row = equations.channels.index("knuckle_rl_acc_x")
+    validated(
+        "Reduced engine",
+        "second-order displacement of a knuckle on an arm that rotates by 0.7 mrad",
+        1e9 * places[row : row + 3],
+        1e9 * 0.5 * np.cross(angle, np.cross(angle, arm)),
+        source="closed form: theta x (theta x r) / 2",
+        peak=1e-5,
+        unit="nm",
+    )
+
+
+def test_what_is_even_in_the_road_is_the_second_order_of_the_equations_of_motion() -> None:
+    motion = linear_motion(car("sedan").matrices, heights(), 1.0 / RATE)
+    even, expected = even_part("sedan"), second_order(car("sedan"), motion, 1.0 / RATE, every=2)
+    errors = {channel: float(np.std(part - expected[channel]) / np.std(part)) for channel, part in even.items()}
+    # Light damper tops are the least resolved by the step of MuJoCo.
+    groups = {
+        "at a knuckle": (("knuckle",), 0.015),
+        "on body and engine": (("seat", "engine", "body", "roof", "suspension"), 0.02),
+        "at a damper top": (("damper_top",), 0.03),
+    }
+    for place, (names, tolerance) in groups.items():
+        validated(
+            "Reduced engine",
+            f"part of an acceleration {place} that keeps its sign with the road, largest difference in share of it",
+            max(error for channel, error in errors.items() if channel.startswith(names)),
+            0.0,
+            source="second derivation: products of the linear motion in the equations, without solver and integrator",
+            abs=tolerance,
+        )
+    reduced = {channel: motion_of(channel, motion) for channel in even}
+    up, down = last_period("sedan", 1.0), last_period("sedan", -1.0)
+    odd = {channel: 0.5 * (up[channel] - down[channel]) for channel in even}
+    validated(
+        "Reduced engine",
+        "part of an acceleration that changes its sign with the road, largest difference in share of it",
+        max(float(np.std(odd[channel] - reduced[channel]) / np.std(odd[channel])) for channel in even),
+        0.0,
+        source="second derivation: MuJoCo on a road and the same road upside down",
+        abs=0.01,
+    )
+
+
+def test_half_the_road_has_a_quarter_of_the_even_part() -> None:
+    whole, half = even_part("sedan"), even_part("sedan", 0.5)
+    names = [channel for channel in whole if channel.startswith("knuckle") and channel[-1] != "z"]
+    validated(
+        "Reduced engine",
+        "even part of knuckle accelerations along x and y at half the road, over that of the whole",
+        [float(np.std(half[channel]) / np.std(whole[channel])) for channel in names],
+        0.25,
+        source="closed form: second order in the road",
+        abs=5e-4,
+    )
+
+
+def test_estimate_of_the_notice() -> None:
+    """The estimate holds within the factors of its docstring, and squares of both parts add."""
+    even, matrices = even_part("sedan"), car("sedan").matrices
+    motion = linear_motion(matrices, heights(), 1.0 / RATE)
+    shares = []
+    for wheel in ("rr", "rl"):
+        parts = [rows[3:] for part, rows in matrices.body_rows.items() if part.endswith(f"_{wheel}")]
+        angle = max(float(np.max(np.linalg.norm(rows @ motion.displacement, axis=0))) for rows in parts)
+        estimate = rotation_products(angle, motion_of(f"knuckle_{wheel}_acc_z", motion))
+        shares += [float(np.std(even[f"knuckle_{wheel}_acc_{axis}"])) / estimate for axis in "xy"]
+    validated(
+        "Reduced engine",
+        "even part of rear knuckle accelerations along x and y, over the estimate of the notice",
+        shares,
+        1.0,
+        source="second derivation: MuJoCo on a road and the same road upside down",
+        within=(0.4, 2.0),
+    )
+
+
+def motion_of(channel: str, motion: Motion) -> Vector:
+    """Return the linear acceleration of a channel."""
+    row = car("sedan").matrices.system.outputs[channel][: motion.acceleration.shape[0]]
+    return np.asarray(row @ motion.acceleration)
