@@ -53,7 +53,7 @@ ROOMS: dict[str, set[str]] = {
     "car": {"analysis", "excitation", "flexbody", "laws", "linear", "notebook", "parameters", "records", "reduced"}
     | {"rendering", "simulation", "threads"},
     "bench": {"analysis", "assembly", "car", "excitation", "linear", "output", "parameters", "records", "reduced"}
-    | {"rendering", "report", "threads"},
+    | {"rendering", "report", "shapes", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "reduced", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},

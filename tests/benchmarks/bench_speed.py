@@ -10,7 +10,7 @@ from statistics import median
 from vehicle import read_signal, road
 from vehicle.runs.bench.drive import SECONDS, bench_drive
 from vehicle.runs.bench.guard import Guard
-from vehicle.runs.bench.motion import car_motion
+from vehicle.runs.bench.motion import car_motion, mode_motion
 from vehicle.runs.bench.numbers import numbers
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
@@ -49,20 +49,26 @@ def numbers_ms(name: str, *, on_road: bool, seconds: float = SECONDS, repeats: i
     return median(times[2:])
 
 
-def frame_ms(seconds: float = 4.0) -> tuple[float, float]:
+def frame_ms(name: str = "focus", picture: str = "run", seconds: float = 4.0) -> tuple[float, float]:
     """Return frames a second, and processor time of a frame [ms], all threads, with one window in another process.
 
     Args:
+        name: name of the car.
+        picture: "run" on high.csv, "mode", or "obstacle": a run over a cleat.
         seconds: length of the measurement [s].
     """
     from vehicle.runs.bench.server import close_server, open_server
-    from vehicle.runs.bench.stage import Stage
+    from vehicle.runs.bench.stage import CYCLE, Stage
 
-    car, guard = Car.load("focus"), Guard()
-    drive = bench_drive(car, read_signal(find_input("high.csv"), wheel=car.vehicle.shaker_wheel))
+    car, guard = Car.load(name), Guard()
+    high = read_signal(find_input("high.csv"), wheel=car.vehicle.shaker_wheel)
+    drive = bench_drive(car, road("cleat:20x50", 30) if picture == "obstacle" else high)
+    car = car.with_(drive.overrides) if drive.overrides else car
     server = open_server(guard, 8800)
-    stage = Stage(server, car)
-    stage.show(car_motion(car, drive))
+    stage = Stage(server, car, drive)
+    mode = car.modes("stuck")[0]
+    motion = mode_motion(stage.car_scene.wire, mode.shape, mode.frequency)
+    stage.show(car, motion if picture == "mode" else car_motion(car, drive), slower=CYCLE * mode.frequency)
     origin = f"http://127.0.0.1:{server.get_port()}"
     address = f"ws{origin.removeprefix('http')}/{guard.token}"
     window = subprocess.Popen([sys.executable, "-c", CLIENT, address, origin])
@@ -86,8 +92,9 @@ def main() -> None:
     """Print the times."""
     for name, on_road in (("focus", False), ("focus_road", True)):
         print(f"{name}: {numbers_ms(name, on_road=on_road):.0f} ms processor time to all numbers of {SECONDS:g} s")
-    rate, cost = frame_ms()
-    print(f"focus: {rate:.1f} frames a second to one window, {cost:.1f} ms processor time each")
+    for name, picture in (("focus", "run"), ("focus", "mode"), ("focus_road", "obstacle")):
+        rate, cost = frame_ms(name, picture)
+        print(f"{name}, {picture}: {rate:.1f} frames a second to one window, {cost:.1f} ms processor time each")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ def test_numbers_follow_a_slider():
     assert numbers_ms("focus", on_road=False, repeats=5) < 200.0
 
 
-def test_frames_are_sent_to_a_window():
+@pytest.mark.parametrize(("name", "picture"), [("focus", "run"), ("focus", "mode"), ("focus_road", "obstacle")])
+def test_frames_are_sent_to_a_window(name, picture):
     pytest.importorskip("viser", reason="viser is missing: pip install 'vehicle-on-shaker[bench]'")
-    rate, cost = frame_ms(2.0)
+    rate, cost = frame_ms(name, picture, 2.0)
     assert rate > 5.0 and cost < 60.0

@@ -33,7 +33,10 @@ def parser() -> Parser:
         "--from", dest="first", type=float, default=0.0, metavar="S", help="begin at this time of the file [s]"
     )
     parser.add_argument(
-        "--seconds", type=float, default=10.0, metavar="S", help="evaluated length, 5 to 60; %(default)g by default"
+        "--seconds",
+        type=float,
+        metavar="S",
+        help="evaluated length, 5 to 60; by default 10, on a road with an obstacle to 3 s after it",
     )
     parser.add_argument(
         "--port", type=int, default=PORT, metavar="N", help="first port that is tried; %(default)s by default"

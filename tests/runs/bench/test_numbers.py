@@ -12,6 +12,7 @@ from vehicle import Car, read_signal, road
 from vehicle.errors import ConfigurationError
 from vehicle.runs.bench.drive import bench_drive, excerpt
 from vehicle.runs.bench.numbers import numbers
+from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.excitation.input_files import find_input
 
 
@@ -89,3 +90,20 @@ def test_a_road_rolls_and_delays_the_rear_axle():
         bench_drive(car, recorded)
     with pytest.raises(ConfigurationError, match=r"--seconds 100: must be 5 to 60 s"):
         bench_drive(car, road("C", 80), seconds=100.0)
+
+
+def test_an_obstacle_has_the_values_of_its_run():
+    car = Car.load("focus_road")
+    cleat = road("cleat:20x50", 30)
+    drive = bench_drive(car, cleat)
+    found = numbers(car.with_(drive.overrides), drive)
+    run = car.run(replace(cleat, duration=drive.record.duration), engine="reduced")
+    assert run.skip == drive.skip and drive.record.duration == drive.skip + 5.0
+    table, values = found.table(), obstacle_values(run)
+    assert values is not None
+    assert table["peak to peak seat rail z"][0] == pytest.approx(values["peak_to_peak"]["seat_rail"]["z"])
+    assert table["VDV seat rail"][0] == pytest.approx(values["vdv"]["seat_rail"]["overall"])
+    assert table["settling time seat rail z"][0] == pytest.approx(values["settling_s"]["seat_rail"], abs=2e-3)
+    assert table["peak knuckle rr z"][0] == pytest.approx(values["knuckle_peak"]["rr"])
+    longer = bench_drive(car, road("cobbles", 10))
+    assert longer.record.duration == pytest.approx(longer.road["obstacle_s"][1] + 3.0, abs=0.11)

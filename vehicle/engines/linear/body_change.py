@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -61,6 +62,10 @@ class BodyChange:
     def same(self) -> bool:
         """Return True if both cars have the same coordinates."""
         return self.whole is None
+
+    def reference_motion(self, coordinates: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Transform displacements over the new coordinates, (n, ...), to those over the reference coordinates."""
+        return coordinates if self.whole is None else np.asarray(self.whole @ coordinates)
 
     def columns(self, rows: Vector) -> Vector:
         """Transform rows over the reference coordinates, (..., n) or (..., n + inputs), to rows over the new ones."""

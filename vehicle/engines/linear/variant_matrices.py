@@ -48,10 +48,17 @@ BREAKPOINT_MARGIN = 10.0 * DIFFERENCE_STEP
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarVariant:
-    """Modified car from the terms: its matrices and its static loads; the residual is that of the linear car."""
+    """Modified car from the terms.
+
+    Attributes:
+        matrices: its matrices.
+        static: its static loads; the residual is that of the linear car.
+        change: coordinates of the reference car over those of the modified car.
+    """
 
     matrices: CarMatrices
     static: StaticTrim
+    change: BodyChange
 
 
 class VariantTerms:
@@ -160,7 +167,7 @@ class VariantTerms:
             body_centres={**self.matrices.body_centres, "body": np.array(vehicle.body.cog)},
             **laws.car,
         )
-        return CarVariant(matrices=matrices, static=static)
+        return CarVariant(matrices=matrices, static=static, change=change)
 
     def _stiffness(
         self, rows: Rows, springs: Vector, preload: Vector, rest_state: AtRest, change: BodyChange

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,9 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Road
+from vehicle.runs.car.road import Drive
 from vehicle.signals.analysis.phase_averages import PhaseInputs, phase_inputs
+from vehicle.signals.excitation.road_drive import BEFORE_S, RoadDrive
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 SECONDS = 10.0
@@ -35,6 +37,8 @@ class BenchDrive:
         overrides: parameters that the input sets on its car: the speed of rolling tyres.
         road: description of the road for files of a run; None for a signal.
         label: description of the input.
+        speed: speed on the road [m/s]; None for a signal.
+        shown: time in the record at which the moving picture begins [s]: the evaluated part, or an obstacle in it.
     """
 
     record: Signal
@@ -44,9 +48,11 @@ class BenchDrive:
     overrides: tuple[str, ...]
     road: Mapping[str, object] | None
     label: str
+    speed: float | None = None
+    shown: float = 0.0
 
 
-def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds: float = SECONDS) -> BenchDrive:
+def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds: float | None = None) -> BenchDrive:
     """Return the input of the bench for a signal or a road.
 
     In the inputs of the FRFs all plates move alike, on a road each axle after its delay, x / V.
@@ -55,29 +61,35 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
         car: the car.
         source: plate displacements, or a road.
         begin: begin of the excerpt of a signal [s].
-        seconds: length of the evaluated excerpt [s].
+        seconds: length of the evaluated excerpt [s]; by default `SECONDS`, and to 3 s after an obstacle.
 
     Raises:
         ConfigurationError: a length or a begin out of range, or a recorded road.
         DataError: the signal is too short, or no plate moves.
     """
-    if not SHORTEST <= seconds <= LONGEST:
+    if seconds is not None and not SHORTEST <= seconds <= LONGEST:
         raise ConfigurationError(f"--seconds {seconds:g}: must be {SHORTEST:g} to {LONGEST:g} s")
     delays: dict[str, float] = {}
     overrides: tuple[str, ...] = ()
     summary: Mapping[str, object] | None = None
+    shown: float | None = None
+    speed: float | None = None
     if isinstance(source, Road):
         if isinstance(source.speed, str):
             raise ConfigurationError("bench: a road recorded over time has no constant speed; use a class or a profile")
         drive = source.under(car.vehicle, car.overrides)
         skip, overrides, label = drive.skip, drive.overrides, drive.name.replace("_", " ")
+        speed = source.speed / 3.6
         if source.duration is None:
-            drive = replace(source, duration=skip + seconds).under(car.vehicle, car.overrides)
+            length = seconds or _usual_length(drive, skip)
+            drive = replace(source, duration=skip + length).under(car.vehicle, car.overrides)
         record = replace(drive.signal(), source=drive.name)
         summary = drive.summary(record)
-        delays = {name: 3.6 * behind / source.speed for name, behind, _ in drive.wheels}
+        delays = {name: behind / speed for name, behind, _ in drive.wheels}
+        if isinstance(times := summary.get("obstacle_s"), Sequence):
+            shown = max(skip, float(times[0]) - BEFORE_S)
     else:
-        record, skip = excerpt(source, begin, seconds)
+        record, skip = excerpt(source, begin, seconds or SECONDS)
         label = f"{source.source.rpartition('/')[2]}, {begin:g} to {begin + record.duration - skip:g} s"
     moving = {name: z[round(skip / record.timestep) :] for name, z in record.displacement.items() if np.any(z != z[0])}
     inputs = phase_inputs(record.timestep, moving or record.displacement, delays)
@@ -89,8 +101,23 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
         highest=record.highest,
     )
     return BenchDrive(
-        record=record, skip=skip, inputs=inputs, probe=probe, overrides=overrides, road=summary, label=label
+        record=record,
+        skip=skip,
+        inputs=inputs,
+        probe=probe,
+        overrides=overrides,
+        road=summary,
+        label=label,
+        speed=speed,
+        shown=skip if shown is None else shown,
     )
+
+
+def _usual_length(drive: Drive, skip: float) -> float:
+    """Return the default length of the evaluated excerpt of a road [s]."""
+    if not isinstance(drive, RoadDrive) or drive.obstacle is None:
+        return SECONDS
+    return min(max(drive.signal().duration - skip, SHORTEST), LONGEST)
 
 
 def excerpt(signal: Signal, begin: float, seconds: float) -> tuple[Signal, float]:

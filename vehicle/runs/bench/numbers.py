@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,9 +13,11 @@ import numpy.typing as npt
 from vehicle.names import AXES
 from vehicle.runs.bench.drive import BenchDrive
 from vehicle.runs.car import Car
+from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.ride_comfort import RunComfort
 from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
+from vehicle.signals.records.run_summary import ObstacleSummary
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
@@ -36,6 +39,7 @@ class BenchNumbers:
         time: times of the evaluated excerpt [s]; (n,).
         acceleration: vertical acceleration of the seat rail [m/s2]; (n,).
         damper_velocity, damper_force: damper to velocity [m/s] and force [N]; (n,) each.
+        obstacle: values of the crossing of an obstacle, as in `summary.json`; None without an obstacle.
         warnings: exceeded limits of the reduced engine.
         seconds: processor time of this thread for all of this [s].
     """
@@ -49,12 +53,14 @@ class BenchNumbers:
     acceleration: Vector
     damper_velocity: Mapping[str, Vector]
     damper_force: Mapping[str, Vector]
+    obstacle: ObstacleSummary | None
     warnings: tuple[str, ...]
     seconds: float
 
     def table(self) -> dict[str, tuple[float, str]]:
         """Return the numbers of the table: name to value and unit."""
-        rows = {
+        rows = {} if self.obstacle is None else _obstacle_rows(self.obstacle)
+        rows |= {
             "comfort unweighted": (self.comfort.unweighted.overall, "m/s2"),
             "comfort weighted": (self.comfort.weighted.overall, "m/s2"),
         }
@@ -63,6 +69,17 @@ class BenchNumbers:
         if self.comfort.seat_value is not None:
             rows["SEAT value"] = (self.comfort.seat_value, "-")
         return rows | {f"slip {wheel}": (100.0 * share, "%") for wheel, share in self.slip.items()}
+
+
+def _obstacle_rows(values: ObstacleSummary) -> dict[str, tuple[float, str]]:
+    """Return the rows of the table of an obstacle: name to value and unit; NaN for motion that has not settled."""
+    rows = {}
+    for point, peaks in values["peak_to_peak"].items():
+        name, settling = point.replace("_", " "), values["settling_s"][point]
+        rows[f"peak to peak {name} z"] = peaks["z"], "m/s2"
+        rows[f"VDV {name}"] = values["vdv"][point]["overall"], "m/s1.75"
+        rows[f"settling time {name} z"] = math.nan if settling is None else settling, "s"
+    return rows | {f"peak knuckle {wheel} z": (peak, "m/s2") for wheel, peak in values["knuckle_peak"].items()}
 
 
 @one_blas_thread()
@@ -82,7 +99,10 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
     wheels = [name for name in vehicle.wheels if f"damper_{name}_velocity" in vehicle.channels]
     seat = tuple(f"seat_acc_{axis}" for axis in AXES) if vehicle.seated else ()
     dampers = [f"damper_{wheel}_{quantity}" for wheel in wheels for quantity in ("velocity", "force")]
-    run = replace(car.run(drive.record, engine="reduced", channels=[*RAIL, *seat, *dampers]), skip=drive.skip)
+    over = drive.road is not None and "obstacle" in drive.road
+    knuckles = [name for wheel in vehicle.wheels if over and (name := f"knuckle_{wheel}_acc_z") in vehicle.channels]
+    recorded = car.run(drive.record, engine="reduced", channels=[*RAIL, *seat, *dampers, *knuckles])
+    run = replace(recorded, skip=drive.skip, road=drive.road)
     shown = ("seat_rail_acc_z", f"knuckle_{next(iter(drive.inputs.samples))}_acc_z")
     names = tuple(name for name in shown if name in vehicle.channels)
     probe = car.run(drive.probe, engine="reduced", channels=names)
@@ -98,6 +118,7 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
         acceleration=run["seat_rail_acc_z"][part],
         damper_velocity={wheel: run[f"damper_{wheel}_velocity"][part] for wheel in wheels},
         damper_force={wheel: run[f"damper_{wheel}_force"][part] for wheel in wheels},
+        obstacle=obstacle_values(run),
         warnings=run.recording.statistics.warnings,
         seconds=clock.thread_time() - started,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time as clock
 from collections.abc import Callable
@@ -10,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.linalg import LinAlgError
 
 from vehicle.errors import VehicleError
 from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
-from vehicle.runs.bench.motion import car_motion
 from vehicle.runs.bench.results import write_car, write_comparison, write_run
-from vehicle.runs.bench.stage import LARGER, SLOWER, Stage
+from vehicle.runs.bench.stage import Stage
 from vehicle.runs.bench.state import BenchState, LatestOnly
+from vehicle.runs.bench.view import View
 
 FIRST = ("coulomb_friction", "damper.viscous", "main_spring.stiffness", "tyre.stiffness.z", "body.mass")
 """Ends of the paths of the sliders at the start; the first path with each."""
@@ -37,21 +39,21 @@ class Page:
         folder: folder of the files that a click writes.
 
     Attributes:
-        state, stage: what the page shows.
+        state, stage, view: what the page shows.
         worker: thread that computes after changes.
         delays: time from a request to its numbers on the page [s].
     """
 
     def __init__(self, server: Any, state: BenchState, folder: Path) -> None:
         self.server, self.state, self.folder = server, state, folder
-        self.stage = Stage(server, state.car)
+        self.stage = Stage(server, state.car, state.drive)
         self.delays: list[float] = []
         self._sliders: dict[str, Any] = {}
         self._lock = threading.RLock()
         self._moved = 0.0
         self._build()
         self._show()
-        self.stage.show(car_motion(state.car, state.drive))
+        self._show_picture()
         self.worker = LatestOnly(self._update)
 
     def _build(self) -> None:
@@ -72,6 +74,8 @@ class Page:
                 "parameter", self._matches(""), hint="points and stiffnesses have an axis at the end"
             )
             add = gui.add_button("Add slider")
+        with gui.add_folder("Picture"):
+            self.view = View(gui, self.stage, self.state.drive)
         self._plots = self._add_plots()
         with gui.add_folder("Reference and files"):
             keep, reset = gui.add_button("Keep as B"), gui.add_button("Undo all changes")
@@ -80,14 +84,8 @@ class Page:
                 (gui.add_button("Write run"), write_run),
                 (gui.add_button("Write report of A and B"), write_comparison),
             ]
-        with gui.add_folder("Picture", expand_by_default=False):
-            playing = gui.add_checkbox("playing", True)
-            slower = gui.add_slider("slow motion", 1.0, 100.0, 1.0, SLOWER)
-            larger = gui.add_slider("exaggeration", 1.0, 200.0, 1.0, LARGER)
         self._on(search, lambda: setattr(paths, "options", self._matches(search.value)))
-        self._on(playing, lambda: setattr(self.stage, "playing", bool(playing.value)))
-        self._on(slower, lambda: setattr(self.stage, "slower", min(max(float(slower.value), 1.0), 100.0)))
-        self._on(larger, lambda: setattr(self.stage, "larger", min(max(float(larger.value), 1.0), 200.0)))
+        self.view.connect(self._on, self._show_picture)
         add.on_click(lambda _: self._guarded(lambda: self.add_slider(self.state.setting(paths.value).path, more=True)))
         keep.on_click(lambda _: self._guarded(self._keep))
         reset.on_click(lambda _: self._guarded(self._reset))
@@ -95,8 +93,8 @@ class Page:
             button.on_click(lambda _, write=write: self._guarded(lambda: self._write(write)))
 
     def _on(self, handle: Any, act: Callable[[], None]) -> None:
-        """Call a function after each change of an element."""
-        handle.on_update(lambda _: self._guarded(act))
+        """Call a function after each change of an element in a browser, not after those of this program."""
+        handle.on_update(lambda event: None if event.client_id is None else self._guarded(act))
 
     def _matches(self, text: str) -> tuple[str, ...]:
         """Return the paths of a search for the list; a message without any, since a list needs an entry."""
@@ -186,9 +184,16 @@ class Page:
             self._show()
         self.delays.append(clock.monotonic() - moved)
         if not self.worker.pending:
-            with self.state.computing:
-                motion = car_motion(self.state.present[0], self.state.drive)
-            self.stage.show(motion)
+            try:
+                self._show_picture()
+            except (VehicleError, LinAlgError, ArithmeticError, ValueError) as error:
+                with self._lock:
+                    self._say(f"picture: {error}")
+
+    def _show_picture(self) -> None:
+        """Compute and show the moving picture of A."""
+        with self.state.computing:
+            self.view.show(self.state.present[0])
 
     def _show(self) -> None:
         """Write the numbers of A and B on the page."""
@@ -196,8 +201,8 @@ class Page:
         (car, present), (other, reference) = state.present, state.reference
         lines = ["| | A | B | change |", "|---|---|---|---|"]
         for name, a, b, change, unit in state.rows():
-            text = "" if change is None else f"{change:+.1f}\u00a0%"
-            lines.append(f"| {name} [{unit}] | {a:.3g} | {b:.3g} | {text} |")
+            text = "" if change is None or math.isnan(change) else f"{change:+.1f}\u00a0%"
+            lines.append(f"| {name} [{unit}] | {_short(a)} | {_short(b)} | {text} |")
         base = len(state.car.overrides)
         texts = ["; ".join(shown.overrides[base:]) or "unchanged" for shown in (car, other)]
         lines.append(f"\n**A** {texts[0]} · **B** {texts[1]}\n\n{state.drive.label}; {1e3 * present.seconds:.0f} ms")
@@ -267,3 +272,8 @@ class Page:
         """End the threads of the page."""
         self.worker.stop()
         self.stage.stop()
+
+
+def _short(value: float) -> str:
+    """Return a number with three digits; a dash for NaN."""
+    return "–" if math.isnan(value) else f"{value:.3g}"

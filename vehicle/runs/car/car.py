@@ -207,6 +207,17 @@ class Car:
         return car_matrices(self.model.model, self.model.static, compiled=self._base is not None)
 
     @property
+    def geometry(self) -> Car:
+        """Car whose model has the geometry of this car: its base car if they differ only in laws and masses."""
+        return self._base.geometry if self._base and self._from_terms else self
+
+    def geometry_motion(self, coordinates: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return displacements, (n, ...), over the velocity coordinates of `geometry`: another mass has other modes."""
+        if not (self._base and self._from_terms):
+            return coordinates
+        return self._base.geometry_motion(self._from_terms.change.reference_motion(coordinates))
+
+    @property
     def static(self) -> StaticTrim:
         """Preloads, and static loads of the tyres and of other contacts with the ground."""
         return self._from_terms.static if self._from_terms else self.model.static
@@ -267,8 +278,7 @@ class Car:
     @one_blas_thread()
     def modes(self, damper: str = "stuck", highest: float = 60.0) -> list[Mode]:
         """Return the modes of the assembled car up to a frequency [Hz], with the dampers "stuck" or "sliding"."""
-        model = self._base.model if self._base and self._from_terms else self.model
-        names = model.superelement.mode_names
+        names = self.geometry.model.superelement.mode_names
         return car_modes(self.matrices, stuck=_is_stuck(damper), highest=highest, names=names)
 
     @one_blas_thread()
