@@ -22,7 +22,7 @@ from vehicle.commands.road import road_drive
 from vehicle.model.parameters.ranges import Range
 from vehicle.names import AXES
 from vehicle.runs.car import Car
-from vehicle.signals.analysis.comfort import comfort_value, comfort_values
+from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.road_level import CLASSES, REFERENCE
 from vehicle.signals.excitation.iso_road import isotropic_coherence
@@ -129,7 +129,7 @@ def length(repetitions: int) -> Rows:
             run = replace(car.run(drive.signal(), engine="reduced", channels=RAIL), skip=drive.skip)
             step = run.recording.timestep
             found.append(comfort_values(step, np.array([run.at("seat_rail")])))
-            whole.append(comfort_value(step, [run[name] for name in RAIL]).overall)
+            whole.append(comfort_values(step, [[run[name] for name in RAIL]]).overall[0])
         values = np.array([one.overall[0] for one in found])
         error = np.array([one.error[0] * one.overall[0] for one in found])
         rows.append(

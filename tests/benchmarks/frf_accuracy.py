@@ -28,7 +28,8 @@ from tests.benchmarks.known_systems import (
     noise,
     true_peaks,
 )
-from vehicle.signals.analysis.local_rational import local_rational_response, local_rational_responses
+from tests.signals.analysis.single_input import local_rational_response
+from vehicle.signals.analysis.local_rational import local_rational_responses
 from vehicle.signals.analysis.peaks import resonances
 
 CLASSES = ((16.0, np.inf), (10.0, 16.0), (4.0, 10.0))

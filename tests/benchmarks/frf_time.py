@@ -22,14 +22,14 @@ CASES = ((1, 60), (33, 60), (1, 10), (33, 10))
 WORKER = """
 import json, sys, time
 import numpy as np
-from vehicle.signals.analysis.local_rational import local_rational_response
+from vehicle.signals.analysis.local_rational import local_rational_responses
 for line in sys.stdin:
     channels, seconds, whole = json.loads(line)
     rng = np.random.default_rng(0)
     signal = rng.normal(size=1000 * seconds)
     noisy = [np.convolve(signal, rng.normal(size=20), "same") + rng.normal(size=signal.size) for _ in range(channels)]
     begin = time.process_time()
-    estimate = local_rational_response(1e-3, signal, noisy)
+    estimate = local_rational_responses(1e-3, signal[None], noisy)[0]
     spent = time.process_time() - begin
     values = np.nan_to_num(np.stack([estimate.response, estimate.random_error, estimate.coherence])).ravel()
     print(json.dumps([spent, *(part.tolist() for part in (values.real, values.imag) if whole)]), flush=True)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.frf_accuracy import banded_input
+from tests.signals.analysis.single_input import local_rational_response
 from tests.validation import validated
 from vehicle.signals.analysis.input_floor import rounding_step, tapered_power
-from vehicle.signals.analysis.local_rational import local_rational_response
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 

@@ -149,12 +149,3 @@ def main_path(shares: Mapping[str, float]) -> str:
     name = " ".join(word for word in ("the", axle, side, WORDS.get(part, point_words(part))) if word)
     both = ", left and right" if (axle, side, part) in pairs else ""
     return f"{name}{both} ({100.0 * paths_of[axle, side, part]:.0f} %)"
-
-
-def path_words(name: str) -> str:
-    """Return an attachment in words: "front left suspension mount"."""
-    part, _, corner = name.rpartition("_")
-    corner_words = next((words for words, short in CORNERS.items() if short == corner), None) if part else None
-    if corner_words is None:
-        return WORDS.get(name, point_words(name))
-    return f"{corner_words.replace('_', ' ')} {WORDS.get(part, point_words(part))}"

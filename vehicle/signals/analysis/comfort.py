@@ -22,19 +22,6 @@ SIGNIFICANCE = 3.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ComfortValue:
-    """Unweighted RMS accelerations in a band [m/s2]."""
-
-    x: float
-    y: float
-    z: float
-    overall: float
-    """sqrt(x^2 + y^2 + z^2) [m/s2]"""
-    band: tuple[float, float]
-    """[Hz]"""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
 class Settling:
     """Change of the RMS from the first to the second half of a record."""
 
@@ -65,7 +52,9 @@ class ComfortValues:
 def comfort_values(
     time_step: float, acceleration: ArrayLike, band: tuple[float, float] = COMFORT_BAND
 ) -> ComfortValues:
-    """Return the comfort values of several records; each value is independent of the other records.
+    """Return the comfort values sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unweighted accelerations in a band.
+
+    The value of a record is independent of the other records.
 
     Args:
         time_step: sampling interval [s].
@@ -74,6 +63,8 @@ def comfort_values(
 
     Raises:
         DataError: not three axes, or a record that `band_rms` rejects.
+
+    Source: Bommer 2006, chapter 4.
     """
     array = np.asarray(acceleration, dtype=np.float64)
     if array.ndim != 3 or array.shape[1] != 3:
@@ -89,28 +80,6 @@ def comfort_values(
         error=overall_error(lines),
         waves=overall_waves(lines),
     )
-
-
-def comfort_value(
-    time_step: float, acceleration: ArrayLike | Sequence[NDArray[np.float64]], band: tuple[float, float] = COMFORT_BAND
-) -> ComfortValue:
-    """Return the comfort value sqrt(RMSx^2 + RMSy^2 + RMSz^2) of unweighted acceleration in a band.
-
-    Args:
-        time_step: sampling interval [s].
-        acceleration: acceleration of an output point in x, y, z [m/s2], shape (3, n) or a sequence of three (n,).
-        band: (low, high) [Hz], both edges included.
-
-    Raises:
-        DataError: not three axes, or a record that `band_rms` rejects.
-
-    Source: Bommer 2006, chapter 4.
-    """
-    rows = checked_rows("acceleration", acceleration)
-    if len(rows) != 3:
-        raise DataError(f"acceleration: found {len(rows)} signals, must be the three axes x, y, z")
-    x, y, z = (float(band_rms(time_step, row, band)[0]) for row in rows)
-    return ComfortValue(x=x, y=y, z=z, overall=float(np.sqrt(x * x + y * y + z * z)), band=band)
 
 
 def rms_standard_error(

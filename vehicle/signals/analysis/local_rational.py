@@ -72,30 +72,6 @@ SAME = "the inputs are fully correlated there, so that their responses cannot be
 """Cause of an undefined FRF at lines with dependent inputs."""
 
 
-def local_rational_response(
-    time_step: float,
-    excitation: ArrayLike,
-    responses: ArrayLike,
-    *,
-    band: tuple[float, float] = (1.0, 50.0),
-    resolution: float = 0.1,
-    names: Sequence[str] | None = None,
-    rounding: float = 0.0,
-) -> FrequencyResponse:
-    """Estimate the FRFs of a whole random record to one input; for the arguments see `local_rational_responses`."""
-    estimates = local_rational_responses(
-        time_step,
-        checked_signals("excitation", excitation)[:1],
-        responses,
-        band=band,
-        resolution=resolution,
-        names=names,
-        input_names=("excitation",),
-        rounding=(rounding,),
-    )
-    return estimates[0]
-
-
 @one_blas_thread()
 def local_rational_responses(
     time_step: float,

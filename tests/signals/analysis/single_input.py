@@ -1,0 +1,35 @@
+"""FRFs to a single input, for tests of the estimator of several inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from numpy.typing import ArrayLike
+
+from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.local_rational import local_rational_responses
+from vehicle.signals.analysis.samples import checked_signals
+
+
+def local_rational_response(
+    time_step: float,
+    excitation: ArrayLike,
+    responses: ArrayLike,
+    *,
+    band: tuple[float, float] = (1.0, 50.0),
+    resolution: float = 0.1,
+    names: Sequence[str] | None = None,
+    rounding: float = 0.0,
+) -> FrequencyResponse:
+    """Estimate the FRFs of a whole random record to one input; for the arguments see `local_rational_responses`."""
+    estimates = local_rational_responses(
+        time_step,
+        checked_signals("excitation", excitation)[:1],
+        responses,
+        band=band,
+        resolution=resolution,
+        names=names,
+        input_names=("excitation",),
+        rounding=(rounding,),
+    )
+    return estimates[0]
