@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.load_rows import LoadRows
+from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.runs.bench.drive import BenchDrive
 from vehicle.runs.car import Car
@@ -52,7 +52,7 @@ def car_motion(car: Car, drive: BenchDrive) -> CarMotion:
         slope_velocity={wheel: v[:count] for wheel, v in record.slope_velocity.items()},
         profile={},
     )
-    rows = _identity(car)
+    rows = displacement_rows(car.matrices, np.eye(len(car.matrices.system.mass)))
     recording = simulate_reduced(
         car.poles,
         short,
@@ -66,28 +66,4 @@ def car_motion(car: Car, drive: BenchDrive) -> CarMotion:
     return CarMotion(
         coordinates=np.array([recording[name][part] for name in rows.names]),
         plates={wheel: recording[f"plate_{wheel}_displacement"][part] for wheel in car.vehicle.wheels},
-    )
-
-
-def _identity(car: Car) -> LoadRows:
-    """Return the displacement of each velocity coordinate as rows of a load."""
-    matrices = car.matrices
-    system, count = matrices.system, len(matrices.system.mass)
-    wheels = len(system.inputs)
-
-    def none(columns: int) -> Vector:
-        return np.zeros((count, columns))
-
-    return LoadRows(
-        names=tuple(f"coordinate_{index}" for index in range(count)),
-        static=np.zeros(count),
-        displacement=np.eye(count),
-        velocity=none(count),
-        acceleration=none(count),
-        branch=none(len(system.branch_time)),
-        height=none(wheels),
-        height_rate=none(wheels),
-        friction=none(len(matrices.dampers)),
-        law=none(len(matrices.laws)),
-        slope=none(matrices.slope.shape[1]),
     )
