@@ -55,7 +55,7 @@ ROOMS: dict[str, set[str]] = {
     "bench": {"analysis", "assembly", "car", "excitation", "linear", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "shapes", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
-    "trial": {"analysis", "car", "excitation", "fmu", "reduced", "simulation"},
+    "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
     "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}

@@ -11,11 +11,16 @@ import numpy as np
 import pytest
 import scipy
 
+from vehicle.drawing.rendering.wireframe import car_wireframe
+from vehicle.engines.linear.load_rows import displacement_rows
+from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
 from vehicle.runs.report.finished_run import read_run, recorded_signal
-from vehicle.runs.trial.trial_data import CURVE_SCALES, LONGEST, page_signal, trial_data
+from vehicle.runs.trial.moving_car import picture_rows, static_shapes
+from vehicle.runs.trial.page_input import LONGEST, PageInput, RunRoad, page_input
+from vehicle.runs.trial.trial_data import CURVE_SCALES, trial_data
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
@@ -48,13 +53,17 @@ class Page:
 
     def ask(self, task: str, **settings: float) -> dict[str, Any]:
         """Return the result of a task for settings; the others are those of the car."""
+        result: dict[str, Any] = json.loads(self.refusal(task, **settings))
+        return result
+
+    def refusal(self, task: str, **settings: float) -> str:
+        """Return the message of the worker on settings."""
         values = {name: slider["value"] for name, slider in self.sliders.items()} | settings
         assert set(values) == set(self.sliders)
         self.browser.set_script_timeout(120)
         answer = self.browser.execute_async_script(ASK, self.text if self.fresh else None, task, values)
         self.fresh = False
-        result: dict[str, Any] = json.loads(answer)
-        return result
+        return str(answer)
 
 
 def deviations(result: dict[str, Any], car: Car, signal: Signal, skip: float = 0.0) -> dict[str, float]:
@@ -83,12 +92,14 @@ def scaled(signal: Signal, level: float) -> Signal:
 
 
 def random_states(page: Page, count: int, *, curve: bool) -> list[dict[str, float]]:
-    """Return random settings of all sliders; those of the curve only if `curve`."""
+    """Return random settings of all sliders without fixed positions; those of the curve only if `curve`."""
     random = np.random.default_rng(20261123)
     states = []
     for _ in range(count):
         state = {}
         for name, slider in page.sliders.items():
+            if "values" in slider:
+                continue
             value = float(random.uniform(slider["low"], slider["high"]))
             state[name] = value if curve or not name.endswith("curve_scale") else 1.0
         for name in state:
@@ -134,7 +145,7 @@ def shipped(name: str, overrides: tuple[str, ...] = (), seconds: float = 12.0, f
     whole = read_signal(find_input(name), wheel=car.vehicle.shaker_wheel)
     count = round(seconds * 1000) + 1
     piece = {wheel: values[first : first + count] - values[first] for wheel, values in whole.displacement.items()}
-    return car, page_signal(dataclasses.replace(whole, time=whole.time[:count], displacement=piece))
+    return car, page_input(car, dataclasses.replace(whole, time=whole.time[:count], displacement=piece)).at_ratio()
 
 
 STRIBECK = (
@@ -167,20 +178,63 @@ def test_the_damper_curve_is_within_a_thousandth(browser):
     assert 1e-9 < worst["rms"] < 1e-3 and worst["comfort"] < 1e-3, worst
 
 
+def driven(speed: float = 80.0) -> tuple[Car, PageInput, float]:
+    """Return the car of Bommer 2006 on class B, its input in the page, and the begin of the evaluation [s]."""
+    car = Car.load("focus_road")
+    ride = Road("B", speed=speed, duration=12.0).under(car.vehicle, car.overrides)
+    car = car.with_(ride.overrides)
+    road = RunRoad(road_class="B", speed=speed, behind={wheel: behind for wheel, behind, _ in ride.wheels})
+    return car, page_input(car, ride.signal(), road), ride.skip
+
+
 def test_a_road_and_its_class(browser):
     """A class of ISO 8608 above is twice the height; the evaluation begins later than the record."""
-    car = Car.load("focus_road")
-    ride = Road("B", speed=80, duration=12.0).under(car.vehicle, car.overrides)
-    car, signal = car.with_(ride.overrides), page_signal(ride.signal())
-    page = Page(browser, car, signal, skip=ride.skip, road_class="B")
+    car, drive, skip = driven()
+    signal = drive.at_ratio()
+    page = Page(browser, car, signal, skip=skip, road=drive.road)
     for level in (1.0, 2.0):
         state = {"level": level, "front-coulomb_friction": 40.0}
         run = car.with_({"front.damper.coulomb_friction": 40.0})
-        found = deviations(page.ask("record", **state), run, scaled(signal, level), ride.skip)
+        found = deviations(page.ask("record", **state), run, scaled(signal, level), skip)
         assert found["channel"] < 1e-9 and found["comfort"] < 1e-6 and found["slip"] == 0.0, found
     better = Road("C", speed=80, duration=12.0).under(car.vehicle, car.overrides).signal()
-    whole = ride.signal()
+    whole = drive.signal
     assert np.allclose(better.displacement["fr"], 2.0 * whole.displacement["fr"], rtol=1e-9, atol=1e-12)
+    # The rear wheels follow the tracks of the front wheels, interpolated between the samples: 5e-5 of the peak.
+    runs = [car.run(each, engine="reduced", skip=skip) for each in (whole, signal)]
+    exact, rounded = (run.comfort().weighted.overall for run in runs)
+    assert 0.0 < abs(rounded / exact - 1.0) < 5e-6
+
+
+def test_speeds_and_stiffnesses_are_cars_of_their_own(browser):
+    """Each fixed position against the changed car in the program, on the same road at that speed."""
+    car, drive, skip = driven()
+    page = Page(browser, car, drive.at_ratio(), skip=skip, road=drive.road)
+    stiffer = {
+        "main-springs": {"front.main_spring.stiffness": 25e3, "rear.main_spring.stiffness": 48e3},
+        "tyres-vertical": {"front.bushings.tyre.stiffness.z": 250e3, "rear.bushings.tyre.stiffness.z": 250e3},
+        "damper-mounts": {
+            "front.bushings.suspension_mount.stiffness.z": 700e3,
+            "rear.bushings.damper_mount.stiffness.z": 400e3,
+        },
+    }
+    assert {name for name, slider in page.sliders.items() if "values" in slider} == {"speed", *stiffer}
+    cases = [("speed", speed, {"driving.speed": speed / 3.6}) for speed in (60.0, 100.0)]
+    cases += [
+        (name, factor, {path: factor * value for path, value in paths.items()})
+        for name, paths in stiffer.items()
+        for factor in (0.8, 1.2)
+    ]
+    for name, value, changes in cases:
+        ratio = value / 80.0 if name == "speed" else 1.0
+        assert page.sliders[name]["value"] != value and value in page.sliders[name]["values"]
+        state = {name: value, "front-coulomb_friction": 40.0}
+        changed = car.with_({**changes, "front.damper.coulomb_friction": 40.0})
+        begin = round(1000 * skip / ratio) / 1000
+        found = deviations(page.ask("record", **state), changed, drive.at_ratio(ratio), begin)
+        assert 1e-9 < found["channel"] < 1e-4 and found["comfort"] < 1e-6 and found["slip"] < 1e-4, (state, found)
+    assert "one at a time" in page.refusal("record", **{"main-springs": 0.8, "tyres-vertical": 1.2})
+    assert "must be 60, 80, 100" in page.refusal("record", speed=70.0)
 
 
 def test_density_and_frf(browser):
@@ -200,6 +254,53 @@ def test_density_and_frf(browser):
     assert np.median(np.array(Page(browser, rubbing, signal).ask("response")["error"])) > 1e-3 * np.max(np.abs(wanted))
 
 
+def test_frf_of_a_road(browser):
+    """The FRF of a linear car is the sum of those of its plates, the rear wheels later by distance over speed."""
+    car, drive, skip = driven()
+    assert drive.road is not None
+    car = car.with_({f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")})
+    page = Page(browser, car, drive.at_ratio(), skip=skip, road=drive.road)
+    response = page.ask("response", level=0.25)
+    found = np.array(response["re"]) + 1j * np.array(response["im"])
+    omega, speed = 2.0 * np.pi * np.array(response["frequency"]), drive.road.speed / 3.6
+    wanted = sum(
+        car.matrix_frf(["seat_rail_acc_z"], response["frequency"], damper="sliding", wheel=wheel)[0]
+        * np.exp(-1j * omega * behind / speed)
+        for wheel, behind in drive.road.behind.items()
+    )
+    # The present load on a slope is not in the matrices.
+    assert np.max(np.abs(found - wanted)) < 5e-3 * np.max(np.abs(wanted))
+
+
+def test_the_moving_picture(browser):
+    """Displacements of body and wheels against the program; the points of the body follow as a rigid body."""
+    car, drive, skip = driven()
+    page = Page(browser, car, drive.at_ratio(), skip=skip, road=drive.road)
+    result = page.ask("motion", level=2.0)
+    loads = displacement_rows(car.matrices, picture_rows(car))
+    record = simulate_reduced(
+        car.poles,
+        scaled(drive.at_ratio(), 2.0),
+        dampers=[damper.law for damper in car.vehicle.composition.dampers],
+        record_rate=1000.0,
+        tyre_load=car.static.tyre_load,
+        channels=loads.names,
+        loads=loads,
+    )
+    begin = round(1000 * skip)
+    for name, motion in zip(loads.names, result["motions"], strict=True):
+        wanted = record[name][begin::10][: len(motion)]
+        assert len(motion) == 601 and np.max(np.abs(motion - wanted)) < 1e-3 * np.max(np.abs(wanted))
+    rows = picture_rows(car)
+    shapes = static_shapes(car, rows)
+    assert np.allclose(rows @ shapes, np.eye(len(rows)), atol=1e-9)
+    wire = car_wireframe(car.model)
+    heave = (wire.motion @ shapes[:, 0])[:, 2]
+    packed = np.array(result["shapes"], dtype=float).reshape(len(rows), *wire.points.shape)
+    picture = json.loads(page.text)["picture"]
+    assert np.max(np.abs(packed[0, :, 2] * picture["steps"][0] - heave)) <= 0.51 * picture["steps"][0]
+
+
 def test_rounding_to_integers_does_not_move_the_comfort():
     car, _ = shipped("low.csv")
     whole = read_signal(find_input("low.csv"), wheel="fl")
@@ -208,7 +309,8 @@ def test_rounding_to_integers_does_not_move_the_comfort():
         whole, time=whole.time[:count], displacement={wheel: z[:count] for wheel, z in whole.displacement.items()}
     )
     exact, rounded = (
-        car.run(signal, engine="reduced").comfort().weighted.overall for signal in (piece, page_signal(whole))
+        car.run(signal, engine="reduced").comfort().weighted.overall
+        for signal in (piece, page_input(car, whole).at_ratio())
     )
     assert 0.0 < abs(rounded / exact - 1.0) < 1e-6
 
@@ -225,7 +327,7 @@ def test_the_section_says_what_the_slider_did(browser, reported):
         "for (let k = 1; k <= 30; k++) { slider.value = 100 - 2 * k; slider.dispatchEvent(new Event('input')); }"
     )
     state = {"front-coulomb_friction": 40.0}
-    signal = page_signal(recorded_signal(run))
+    signal = page_input(run.car, recorded_signal(run)).at_ratio()
     now = car_of(run.car, state).run(signal, engine="reduced").comfort().weighted.overall
     change = 100.0 * abs(now / total - 1.0)
     for _ in range(100):

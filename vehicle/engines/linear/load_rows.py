@@ -154,6 +154,34 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
     return LoadRows(names=load_places.names, static=np.array([static for static, _ in selected]), **arrays)
 
 
+def displacement_rows(matrices: CarMatrices, rows: Vector) -> LoadRows:
+    """Return combinations of the displacements u as rows of loads, named "coordinate_0", "coordinate_1" ...
+
+    Args:
+        matrices: matrices of the car.
+        rows: rows over u; (l, n).
+    """
+    system, count = matrices.system, len(rows)
+    wheels = len(system.inputs)
+
+    def none(columns: int) -> Vector:
+        return np.zeros((count, columns))
+
+    return LoadRows(
+        names=tuple(f"coordinate_{index}" for index in range(count)),
+        static=np.zeros(count),
+        displacement=rows,
+        velocity=none(len(system.mass)),
+        acceleration=none(len(system.mass)),
+        branch=none(len(system.branch_time)),
+        height=none(wheels),
+        height_rate=none(wheels),
+        friction=none(len(matrices.dampers)),
+        law=none(len(matrices.laws)),
+        slope=none(matrices.slope.shape[1]),
+    )
+
+
 def _joint_forces(matrices: CarMatrices) -> dict[str, Vector]:
     """Return the forces of the ideal joints in world axes as rows over the motion; (3 k, ...) each."""
     system = matrices.system

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.mode_film import FARTHEST
 from vehicle.drawing.rendering.wireframe import CarWireframe, unit_factor
-from vehicle.engines.linear.load_rows import LoadRows
+from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.runs.bench.drive import BenchDrive
 from vehicle.runs.car import Car
@@ -95,7 +95,7 @@ def car_motion(car: Car, drive: BenchDrive) -> CarMotion:
         slope_velocity={wheel: v[:count] for wheel, v in record.slope_velocity.items()},
         profile={},
     )
-    rows = _identity(car)
+    rows = displacement_rows(car.matrices, np.eye(len(car.matrices.system.mass)))
     recording = simulate_reduced(
         car.poles,
         short,
@@ -126,27 +126,3 @@ def mode_motion(wire: CarWireframe, shape: Complex, frequency: float) -> CarMoti
     scaled = FARTHEST * unit_factor(wire.displacement(shape)) * shape
     phasor = np.exp(2j * np.pi * np.arange(PHASES + 1) / PHASES)
     return CarMotion(coordinates=np.outer(scaled, phasor).real, plates={}, rate=PHASES * frequency)
-
-
-def _identity(car: Car) -> LoadRows:
-    """Return the displacement of each velocity coordinate as rows of a load."""
-    matrices = car.matrices
-    system, count = matrices.system, len(matrices.system.mass)
-    wheels = len(system.inputs)
-
-    def none(columns: int) -> Vector:
-        return np.zeros((count, columns))
-
-    return LoadRows(
-        names=tuple(f"coordinate_{index}" for index in range(count)),
-        static=np.zeros(count),
-        displacement=np.eye(count),
-        velocity=none(count),
-        acceleration=none(count),
-        branch=none(len(system.branch_time)),
-        height=none(wheels),
-        height_rate=none(wheels),
-        friction=none(len(matrices.dampers)),
-        law=none(len(matrices.laws)),
-        slope=none(matrices.slope.shape[1]),
-    )

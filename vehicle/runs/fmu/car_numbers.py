@@ -26,7 +26,7 @@ from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.semi_active_damper import FMU
-from vehicle.runs.fmu.output_rows import Output, car_outputs, watched_outputs
+from vehicle.runs.fmu.output_rows import Output, OutputRows, Watched, car_outputs, watched_outputs
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
@@ -75,6 +75,7 @@ class CarNumbers:
         plates, dampers: names of the wheels with plates and of the dampers.
         outputs: the outputs.
         parameters: first values of the parameters; (dampers, `PARAMETERS`).
+        lengths: number of values of each array of the file, in its order.
     """
 
     content: bytes
@@ -85,16 +86,32 @@ class CarNumbers:
     dampers: tuple[str, ...]
     outputs: tuple[Output, ...]
     parameters: Vector
+    lengths: dict[str, int]
 
 
 def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
-    """Return the numbers of a car.
+    """Return the numbers of a car with all its outputs of channels, sensors and notices.
 
     Args:
         car: the car.
         channels: names of the recorded channels among the outputs; plate displacements, which are inputs, are left
             out.
         step: internal time step [s].
+
+    Raises:
+        ConfigurationError: see `numbers_with`.
+    """
+    return numbers_with(car, step, car_outputs(car, channels), watched_outputs(car))
+
+
+def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows], watched: Watched) -> CarNumbers:
+    """Return the numbers of a car with given outputs.
+
+    Args:
+        car: the car.
+        step: internal time step [s].
+        read: the outputs and their rows.
+        watched: quantities that must stay within limits.
 
     Raises:
         ConfigurationError: the C runtime lacks a friction law, or the car has no damper.
@@ -111,31 +128,34 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
     sensors = sensor_outputs(model, laws, columns, car.static.tyre_load if rolling else None)
     controlled = {index: pack(law.controlled) for index, law in enumerate(laws) if law.controlled}
     controls = in_steps(np.reshape(list(controlled.values()), (-1, NUMBERS)), step)
-    outputs, rows = car_outputs(car, channels)
-    watched, limits, notices = watched_outputs(car)
+    outputs, rows = read
     nodes, parameters = _law_nodes(laws), np.array([_parameters(law) for law in laws])
-    arrays = [
-        *_pole_arrays(factors, sensors),
-        factors.gains[0],
-        factors.levels,
-        *factors.gains[1:],
-        nodes,
-        _damper_numbers(laws, list(controlled)),
-        parameters,
-        np.array([list(record)[:NUMBERS] for record in controls]).reshape(-1, NUMBERS),
-        factors.sliders.stiffness,
-        factors.sliders.limit,
-        factors.sliders.dampers,
-        factors.weights_of(sensors)[:, factors.states :],
-        np.hstack([sensors.velocity, factors.weights_of(sensors)[:, -len(wheels) :]]),
-        _start(factors),
-        np.array([(output.kind, output.damper) for output in outputs], dtype=float),
-        np.concatenate([rows.fixed, watched.fixed]),
-        np.vstack([_weights(factors, part.outputs) for part in (rows, watched)]),
-        np.vstack([rows.force, watched.force]),
-        np.vstack([rows.slope, watched.slope]),
-        limits,
-    ]
+    poles = ("pair_change", "pair_inputs", "pair_sums", "real_change", "real_inputs", "real_sums")
+    gains = dict(zip(("slip", "gain", "ramp"), factors.gains, strict=True))
+    arrays = {
+        **dict(zip(poles, _pole_arrays(factors, sensors), strict=True)),
+        "slip": gains["slip"],
+        "level": factors.levels,
+        "gain": gains["gain"],
+        "ramp": gains["ramp"],
+        "law": nodes,
+        "damper": _damper_numbers(laws, list(controlled)),
+        "parameter": parameters,
+        "control": np.array([list(record)[:NUMBERS] for record in controls]).reshape(-1, NUMBERS),
+        "spring": factors.sliders.stiffness,
+        "share": factors.sliders.limit,
+        "owner": factors.sliders.dampers,
+        "direct": factors.weights_of(sensors)[:, factors.states :],
+        "sensor_start": np.hstack([sensors.velocity, factors.weights_of(sensors)[:, -len(wheels) :]]),
+        "start": _start(factors),
+        "output_kind": np.array([(output.kind, output.damper) for output in outputs], dtype=float),
+        "fixed": np.concatenate([rows.fixed, watched.rows.fixed]),
+        "rows": _weights(factors, rows.outputs),
+        "watched_rows": _weights(factors, watched.rows.outputs),
+        "by_force": np.vstack([rows.force, watched.rows.force]),
+        "by_tyre": np.vstack([rows.slope, watched.rows.slope]),
+        "limit": watched.limits,
+    }
     sizes = (
         *(LANES * -(-count // LANES) for count in (factors.pairs, factors.reals)),
         len(laws),
@@ -149,16 +169,16 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
         len(outputs),
         int(any(law.friction_law == "stribeck" for law in laws)),
         *factors.sliders.stiffness.shape,
-        len(notices),
+        len(watched.notices),
     )
     names = [*wheels, *(damper.name for damper in composition)]
     body = b"".join(
         [
             struct.pack("<d", step),
             struct.pack(f"<{len(sizes)}q", *sizes),
-            *(np.ascontiguousarray(array, dtype="<f8").tobytes() for array in arrays),
+            *(np.ascontiguousarray(array, dtype="<f8").tobytes() for array in arrays.values()),
             *(_text(name, NAME) for name in names),
-            *(_text(notice, NOTICE) for notice in notices),
+            *(_text(notice, NOTICE) for notice in watched.notices),
         ]
     )
     described = "\n".join([body.hex(), *(f"{output.name} {output.unit}" for output in outputs)])
@@ -172,6 +192,7 @@ def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:
         dampers=tuple(damper.name for damper in composition),
         outputs=tuple(outputs),
         parameters=parameters,
+        lengths={name: int(np.size(array)) for name, array in arrays.items()},
     )
 
 

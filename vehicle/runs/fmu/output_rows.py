@@ -67,6 +67,33 @@ class OutputRows:
     force: Vector
     slope: Vector
 
+    def part(self, indices: Sequence[int]) -> OutputRows:
+        """Return the rows with these indices, in their order."""
+        at = list(indices)
+        poles, height, velocity = self.outputs.poles[at], self.outputs.height[at], self.outputs.velocity[at]
+        outputs = Outputs(poles=poles, height=height, velocity=velocity)
+        return OutputRows(outputs=outputs, fixed=self.fixed[at], force=self.force[at], slope=self.slope[at])
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Watched:
+    """Quantities of a car that must stay within limits.
+
+    Attributes:
+        rows: their rows; (k, ...).
+        limits: lowest and highest value of each; (k, 2).
+        notices: what a value beyond its limits means.
+    """
+
+    rows: OutputRows
+    limits: Vector
+    notices: Sequence[str]
+
+    def part(self, indices: Sequence[int]) -> Watched:
+        """Return the quantities with these indices, in their order."""
+        at = list(indices)
+        return Watched(rows=self.rows.part(at), limits=self.limits[at], notices=[self.notices[k] for k in at])
+
 
 def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], OutputRows]:
     """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers."""
@@ -126,7 +153,7 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
     if not outputs:
         raise ConfigurationError("--channels: all of them are plate displacements, which are inputs of an FMU")
     assert all(rows.force.shape[1] == d for rows in parts)
-    return outputs, _joined(parts)
+    return outputs, joined_rows(parts)
 
 
 def _no_outputs(model: PoleModel) -> Outputs:
@@ -164,17 +191,10 @@ def _second_derivative(model: PoleModel, displacements: Outputs) -> OutputRows:
 
 def _each(rows: OutputRows) -> list[OutputRows]:
     """Split output rows into single rows."""
-    parts = []
-    for k in range(len(rows.fixed)):
-        at = slice(k, k + 1)
-        outputs = rows.outputs
-        parts.append(
-            OutputRows(outputs=outputs.part(at), fixed=rows.fixed[at], force=rows.force[at], slope=rows.slope[at])
-        )
-    return parts
+    return [rows.part([k]) for k in range(len(rows.fixed))]
 
 
-def _joined(parts: Sequence[OutputRows]) -> OutputRows:
+def joined_rows(parts: Sequence[OutputRows]) -> OutputRows:
     """Join several output rows."""
     outputs = [part.outputs for part in parts]
     return OutputRows(
@@ -189,8 +209,20 @@ def _joined(parts: Sequence[OutputRows]) -> OutputRows:
     )
 
 
-def watched_outputs(car: Car) -> tuple[OutputRows, Vector, list[str]]:
-    """Return the watched motions of a car, their limits, and a notice for each.
+def motion_rows(car: Car, rows: Vector) -> OutputRows:
+    """Return outputs that are linear in the displacement of the car.
+
+    Args:
+        car: the car.
+        rows: rows over the displacements u of the velocity coordinates; (k, n).
+    """
+    model = car.poles.without_laws()
+    no_plates = np.zeros((len(rows), len(model.matrices.system.inputs)))
+    return _linear(model, Outputs(poles=rows @ model.modal, height=no_plates, velocity=no_plates))
+
+
+def watched_outputs(car: Car) -> Watched:
+    """Return the watched motions of a car, their limits, and a notice for each: tyres, tables, then rotations.
 
     The limits are those of `vehicle.engines.reduced.validity`, for each axis of a rotation.
     """
@@ -212,4 +244,4 @@ def watched_outputs(car: Car) -> tuple[OutputRows, Vector, list[str]]:
         for body in bodies
         for axis in "xyz"
     ]
-    return _joined(parts), np.array(limits), notices
+    return Watched(rows=joined_rows(parts), limits=np.array(limits), notices=notices)

@@ -5,25 +5,13 @@
   const byId = (id) => document.getElementById(`mode-${id}`);
   const canvas = byId("canvas"), pickCar = byId("car"), pickState = byId("state"), pickMode = byId("pick");
   const amplitude = byId("amplitude"), speed = byId("speed"), play = byId("play"), gallery = byId("gallery");
-  const WIDTH = { body: 2, mass: 1.6, link: 2.6, spring: 1.3, wheel: 1.4, ground: 1 };
-  const VIEWS = { corner: [128, 20], side: [90, 4], front: [180, 4], top: [180, 89] };
   const WORDS = { stuck: "dampers stick", sliding: "dampers slide (viscous part alone)" };
   const GHOST = "#c3cad2", GROUND = "#9aa4ae", TURN = 2 * Math.PI;
-  let [azimuth, elevation] = VIEWS.corner, zoom = 1, phase = 0, playing = true, seen = true, last = 0;
+  let [azimuth, elevation] = wireframe.VIEWS.corner, zoom = 1, phase = 0, playing = true, seen = true, last = 0;
 
   for (const car of data.cars) {
     const n = car.points.length / 3;
-    car.middle = [0, 1, 2].map((axis) => {
-      const along = Array.from({ length: n }, (_, i) => car.points[3 * i + axis]);
-      return (Math.min(...along) + Math.max(...along)) / 2;
-    });
-    car.size = Math.max(...Array.from({ length: n }, (_, i) =>
-      Math.hypot(...[0, 1, 2].map((axis) => car.points[3 * i + axis] - car.middle[axis]))));
-    // How high the car is on the page, seen from the corner: a tall body must not be cut.
-    const [a, e] = VIEWS.corner.map((angle) => angle * TURN / 360);
-    const rise = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
-    car.high = Math.max(...Array.from({ length: n }, (_, i) =>
-      Math.abs([0, 1, 2].reduce((sum, axis) => sum + rise[axis] * (car.points[3 * i + axis] - car.middle[axis]), 0))));
+    wireframe.measure(car);
     for (const mode of Object.values(car.states).flat()) {
       mode.reach = Array.from({ length: n }, (_, i) => Math.sqrt([0, 1, 2].reduce(
         (sum, axis) => sum + mode.re[3 * i + axis] ** 2 + mode.im[3 * i + axis] ** 2, 0)) / data.full);
@@ -32,25 +20,6 @@
   const car = () => data.cars[Number(pickCar.value)];
   const modes = () => car().states[pickState.value];
   const mode = () => modes()[Number(pickMode.value)];
-
-  // Places of all points on a picture: across, down, and towards the eye.
-  function project(car, width, height, moved) {
-    const a = azimuth * TURN / 360, e = elevation * TURN / 360;
-    const right = [-Math.sin(a), Math.cos(a), 0];
-    const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
-    const eye = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
-    const scale = zoom * Math.min(0.47 * width / car.size, 0.86 * height / car.size, 0.42 * height / car.high), places = [];
-    for (let i = 0; i < car.points.length; i += 3) {
-      let x = 0, y = 0, z = 0;
-      for (let axis = 0; axis < 3; axis++) {
-        const at = car.points[i + axis] - car.middle[axis] + (moved ? moved[i + axis] : 0);
-        x += right[axis] * at; y += up[axis] * at; z += eye[axis] * at;
-      }
-      const near = scale / (1 - 0.12 * z / car.size);
-      places.push([width / 2 + near * x, height / 2 - near * y, z]);
-    }
-    return places;
-  }
 
   function draw(canvas, car, mode, phase, fine) {
     const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
@@ -63,7 +32,8 @@
     pen.lineCap = "round";
     const factor = Number(amplitude.value) / data.full, cos = Math.cos(phase), sin = Math.sin(phase);
     const moved = mode.re.map((value, i) => factor * (value * cos - mode.im[i] * sin));
-    const rest = project(car, width, height, null), now = project(car, width, height, moved);
+    const view = [azimuth, elevation, zoom];
+    const rest = wireframe.project(car, view, width, height, null), now = wireframe.project(car, view, width, height, moved);
     const line = (places, i) => {
       pen.beginPath();
       pen.moveTo(places[car.lines[2 * i]][0], places[car.lines[2 * i]][1]);
@@ -79,7 +49,7 @@
       const group = data.groups[car.groups[i]];
       const reach = (mode.reach[car.lines[2 * i]] + mode.reach[car.lines[2 * i + 1]]) / 2;
       pen.strokeStyle = group === "ground" ? GROUND : data.shades[Math.round(reach * (data.shades.length - 1))];
-      pen.lineWidth = WIDTH[group] * (fine ? 1 : 0.5);
+      pen.lineWidth = wireframe.WIDTH[group] * (fine ? 1 : 0.5);
       pen.globalAlpha = 0.75 + 0.25 * Math.max(-1, Math.min(1, depth(i) / (2 * car.size)));
       line(now, i);
     }
@@ -135,7 +105,7 @@
 
   function thumbnails() {
     const kept = [zoom, azimuth, elevation];
-    [zoom, azimuth, elevation] = [1, ...VIEWS.corner];
+    [zoom, azimuth, elevation] = [1, ...wireframe.VIEWS.corner];
     gallery.querySelectorAll("canvas").forEach((one, i) => draw(one, car(), modes()[i], 0, false));
     [zoom, azimuth, elevation] = kept;
   }
@@ -189,7 +159,7 @@
     show();
   });
   document.querySelectorAll("[data-view]").forEach((button) => button.addEventListener("click", () => {
-    [azimuth, elevation] = VIEWS[button.dataset.view];
+    [azimuth, elevation] = wireframe.VIEWS[button.dataset.view];
     zoom = 1;
     show();
   }));

@@ -25,7 +25,7 @@ from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.trial_section import trial, trial_numbers
-from vehicle.runs.trial.trial_data import WORKER, script
+from vehicle.runs.trial.trial_data import PAGE, WORKER, scripts
 from vehicle.version import package_version
 
 Part = tuple[str, str, Markup]
@@ -165,13 +165,13 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[Part], *, mod
         modes: moving modes as JSON; empty for a page without them.
         numbers: numbers of the section for trials as JSON; empty for a page without it.
     """
-    scripts = [_file("modes.js")] if modes else []
+    parts_of_page = [_file("wireframe.js"), _file("modes.js")] if modes else []
     allowed, started = "", ""
     if numbers:
-        scripts.append(script("trial.js"))
+        parts_of_page.append(scripts(PAGE))
         # Its worker is a script from the page itself, and runs a module of WebAssembly.
         allowed, started = " 'wasm-unsafe-eval'", "; worker-src blob:"
-    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
+    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in parts_of_page)
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests) or "'none'"
     policy = (
         "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; "
@@ -183,8 +183,8 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[Part], *, mod
     data = f'<script type="application/json" id="mode-data">{modes}</script>\n' if modes else ""
     if numbers:
         data += f'<script type="application/json" id="trial-data">{numbers}</script>\n'
-        data += f'<script type="text/plain" id="trial-worker">{script(WORKER)}</script>\n'
-    run_scripts = "".join(f"<script>{text}</script>\n" for text in scripts)
+        data += f'<script type="text/plain" id="trial-worker">{scripts(WORKER)}</script>\n'
+    run_scripts = "".join(f"<script>{text}</script>\n" for text in parts_of_page)
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{escaped(policy)}">\n'

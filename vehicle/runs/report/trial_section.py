@@ -5,7 +5,8 @@ from __future__ import annotations
 from vehicle.errors import VehicleError
 from vehicle.runs.report.finished_run import FinishedRun, recorded_signal
 from vehicle.runs.report.markup import Markup, joined, tag
-from vehicle.runs.trial.trial_data import LONGEST, trial_data
+from vehicle.runs.trial.page_input import LONGEST, RunRoad
+from vehicle.runs.trial.trial_data import trial_data
 
 
 def trial_numbers(run: FinishedRun) -> str:
@@ -21,7 +22,9 @@ def trial_numbers(run: FinishedRun) -> str:
         return ""
     try:
         signal = recorded_signal(run)
-        return trial_data(run.car, signal, wheel=run.wheel, skip=begin, road_class=road.get("class"))
+        speed = road.get("speed_kmh")
+        driven = RunRoad(road_class=road.get("class"), speed=speed, behind=road["behind_m"]) if speed else None
+        return trial_data(run.car, signal, wheel=run.wheel, skip=begin, road=driven)
     except (VehicleError, KeyError):
         return ""
 
@@ -32,6 +35,7 @@ def trial(run: FinishedRun) -> Markup:
     engine = run.summary["solver"]["engine"]
     other = "" if engine == "reduced" else " The run itself used the MuJoCo engine, so its numbers differ a little."
     plots = {
+        "picture": "The moving car",
         "density": "Density of the acceleration of the seat rail",
         "frf": "Frequency response of the seat rail",
         "force": "Force of a damper over its velocity",
@@ -41,6 +45,11 @@ def trial(run: FinishedRun) -> Markup:
         tag("canvas", id=f"trial-{name}", role="img", aria_label=f"{label}: A red, B grey")
         for name, label in plots.items()
     ]
+    picture = [
+        tag("label", "", for_="trial-factor", id="trial-factor-words"),
+        Markup('<input type="range" id="trial-factor" min="0" max="1" step="1">'),
+        tag("button", "Pause", type="button", id="trial-play"),
+    ]
     return joined(
         [
             tag("p", "Computing ...", class_="answer", id="trial-words"),
@@ -49,16 +58,22 @@ def trial(run: FinishedRun) -> Markup:
             tag(
                 "div",
                 tag("div", tag("div", *canvases, class_="plots"), tag("table", id="trial-table")),
-                tag("div", id="trial-controls", class_="controls"),
+                tag("div", tag("div", id="trial-controls"), *picture, class_="controls"),
                 class_="modes",
             ),
             tag(
                 "p",
                 f"Red: A, the car with these settings; grey: B, the reference. The page runs the first {duration:g} s "
-                "with the time steps of the reduced engine. Friction, Stribeck parameters and level are exact. A "
-                "factor on the damper curve acts as a force beside the poles of the car: exact to about 0.1 %. "
-                "Comfort is the weighted acceleration of the seat rail, vector sum of ISO 2631-1; less is more "
-                "comfort. The FRF is the mean of four multisines of random phase with the density of this input."
+                "with the time steps of the reduced engine. Friction, Stribeck parameters, level and road class are "
+                "exact. A class of ISO 8608 is the same profile, twice as high as that of the class before. Other "
+                "speeds and stiffnesses are sets of poles that the page contains, so they change one at a time: "
+                "channels exact to 0.01 % of their peaks. Another speed is the same road from its beginning, up to its "
+                "end or the same time. A factor on the damper curve acts as a force beside the poles of the car: exact "
+                "to about 0.1 %. Comfort is the weighted acceleration of the seat rail, vector sum of ISO 2631-1; less "
+                "is more comfort. The FRF is the mean of four multisines of random phase with the density of this "
+                "input. On a road all wheels follow the same height, the rear wheels later by their distance over the "
+                "speed, so its ripples are those of the wheelbase. The picture shows heave, roll and pitch of the body "
+                "and the lift of the wheels; between them the parts take their static shape."
                 f"{other} ",
                 tag("span", id="trial-time-used"),
                 class_="about",

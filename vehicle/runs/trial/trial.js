@@ -10,38 +10,39 @@
   const worker = new Worker(source);
   const start = Object.fromEntries(data.sliders.map((slider) => [slider.id, slider.value]));
   const inputs = new Map();
-  let settings = { ...start }, now = null, before = null, busy = false, waiting = null, timer = 0;
+  let settings = { ...start }, now = null, before = null, busy = null, waiting = null, timer = 0;
 
   const short = (value, digits = 3) => String(Number(value.toPrecision(digits)));
   const classOf = (level) => {
     const place = CLASSES.indexOf(data.roadClass) + Math.round(Math.log2(level));
     return CLASSES[place] ?? `${short(level)} times ${data.roadClass}`;
   };
-  const words = (slider, value) => (slider.id === "level" && data.roadClass ? `class ${classOf(value)}` : `${short(value)} ${slider.unit}`.trim());
+  const words = (slider, value) => (slider.id === "level" && data.roadClass ? `class ${classOf(value)} (heights times ${short(value)})` : `${short(value)} ${slider.unit}`.trim());
   // A class of ISO 8608 has four times the density of the one before, so the slider of a road moves by factors of two.
-  const toSlider = (slider, value) => (slider.id === "level" ? Math.log2(value) : value);
-  const fromSlider = (slider, value) => (slider.id === "level" ? 2 ** value : value);
+  // A slider with fixed positions moves over their indices.
+  const toSlider = (slider, value) => (slider.values ? slider.values.indexOf(value) : slider.id === "level" ? Math.log2(value) : value);
+  const fromSlider = (slider, value) => (slider.values ? slider.values[value] : slider.id === "level" ? 2 ** value : value);
+  const rangeOf = (slider) => (slider.values ? [0, slider.values.length - 1] : [slider.low, slider.high].map((x) => toSlider(slider, x)));
+  const stepOf = (slider) => (slider.values || (slider.id === "level" && data.roadClass) ? 1 : slider.id === "level" ? 0.05 : "any");
 
   function controls() {
     const box = byId("controls");
     for (const slider of data.sliders) {
       const label = document.createElement("label"), input = document.createElement("input");
-      const [low, high, value] = [slider.low, slider.high, slider.value].map((x) => toSlider(slider, x));
       input.type = "range";
       input.id = label.htmlFor = `trial-${slider.id}`;
-      input.min = low;
-      input.max = high;
-      input.step = slider.id === "level" ? (data.roadClass ? 1 : 0.05) : "any";
-      input.value = value;
+      [input.min, input.max] = rangeOf(slider);
+      input.step = stepOf(slider);
+      // Each fixed position is a car of its own, so these sliders change one at a time.
       input.addEventListener("input", () => {
-        settings = { ...settings, [slider.id]: fromSlider(slider, Number(input.value)) };
-        label.textContent = `${slider.words}: ${words(slider, settings[slider.id])}`;
-        request("record");
+        const others = slider.values ? data.sliders.filter(({ id, values }) => values && id !== slider.id) : [];
+        const back = Object.fromEntries(others.map(({ id }) => [id, start[id]]));
+        move({ ...settings, ...back, [slider.id]: fromSlider(slider, Number(input.value)) });
       });
-      label.textContent = `${slider.words}: ${words(slider, slider.value)}`;
       inputs.set(slider.id, [slider, input, label]);
       box.append(label, input);
     }
+    place();
     box.append(button("Back to the car of the run", () => move(start)), button("Keep as B", () => {
       before = now;
       show();
@@ -54,42 +55,47 @@
     return element;
   }
 
-  function move(values) {
-    settings = { ...values };
+  function place() {
     for (const [slider, input, label] of inputs.values()) {
-      input.value = toSlider(slider, settings[slider.id]);
+      if (Number(input.value) !== toSlider(slider, settings[slider.id])) input.value = toSlider(slider, settings[slider.id]);
       label.textContent = `${slider.words}: ${words(slider, settings[slider.id])}`;
     }
+  }
+
+  function move(values) {
+    settings = { ...values };
+    place();
     request("record");
   }
 
-  // One task at a time: while the worker computes, only the latest settings wait.
+  // One task at a time: while the worker computes, only the latest settings wait. FRFs give way to records.
   function request(task) {
     clearTimeout(timer);
     if (busy) {
       waiting = task;
+      if (busy === "response") worker.postMessage({ task: "cancel" });
       return;
     }
-    busy = true;
+    busy = task;
     waiting = null;
     worker.postMessage({ data: now ? undefined : data, task, settings });
   }
 
   worker.onmessage = ({ data: { task, settings: asked, result, error } }) => {
-    busy = false;
+    busy = null;
     if (error) {
       byId("words").textContent = `These settings cannot be run: ${error}.`;
     } else if (task === "record") {
-      now = { settings: asked, record: result, response: null };
+      now = { settings: asked, record: result, motion: null, response: null };
       before ??= now;
       show();
-    } else if (now.settings === asked || same(now.settings, asked)) {
-      now.response = result;
-      if (same(before.settings, asked)) before.response = result;
+    } else if (result && same(now.settings, asked)) {
+      for (const run of [now, before]) if (same(run.settings, asked)) run[task] = task === "motion" ? { ...result, steps: data.picture.steps } : result;
       show();
     }
+    const next = { record: "motion", motion: data.frf ? "response" : null }[task];
     if (waiting) request(waiting);
-    else if (task === "record" && data.frf && !error) timer = setTimeout(() => request("response"), PAUSE);
+    else if (next && !error) timer = setTimeout(() => request(next), task === "record" ? PAUSE : 0);
   };
   worker.onerror = () => { byId("words").textContent = "This browser does not run the car: it blocks workers or WebAssembly."; };
 
@@ -196,7 +202,7 @@
     const cut = (values) => values.slice(first, last + 1), peak = Math.max(...cut(before.record.density), ...cut(now.record.density));
     draw("density", "PSD of the seat rail, vertical [(m/s²)²/Hz] over Hz", both((run) => [cut(bins), cut(run.record.density)]),
       { x: [1, 50], y: [peak * 1e-5, peak * 2], logX: true, logY: true });
-    const begin = data.skip + Math.round(1 / data.interval), span = Math.round(1 / data.interval);
+    const span = Math.round(1 / data.interval), begin = Math.max(now.record.skip, before.record.skip) + span;
     const time = Array.from({ length: span }, (_, i) => (begin + i) * data.interval);
     const piece = (run) => run.record.acceleration[2].subarray(begin, begin + span), high = 1.1 * Math.max(...piece(before).map(Math.abs), ...piece(now).map(Math.abs));
     draw("time", "Seat rail, vertical [m/s²] over s", both((run) => [time, piece(run)]), { x: [time[0], time[span - 1]], y: [-high, high] });
@@ -209,12 +215,13 @@
       const runs = [[before, GREY, 2.2], [now, RED, 1.4]].filter(([run]) => run.response), frequency = runs.length ? runs[0][0].response.frequency : [1];
       const top = Math.max(1, ...runs.flatMap(([run]) => Array.from(run.response.magnitude)));
       const bands = now.response ? [[frequency, now.response.magnitude.map((value, k) => value - 2 * now.response.error[k]), now.response.magnitude.map((value, k) => value + 2 * now.response.error[k]), BAND]] : [];
-      draw("frf", "FRF [m/s² per m] over Hz; band: 2 standard errors",
+      draw("frf", data.road ? "FRF to the road [m/s² per m] over Hz; band: 2 standard errors" : "FRF [m/s² per m] over Hz; band: 2 standard errors",
         runs.map(([run, colour, thick]) => [run.response.frequency, run.response.magnitude, colour, thick]), { x: [1, 50], y: [top * 1e-3, top * 1.5], logX: true, logY: true }, bands);
     }
-    const { notices } = now.record, more = notices.length > 2 ? `; ${notices.length - 2} more` : "";
-    byId("notices").textContent = notices.length ? `Outside the valid range of this car: ${notices.slice(0, 2).join("; ")}${more}.` : "";
-    const { stepping, all } = now.record.milliseconds, seconds = (data.samples - 1) * data.interval;
+    trialPicture.show(before.motion, now.motion);
+    const { notices } = now.record, more = notices.length > 1 ? `; ${notices.length - 1} more` : "";
+    byId("notices").textContent = notices.length ? `Outside the valid range of this car: ${notices[0]}${more}.` : "";
+    const { seconds, milliseconds: { stepping, all } } = now.record;
     byId("time-used").textContent = `${short(seconds)} s of the car in ${Math.round(all)} ms, ${Math.round(stepping)} ms of them time steps.`;
   }
 

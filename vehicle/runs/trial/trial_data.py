@@ -2,27 +2,31 @@
 
 The module is the C runtime of `vehicle.runs.fmu` as WebAssembly, the numbers of the car are those of its FMU. Friction
 limits, Stribeck parameters and level are exact; a factor on the damper curve acts as a force beside the fixed poles.
+Stiffnesses and speeds are sets of poles of their own.
 """
 
 from __future__ import annotations
 
-import base64
 import dataclasses
 import json
-import zlib
 from collections.abc import Sequence
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.reduced.group_run import time_steps
 from vehicle.engines.reduced.reduced_run import LONGEST_STEP
+from vehicle.engines.reduced.validity import rotating_bodies
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES, axle_and_side, is_wheel
-from vehicle.runs.fmu.car_numbers import PARAMETERS, CarNumbers, car_numbers
+from vehicle.runs.fmu.car_numbers import PARAMETERS, CarNumbers, numbers_with
+from vehicle.runs.fmu.output_rows import Output, car_outputs, joined_rows, motion_rows, watched_outputs
+from vehicle.runs.trial.car_sets import stepped_sliders
+from vehicle.runs.trial.moving_car import moving_picture, picture_rows, turning_parts
+from vehicle.runs.trial.packed_numbers import byte_runs, packed, text
+from vehicle.runs.trial.page_input import LONGEST, PageInput, RunRoad, page_input
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
 from vehicle.signals.excitation.rest import OFFSET_SHARE
@@ -31,16 +35,8 @@ from vehicle.signals.excitation.signal import Signal
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
 
-Vector = npt.NDArray[np.float64]
-
-LONGEST = 30.0
-"""Maximum length of the record in the page [s]."""
-
 POINT = "seat_rail"
 """Output point of the comfort values."""
-
-LEVELS = 32767
-"""Maximum integer of a plate displacement in the page: steps of 1/32767 of its peak, 90 dB below it."""
 
 SCALES = (0.25, 4.0)
 """Range of the factor on the level of the input."""
@@ -56,26 +52,14 @@ FRICTION = {
 }
 """Parameters with a slider: words, and usual end of the range, which is larger for a car with larger values."""
 
-WORKER = "trial_worker.js"
-"""Script of the numbers, which the page runs in a worker."""
+WORKER = ("trial_signals.js", "trial_worker.js")
+"""Scripts of the numbers, which the page runs in a worker."""
+
+PAGE = ("trial_picture.js", "trial.js")
+"""Scripts of sliders, plots and moving picture, after wireframe.js of the report."""
 
 
-def page_signal(signal: Signal) -> Signal:
-    """Return a plate signal as the page has it: at most `LONGEST` seconds, rounded to `LEVELS` steps of the peak.
-
-    Args:
-        signal: displacement of the plates.
-    """
-    count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
-    rounded = {wheel: _integers(z[:count]) for wheel, z in signal.displacement.items()}
-    return dataclasses.replace(
-        signal,
-        time=signal.time[:count],
-        displacement={wheel: (step * integers).astype(np.float64) for wheel, (integers, step) in rounded.items()},
-    )
-
-
-def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road_class: str | None = None) -> str:
+def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road: RunRoad | None = None) -> str:
     """Return the numbers of a car and its plates for the script of a page, as JSON.
 
     Args:
@@ -83,32 +67,35 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road_
         signal: displacement of the plates at the record rate of the car.
         wheel: wheel whose plate excites the FRF in the page, and whose damper the page shows.
         skip: excluded time at the beginning [s].
-        road_class: class of the road of ISO 8608 under the car; None for another input.
+        road: road of the run; None for another input.
 
     Raises:
         ConfigurationError: the reduced engine or the C runtime cannot take the car, or the input (see `_require`).
     """
     _require(car, signal, skip)
+    drive = page_input(car, signal, road)
+    stepped, cars = stepped_sliders(car, drive)
     names = [damper.name for damper in car.vehicle.composition.dampers]
-    channels = [f"{POINT}_acc_{axis}" for axis in AXES]
-    histories = [f"{name}_{quantity}" for name in names for quantity in ("velocity", "force")]
-    _, every = time_steps(signal, car.vehicle.solver.record_rate, LONGEST_STEP)
-    numbers = car_numbers(car, [*channels, *histories], signal.timestep / every)
-    outputs = {output.name: index for index, output in enumerate(numbers.outputs)}
+    rotations = turning_parts(car, drive.signal)
+    numbers = [_page_numbers(each, drive, rotations) for each in cars]
+    base, shown = numbers[0], len(picture_rows(car))
+    outputs = {output.name: index for index, output in enumerate(base.outputs)}
     contact = application("seat")
     data: dict[str, Any] = {
-        "module": _text(_module()),
-        "car": _text(numbers.content),
+        "module": text(_module()),
+        "cars": [packed(each.content, byte_runs(each, shown, exact=each is base)) for each in numbers],
         "interval": signal.timestep,
-        "samples": min(signal.time.size, round(LONGEST / signal.timestep) + 1),
+        "samples": drive.signal.time.size,
         "skip": round(skip / signal.timestep),
-        "plates": _plates(signal, numbers.plates),
-        "plateCount": len(numbers.plates),
-        "excited": numbers.plates.index(wheel),
-        "frf": road_class is None and sum(bool(np.any(z)) for z in signal.displacement.values()) == 1,
-        "parameters": np.asarray(numbers.parameters).tolist(),
+        **drive.data(base.plates),
+        "plateCount": len(base.plates),
+        "excited": base.plates.index(wheel),
+        "frf": drive.road is not None or len(drive.wheels) == 1,
+        "parameters": np.asarray(base.parameters).tolist(),
         "names": list(PARAMETERS),
         "positions": [outputs[f"{POINT}_displacement_{axis}"] for axis in AXES],
+        "motions": [outputs[f"motion_{index}"] for index in range(shown)],
+        "picture": moving_picture(car),
         "dampers": [
             {
                 "name": _words(name),
@@ -123,15 +110,43 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road_
         "ahead": AHEAD,
         "weightings": [_finite(dataclasses.asdict(weighting(name))) for name in contact.weightings],
         "factors": list(contact.comfort_factors),
-        "sliders": _sliders(car, numbers, road_class),
-        "roadClass": road_class,
+        "sliders": [*_sliders(car, base, road), *stepped],
+        "roadClass": road and road.road_class,
+        "road": drive.road is not None,
     }
     return json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def script(name: str) -> str:
-    """Return the text of a script of this package."""
-    return resources.files("vehicle.runs.trial").joinpath(name).read_text(encoding="utf-8")
+def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int]) -> CarNumbers:
+    """Return the numbers of a car with the outputs of the page.
+
+    Args:
+        car: the car.
+        drive: its input.
+        rotations: rotations that are watched, as indices of `rotation_outputs`.
+    """
+    names = [damper.name for damper in car.vehicle.composition.dampers]
+    channels = [f"{POINT}_acc_{axis}" for axis in AXES]
+    outputs, rows = car_outputs(car, [*channels, *(f"{name}_{end}" for name in names for end in ("velocity", "force"))])
+    kept = [index for index, output in enumerate(outputs) if output.name not in channels]
+    motions = motion_rows(car, picture_rows(car))
+    read = [outputs[index] for index in kept]
+    read += [Output(name=f"motion_{k}", unit="m", meaning="") for k in range(len(motions.fixed))]
+    watched = watched_outputs(car)
+    others = len(watched.notices) - 3 * len(rotating_bodies(car.matrices))
+    _, every = time_steps(drive.signal, car.vehicle.solver.record_rate, LONGEST_STEP)
+    return numbers_with(
+        car,
+        drive.interval / every,
+        (read, joined_rows([rows.part(kept), motions])),
+        watched.part([*range(others), *(others + index for index in rotations)]),
+    )
+
+
+def scripts(names: Sequence[str]) -> str:
+    """Return the text of scripts of this package, concatenated."""
+    folder = resources.files("vehicle.runs.trial")
+    return "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in names)
 
 
 def _require(car: Car, signal: Signal, skip: float) -> None:
@@ -158,32 +173,9 @@ def _module() -> bytes:
     return resources.files("vehicle.runs.fmu").joinpath("binaries/wasm32/car.wasm").read_bytes()
 
 
-def _text(content: bytes) -> str:
-    """Return compressed bytes as text (deflate, base64)."""
-    return base64.b64encode(zlib.compress(content, 9)).decode()
-
-
 def _finite(record: dict[str, Any]) -> dict[str, Any]:
     """Return the parameters of a weighting with None for infinite frequencies, which JSON lacks."""
     return {name: None if value == np.inf else value for name, value in record.items()}
-
-
-def _integers(values: Vector) -> tuple[npt.NDArray[np.int16], float]:
-    """Return displacements as integers, and the step of the integers [m]."""
-    step = float(np.max(np.abs(values))) / LEVELS or 1.0
-    return np.rint(values / step).astype("<i2"), step
-
-
-def _plates(signal: Signal, wheels: Sequence[str]) -> list[dict[str, Any]]:
-    """Return the plates that move: index, step [m], and second differences of the integers modulo 2^16."""
-    count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
-    plates = []
-    for wheel, z in signal.displacement.items():
-        if np.any(z[:count]):
-            integers, step = _integers(z[:count])
-            changes = np.diff(integers, 2, prepend=np.zeros(2, dtype="<i2"))
-            plates.append({"plate": wheels.index(wheel), "step": step, "changes": _text(changes.tobytes())})
-    return plates
 
 
 def _words(damper: str) -> str:
@@ -192,7 +184,7 @@ def _words(damper: str) -> str:
     return " ".join(axle_and_side(wheel)) if is_wheel(wheel) else wheel.replace("_", " ")
 
 
-def _sliders(car: Car, numbers: CarNumbers, road_class: str | None) -> list[dict[str, Any]]:
+def _sliders(car: Car, numbers: CarNumbers, road: RunRoad | None) -> list[dict[str, Any]]:
     """Return the sliders: words, unit, range, value, and the dampers and parameter that each sets."""
     sliders: list[dict[str, Any]] = []
     dampers = car.vehicle.composition.dampers
@@ -236,6 +228,6 @@ def _sliders(car: Car, numbers: CarNumbers, road_class: str | None) -> list[dict
             }
         )
     low, high = SCALES
-    words = "level of the input, factor" if road_class is None else "road"
+    words = "level of the input, factor" if road is None or road.road_class is None else "road"
     sliders.append({"id": "level", "words": words, "unit": "", "low": low, "high": high, "value": 1.0, "dampers": []})
     return sliders
