@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from vehicle.runs.bench.drive import bench_drive, excerpt
 from vehicle.runs.bench.numbers import numbers
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal import Signal, uniform_time
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +57,32 @@ def test_frf_of_the_car_without_friction_is_that_of_its_matrices(car, drive):
             abs=2e-5,
             source="second derivation: FRF of the matrices",
         )
+
+
+@pytest.mark.parametrize("rate", [500.0, 2000.0])
+def test_the_rate_of_the_file_does_not_change_the_frf(car, high, drive, rate):
+    sliding = car.with_({"damper.coulomb_friction": 0.0})
+    time = uniform_time(samples=round(9.0 * rate), timestep=1.0 / rate)
+    z = np.interp(time, high.time, high.displacement["fr"])
+    other = bench_drive(car, Signal(time=time, displacement={"fr": z}, source="other rate"), seconds=8.0)
+    one, two = (numbers(sliding, chosen).frf for chosen in (drive, other))
+    inside = (one.frequency >= 2.0) & (one.frequency <= 50.0)
+    same = np.isclose(one.frequency[inside][:, None], two.frequency).any(axis=1)
+    assert same.all()
+    later = np.searchsorted(two.frequency, one.frequency[inside])
+    error = np.linalg.norm(two.response[:, later] - one.response[:, inside], axis=1)
+    # Twice the transient of `phase_averages.LEAD`.
+    assert np.all(error < 4e-5 * np.linalg.norm(one.response[:, inside], axis=1))
+
+
+def test_a_coarse_step_is_fine_enough_for_the_frf(car, drive, monkeypatch):
+    coarse = numbers(car, drive).frf
+    monkeypatch.setattr("vehicle.runs.bench.numbers.FRF_STEP", 5e-5)
+    fine, inside = numbers(car, drive).frf, coarse.frequency >= 2.0
+    error = np.linalg.norm((coarse.response - fine.response)[:, inside], axis=1)
+    # 6e-4, see FRF_STEP; the standard error is 4 to 8 %.
+    assert np.all(error < 1e-3 * np.linalg.norm(fine.response[:, inside], axis=1))
+    assert np.all(error > 1e-6 * np.linalg.norm(fine.response[:, inside], axis=1))
 
 
 def test_friction_makes_an_error_band(car, drive):
@@ -106,4 +134,6 @@ def test_an_obstacle_has_the_values_of_its_run():
     assert table["settling time seat rail z"][0] == pytest.approx(values["settling_s"]["seat_rail"], abs=2e-3)
     assert table["peak knuckle rr z"][0] == pytest.approx(values["knuckle_peak"]["rr"])
     longer = bench_drive(car, road("cobbles", 10))
-    assert longer.record.duration == pytest.approx(longer.road["obstacle_s"][1] + 3.0, abs=0.11)
+    assert longer.road is not None
+    times: Any = longer.road["obstacle_s"]
+    assert longer.record.duration == pytest.approx(times[1] + 3.0, abs=0.11)

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from vehicle import read_signal
+from vehicle import read_signal, road
 from vehicle.errors import ConfigurationError
 from vehicle.runs.bench.drive import bench_drive
 from vehicle.runs.bench.results import write_car, write_comparison, write_run
@@ -80,6 +80,13 @@ def test_changes_give_the_numbers_of_the_changed_car(car, state):
     assert state.update() and state.present[1].table() == unchanged
 
 
+def test_the_speed_of_the_road_has_no_slider(state):
+    assert "driving.speed" in state.settings
+    rolling = Car.load("focus_road")
+    on_road = BenchState(rolling, bench_drive(rolling, road("cleat:20x50", 30)))
+    assert "driving.speed" not in on_road.settings and on_road.car["driving.speed"].value == pytest.approx(30 / 3.6)
+
+
 def test_geometry_is_a_setting_too(state):
     state.change("front.hardpoints.strut_top.y", state.setting("front.hardpoints.strut_top.y").value + 0.02)
     before = state.present[1].table()
@@ -143,3 +150,25 @@ def test_run_and_report_are_those_of_the_shown_cars(state, tmp_path):
     report = write_comparison(state, tmp_path).read_text(encoding="utf-8")
     assert "coulomb_friction" in report and "60" in report
     assert sorted(path.name for path in tmp_path.iterdir() if not path.name.startswith(".")) == ["report.html", "run"]
+
+
+def test_files_of_a_moved_point_on_an_obstacle(tmp_path):
+    car = Car.load("focus_road")
+    state = BenchState(car, bench_drive(car, road("cleat:20x50", 30)))
+    top = "front.hardpoints.strut_top.z"
+    state.change("front.damper.viscous", 1500.0)
+    assert state.update()
+    state.keep()
+    state.change(top, state.setting(top).value + 0.03)
+    assert state.update(), state.message
+    written = Car.load(write_car(state, tmp_path))
+    assert written[top.removesuffix(".z")].value[2] == pytest.approx(1.26)
+    assert written["front.damper.viscous"].value == 1500.0
+    again = written.run(road("cleat:20x50", 30, duration=state.drive.record.duration), engine="reduced")
+    shown = state.present[1]
+    assert shown.obstacle is not None
+    assert again.comfort().unweighted.overall == pytest.approx(shown.comfort.unweighted.overall, rel=1e-6)
+    summary = json.loads((write_run(state, tmp_path) / "summary.json").read_text(encoding="utf-8"))
+    assert summary["obstacle"]["vdv"]["seat_rail"] == pytest.approx(shown.obstacle["vdv"]["seat_rail"])
+    report = write_comparison(state, tmp_path).read_text(encoding="utf-8")
+    assert "strut_top" in report and "cleat" in report

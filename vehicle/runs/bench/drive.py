@@ -92,10 +92,11 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
         record, skip = excerpt(source, begin, seconds or SECONDS)
         label = f"{source.source.rpartition('/')[2]}, {begin:g} to {begin + record.duration - skip:g} s"
     moving = {name: z[round(skip / record.timestep) :] for name, z in record.displacement.items() if np.any(z != z[0])}
-    inputs = phase_inputs(record.timestep, moving or record.displacement, delays)
+    interval = 1.0 / car.vehicle.solver.record_rate
+    inputs = phase_inputs(record.timestep, moving or record.displacement, delays, interval=interval)
     size = next(iter(inputs.samples.values())).size
     probe = Signal(
-        time=uniform_time(samples=size, timestep=record.timestep),
+        time=uniform_time(samples=size, timestep=interval),
         displacement=inputs.samples,
         source=f"random phases of {label}",
         highest=record.highest,

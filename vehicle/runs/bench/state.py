@@ -27,7 +27,7 @@ class BenchState:
     Attributes:
         car: base car, with the overrides of the drive.
         drive: input of the bench.
-        settings: all numbers that a slider can change, by path.
+        settings: all numbers that a slider can change, by path; without those that the input sets, as the speed.
         changes: path to value of the changed parameters.
         present, reference: car and numbers of A and B.
         message: error of the last change; empty without an error.
@@ -40,7 +40,8 @@ class BenchState:
     def __init__(self, car: Car, drive: BenchDrive) -> None:
         self.car = car.with_(drive.overrides) if drive.overrides else car
         self.drive = drive
-        self.settings = settings(self.car)
+        fixed = {text.partition("=")[0] for text in drive.overrides}
+        self.settings = {path: setting for path, setting in settings(self.car).items() if path not in fixed}
         self.changes: dict[str, float] = {}
         self.message = ""
         self.computing = threading.Lock()

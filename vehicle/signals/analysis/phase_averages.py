@@ -99,27 +99,34 @@ class PhaseInputs:
 
 
 def phase_inputs(
-    time_step: float, record: Mapping[str, Real], delays: Mapping[str, float] | None = None, *, seed: int = 1
+    time_step: float,
+    record: Mapping[str, Real],
+    delays: Mapping[str, float] | None = None,
+    *,
+    interval: float | None = None,
+    seed: int = 1,
 ) -> PhaseInputs:
     """Return inputs with the density of a record and random phases; all inputs move alike, each after its delay.
 
     Args:
-        time_step: sampling interval [s].
+        time_step: sampling interval of the record [s].
         record: samples of each input, (n,); the density is their mean.
         delays: delay of each input to the first [s]; 0 by default.
+        interval: sampling interval of the inputs and of the responses to them [s]; that of the record by default.
         seed: seed of the phases.
 
     Raises:
         DataError: the record is shorter than a period, or no input moves.
     """
-    period, lead, change = (round(length / time_step) for length in (PERIOD, LEAD, CHANGE))
+    interval = interval or time_step
+    period, lead, change = (round(length / interval) for length in (PERIOD, LEAD, CHANGE))
     count = next(iter(record.values())).size
-    if count <= period:
+    if count * time_step <= PERIOD:
         raise DataError(f"record: found {count * time_step:g} s, must be longer than {PERIOD:g} s for an FRF")
     estimate = power_spectral_density(time_step, np.array(list(record.values())), window_s=PERIOD)
-    highest = min(round(HIGHEST * PERIOD), period // 2 - 1)
-    density = estimate.density.mean(axis=0)[1 : highest + 1]
+    highest = min(round(HIGHEST * PERIOD), period // 2 - 1, len(estimate.frequency) - 2)
     frequency = np.arange(1, highest + 1) / PERIOD
+    density = np.interp(frequency, estimate.frequency, estimate.density.mean(axis=0))
     weighted = density * frequency**4
     if not weighted.max() > 0.0:
         raise DataError("record: no input moves, so there is no FRF; use an input that moves a plate")
@@ -141,7 +148,7 @@ def phase_inputs(
     evaluated = np.flatnonzero(weighted >= DRIVEN * weighted.max()) + 1
     first = 0.5 * period * amplitude * np.exp(1j * phase)
     return PhaseInputs(
-        time_step=time_step,
+        time_step=interval,
         samples=samples,
         frequency=frequency[evaluated - 1],
         lines=evaluated,
