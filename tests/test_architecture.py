@@ -81,6 +81,7 @@ ROOMS: dict[str, set[str]] = {
         "comparison",
         "excitation",
         "fmu",
+        "mounts",
         "optimisation",
         "output",
         "parameters",

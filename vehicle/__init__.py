@@ -72,6 +72,8 @@ if TYPE_CHECKING:
     from vehicle.signals.records.reader import read as read
     from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
+    from vehicle.studies.mounts.mount_fit import MountFit as MountFit
+    from vehicle.studies.mounts.mount_fit import fit_mount as fit_mount
     from vehicle.studies.optimisation.car_search import optimise as optimise
     from vehicle.studies.optimisation.search_result import FoundCars as FoundCars
     from vehicle.studies.replication.drive_files import save_drive as save_drive
@@ -96,6 +98,7 @@ _MODULES = {
     "FoundCars": "vehicle.studies.optimisation.search_result",
     "FoundDrive": "vehicle.studies.replication.drive_search",
     "MissingPartError": "vehicle.errors",
+    "MountFit": "vehicle.studies.mounts.mount_fit",
     "OutputError": "vehicle.errors",
     "RecordComfort": "vehicle.signals.records.record_comfort",
     "Road": "vehicle.runs.car.road",
@@ -108,6 +111,7 @@ _MODULES = {
     "compare": "vehicle.runs.comparison.compared_run",
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
     "evaluate_comfort": "vehicle.signals.records.record_comfort",
+    "fit_mount": "vehicle.studies.mounts.mount_fit",
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",

@@ -14,20 +14,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
-from vehicle.studies.mounts.mount_laws import LAWS, Complex, MountLaw, Vector
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness, read_stiffness
+from vehicle.studies.mounts.mount_laws import LAWS, Complex, MountLaw, Stiffness, Vector
 
 WIDEST = float(np.log(1e6))
 """Maximum distance of ln(parameter) from its start."""
 
 DETERMINED = 0.5
 """Maximum relative standard error of a parameter that the points determine."""
+
+REFINED = 2
+"""Number of fits of an approximation that are continued."""
 
 FLOOR = 1e-12
 """Minimum mean square of the residuals in the criterion: below it are the errors of the arithmetic."""
@@ -76,17 +82,25 @@ def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
     """
     omega, amplitude, measured = 2.0 * np.pi * data.frequency, data.amplitude, data.stiffness
 
-    def residuals(logarithms: Vector) -> Vector:
-        error = np.log(law.stiffness(np.exp(logarithms), omega, amplitude) / measured)
-        return np.concatenate([error.real, error.imag])
+    def fit(stiffness: Stiffness, start: Vector, tolerance: float = 1e-12, evaluations: int | None = None) -> Any:
+        def residuals(logarithms: Vector) -> Vector:
+            error = np.log(stiffness(np.exp(logarithms), omega, amplitude) / measured)
+            return np.concatenate([error.real, error.imag])
 
-    best: Any = None
-    for start in np.log(law.starts(omega, amplitude, measured)):
+        limits = dict.fromkeys(("xtol", "ftol", "gtol"), tolerance)
         with np.errstate(over="ignore", invalid="ignore"):
-            fit = scipy.optimize.least_squares(
-                residuals, start, bounds=(start - WIDEST, start + WIDEST), xtol=1e-12, ftol=1e-12, gtol=1e-12
+            return scipy.optimize.least_squares(
+                residuals, start, bounds=(start - WIDEST, start + WIDEST), max_nfev=evaluations, **limits
             )
-        best = fit if best is None or fit.cost < best.cost else best
+
+    starts = np.log(law.starts(omega, amplitude, measured))
+    if law.approximation and law.refined:
+        rough = [fit(law.approximation, start, 1e-4, 20) for start in starts]
+        rough.sort(key=lambda each: each.cost)
+        fits = [fit(law.refined(), each.x, 1e-7, 50) for each in rough[:REFINED]]
+    else:
+        fits = [fit(law.stiffness, start) for start in starts]
+    best = min(fits, key=lambda each: each.cost)
     count, size = len(best.fun), len(best.x)
     squares = 2.0 * float(best.cost)
     _, singular, directions = np.linalg.svd(best.jac, full_matrices=False)
@@ -104,11 +118,28 @@ def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
     )
 
 
-def fit_mount(data: MeasuredStiffness, laws: Sequence[str] = tuple(LAWS)) -> list[MountFit]:
-    """Fit laws, and sort them by BIC, the chosen one first.
+def fit_mount(points: MeasuredStiffness | str | PathLike[str], laws: Sequence[str] | None = None) -> list[MountFit]:
+    """Fit laws of a mount to measured dynamic stiffness and loss angle, and sort them by BIC, the best law first.
 
     Args:
-        data: measured points.
-        laws: names of the laws; all by default.
+        points: table of the points, or the points themselves, see `read_stiffness`.
+        laws: names of laws in `LAWS`; all by default, "decoupler" for two amplitudes or more.
+
+    Returns:
+        The fits; `fits[0].values` are the parameters of the best law in the order of `fits[0].law.parameters`.
+
+    Raises:
+        ConfigurationError: an unknown law, or the file does not exist.
+        DataError: a bad table, or one amplitude for the law "decoupler".
     """
-    return sorted((fit_law(data, LAWS[name]) for name in laws), key=lambda fit: fit.criterion)
+    data = points if isinstance(points, MeasuredStiffness) else read_stiffness(Path(points))
+    unknown = [name for name in laws or () if name not in LAWS]
+    if unknown:
+        raise ConfigurationError(f"law {unknown[0]!r}: must be {', '.join(LAWS)}")
+    several = len(data.levels()) > 1
+    if laws and "decoupler" in laws and not several:
+        raise DataError(
+            "law 'decoupler': found points at one amplitude, must be at two or more; measure within and beyond the gap"
+        )
+    chosen = laws or [name for name in LAWS if several or name != "decoupler"]
+    return sorted((fit_law(data, LAWS[name]) for name in chosen), key=lambda fit: fit.criterion)

@@ -4,6 +4,7 @@ All are first harmonics under x = A cos(w t):
 
     rubber       K = K1 + i w D2 K2 / (K2 + i w D2) + Kf(A)
     hydromount   K = K1 + i w D1 + Kb Z / (Kb + Z),  Z = -w^2 mt + i w ct
+    decoupler    hydromount with a decoupler parallel to its track: `vehicle.studies.mounts.decoupler_balance`
 
 Kf is the friction of rubber with Berg's curve of first loading, P(x) = F x/(x2 + x), and Masing's rule for reversals:
 F -+ 2 P(|x - x_r|/2) from the point of reversal. Its first harmonic, with q = sqrt(x2 (x2 + A)), and its loss a cycle,
@@ -25,8 +26,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.studies.mounts.decoupler_balance import DecouplerBalance, decoupled_stiffness, describing_stiffness
+
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
+Stiffness = Callable[[Vector, Vector, Vector], Complex]
+"""Function from parameters (p,), angular frequencies [rad/s] and amplitudes [m] to K [N/m], all (m,)."""
 
 SMALL = 1e-3
 """Amplitude over stroke below which the series of the friction stiffness is used: its closed form cancels there."""
@@ -57,14 +62,18 @@ class MountLaw:
     Attributes:
         name: name of the law.
         parameters: name to unit of each parameter.
-        stiffness: function from parameters (p,), angular frequencies [rad/s] and amplitudes [m] to K [N/m], all (m,).
+        stiffness: dynamic stiffness.
         starts: function from angular frequencies, amplitudes and measured K to starting values of fits, (k, p).
+        approximation: faster approximation of `stiffness`, with which fits begin; None without.
+        refined: makes a function `stiffness` that starts from its previous solution; None without.
     """
 
     name: str
     parameters: dict[str, str]
-    stiffness: Callable[[Vector, Vector, Vector], Complex]
+    stiffness: Stiffness
     starts: Callable[[Vector, Vector, Complex], Vector]
+    approximation: Stiffness | None = None
+    refined: Callable[[], Stiffness] | None = None
 
 
 def _rubber(values: Vector, omega: Vector, amplitude: Vector) -> Complex:
@@ -105,6 +114,36 @@ def _hydromount_starts(omega: Vector, amplitude: Vector, stiffness: Complex) -> 
     )
 
 
+def _decoupler_starts(omega: Vector, amplitude: Vector, stiffness: Complex) -> Vector:
+    """Return starts with the track of the largest amplitudes, and gaps between and below the amplitudes; (k, 10)."""
+    large = amplitude > 0.9 * np.max(amplitude)
+    tracks = _hydromount_starts(omega[large], amplitude[large], stiffness[large])
+
+    def distance(track: Vector) -> float:
+        fitted = _hydromount(track, omega[large], amplitude[large])
+        return float(np.sum(np.abs(np.log(fitted / stiffness[large])) ** 2))
+
+    static, dashpot, chamber, mass, flow = min(tracks, key=distance)
+    gaps = np.geomspace(0.5 * np.min(amplitude), 0.8 * np.max(amplitude), 4)
+    disc = chamber / (3.0 * np.max(omega)) ** 2
+    leak, membrane = 0.2 * np.sqrt(chamber * disc), 0.02 * chamber
+    return np.array(
+        [
+            [static, dashpot, chamber, mass, flow, gap, disc, leak, membrane, ratio * chamber]
+            for gap in gaps
+            for ratio in (1.0, 4.0)
+        ]
+    )
+
+
+TRACK_PARAMETERS = {
+    "stiffness": "N/m",
+    "damping": "N s/m",
+    "chamber_stiffness": "N/m",
+    "track_mass": "kg",
+    "track_damping": "N s/m",
+}
+
 LAWS = {
     law.name: law
     for law in (
@@ -122,15 +161,24 @@ LAWS = {
         ),
         MountLaw(
             name="hydromount",
-            parameters={
-                "stiffness": "N/m",
-                "damping": "N s/m",
-                "chamber_stiffness": "N/m",
-                "track_mass": "kg",
-                "track_damping": "N s/m",
-            },
+            parameters=TRACK_PARAMETERS,
             stiffness=_hydromount,
             starts=_hydromount_starts,
+        ),
+        MountLaw(
+            name="decoupler",
+            parameters=TRACK_PARAMETERS
+            | {
+                "decoupler_gap": "m",
+                "decoupler_mass": "kg",
+                "decoupler_damping": "N s/m",
+                "decoupler_stiffness": "N/m",
+                "decoupler_seat": "N/m",
+            },
+            stiffness=decoupled_stiffness,
+            starts=_decoupler_starts,
+            approximation=describing_stiffness,
+            refined=DecouplerBalance,
         ),
     )
 }

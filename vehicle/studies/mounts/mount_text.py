@@ -14,10 +14,14 @@ from vehicle.studies.mounts.mount_fit import MountFit
 VECTORS = ("stiffness", "damping", "friction_force", "friction_stroke")
 """Parameters of a vehicle file with a value for each axis."""
 
-BEFORE = {"rubber": {"damping": "N s/m"}, "hydromount": {}}
+BEFORE = {"rubber": {"damping": "N s/m"}, "hydromount": {}, "decoupler": {}}
 """Parameters that the vehicle file needs in addition to those of a law, which are zero."""
 
-TITLES = {"rubber": "rubber with Maxwell branch and friction", "hydromount": "hydromount with inertia track"}
+TITLES = {
+    "rubber": "rubber with Maxwell branch and friction",
+    "hydromount": "hydromount with inertia track",
+    "decoupler": "hydromount with inertia track and decoupler",
+}
 """Names of the laws in sentences."""
 
 
@@ -87,6 +91,12 @@ def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
     best = fits[0]
     others = f", the least BIC, by {fits[1].criterion - best.criterion:.1f}" if len(fits) > 1 else ""
     lines.append(f"chosen: {TITLES[best.law.name]}{others}")
+    criteria = {fit.law.name: fit.criterion for fit in fits}
+    if best.law.name == "hydromount" and "decoupler" in criteria:
+        lines.append(
+            "the points do not show a decoupler: its five parameters reduce the residuals by less than BIC asks for, "
+            f"which is larger by {criteria['decoupler'] - best.criterion:.1f} with them"
+        )
     lines.append(f"{'parameter':<20}{'value':>12}   standard error")
     for (name, unit), value, error, determined in zip(
         best.law.parameters.items(), best.values, best.errors, best.determined, strict=True
