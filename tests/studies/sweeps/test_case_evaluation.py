@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
+from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
 from vehicle.signals.analysis.seat_value import weighted_rms_of
@@ -120,3 +121,15 @@ def test_cars_with_rubber_friction_are_run_with_mujoco():
     plain, stepped, rejected = evaluate(cases, MEASURE)
     assert (plain.engine, stepped.engine) == ("reduced", "mujoco") and math.isfinite(stepped.values["unweighted"])
     assert "rubber friction" in rejected.reason
+
+
+def test_standing_and_rolling_cars_are_simulated_apart():
+    # Only rolling cars have forces of the current wheel load on the slope. Other elements are another group of a batch.
+    stop = ("front.damper.stop.displacement=[-0.1, -0.05, 0.05]", "front.damper.stop.force=[-9000.0, 0.0, 0.0]")
+    cases = [
+        Case(source=ROADS[0], vehicle=vehicle_file("focus_road"), overrides=overrides, engine="reduced")
+        for overrides in (stop, ("driving.speed=22.0",))
+    ]
+    results = evaluate(cases, MEASURE)
+    assert not any(result.reason for result in results)
+    assert numbers(evaluate(cases[::-1], MEASURE)) == numbers(results)[::-1]

@@ -28,6 +28,7 @@ from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.dispatcher import DIED, overdue
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.measure import ComfortMeasure
+from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep import sweep
 
 FRICTION = {"damper.coulomb_friction": [100.0, 125.0]}
@@ -188,6 +189,7 @@ SCRIPT = """
 from pathlib import Path
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad
 from tests.studies.sweeps.sweep_samples import grid
+from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sweep import sweep
 
 if __name__ == "__main__":
@@ -341,3 +343,12 @@ def test_a_cluster_without_response_is_named(monkeypatch):
     monkeypatch.setattr(distributed, "Client", nobody)
     with pytest.raises(ConfigurationError, match="dask://nowhere:1: no response from a scheduler"):
         executor_factory("dask://nowhere:1", 1)()
+
+
+def test_rows_of_a_sweep_may_have_different_parameters():
+    # Presliding in the second row gives the stiffness a meaning there: no message on the first row.
+    stiff = {"damper.presliding_stiffness": 5e5}
+    plan = plan_sweep(Car.load(), [stiff, {**stiff, "damper.friction_law": "presliding"}], ShortRoad())
+    assert [len(case.overrides) for case in plan.cases] == [1, 2] and plan.notes == ()
+    (note,) = plan_sweep(Car.load(), [stiff, {"damper.viscous": 2e3, **stiff}], ShortRoad()).notes
+    assert "without effect" in note

@@ -173,10 +173,11 @@ def _require(vehicle: Vehicle, signal: Signal, measure: BatchMeasure) -> None:
 
 
 def batch_key(car: Car) -> Hashable:
-    """Return the key shared by all cars of a batch: channel and element names, and the sample rate."""
+    """Return the key shared by all cars of a batch: channel and element names, sample rate, rolling or standing."""
     vehicle = car.vehicle
     dampers = tuple(damper.name for damper in vehicle.composition.dampers)
-    return vehicle.wheels, dampers, vehicle.channels, tuple(car.matrices.body_rows), vehicle.solver.record_rate
+    bodies, rolling = tuple(car.matrices.body_rows), vehicle.driving.rolling
+    return vehicle.wheels, dampers, vehicle.channels, bodies, vehicle.solver.record_rate, rolling
 
 
 def measured_batch(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from operator import and_
 from pathlib import Path
 from typing import Any
 
@@ -206,16 +205,18 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
 
 def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return a message for each varied parameter without effect; empty if laws vary, which may switch it on."""
-    varied, is_law = [False] * len(changes[0]), [False] * len(changes[0])
-    first = [text.partition("=")[2].strip() for text in changes[0]]
+    first = _values(changes[0])
     for change in changes:
-        for column, text in enumerate(change):
-            value = text.partition("=")[2].strip()
-            varied[column] = varied[column] or value != first[column]
-            is_law[column] = is_law[column] or value[:1].isalpha()
-    if any(map(and_, varied, is_law)):
-        return ()
+        values = _values(change)
+        different = [(first.get(path, ""), values.get(path, "")) for path in {**first, **values}]
+        if any(old != new and (old[:1].isalpha() or new[:1].isalpha()) for old, new in different):
+            return ()
     try:
         return idle_parameters(load_vehicle(file, [*overrides, *changes[0]]), changes[0])
     except ConfigurationError:
         return ()  # the row contains the reason
+
+
+def _values(change: Sequence[str]) -> dict[str, str]:
+    """Return the text of the value of each path of a variation."""
+    return {path.strip(): value.strip(" \"'") for path, _, value in (text.partition("=") for text in change)}
