@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.legend_room import make_room
 from vehicle.drawing.rendering.figure import COLOURS, FADED, fading, frf_axes, saved_figure, wrapped_phase
 from vehicle.runs.output.folder import write_whole
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -108,6 +109,8 @@ def figure_file(
     try:
         with saved_figure(draft, size, title, textwrap.fill(caption, int(14.5 * size[0])), placed=placed) as figure:
             yield figure
+            for panel in figure.axes:
+                make_room(panel)
         write_whole(path, lambda temporary: draft.replace(temporary))
     finally:
         draft.unlink(missing_ok=True)

@@ -20,11 +20,11 @@ BUMP = "Half-sine bump 0.05 m high, 0.5 m long"
 
 TIME_FIGURES: tuple[tuple[str, tuple[str, ...], Motion, float, str], ...] = (
     ("figure_05", ("upper_limb", "lower_limb"), "displacement", 1e3, "displacement [mm]"),
-    ("figure_06", ("upper_limb", "lower_limb"), "acceleration", 1.0, "acceleration [m/s2]"),
+    ("figure_06", ("upper_limb", "lower_limb"), "acceleration", 1.0, "acceleration [m/s²]"),
     ("figure_07", ("front_body", "rear_body"), "displacement", 1e3, "displacement [mm]"),
     ("figure_08", ("pitch",), "displacement", 1e3, "pitch angle [mrad]"),
     ("figure_09", ("front_wheel", "rear_wheel"), "displacement", 1e3, "displacement [mm]"),
-    ("figure_10", ("seat", "body"), "acceleration", 1.0, "acceleration [m/s2]"),
+    ("figure_10", ("seat", "body"), "acceleration", 1.0, "acceleration [m/s²]"),
 )
 """File, panels, quantity, factor, axis."""
 

@@ -33,8 +33,8 @@ Run = Callable[[Runs, float], History]
 """From the amplitude of a sine, or the RMS of a road [m]."""
 
 ACCELERATIONS: dict[str, Quantity] = {
-    "body acceleration [m/s2]": lambda h: h.acceleration("body"),
-    "wheel acceleration [m/s2]": lambda h: h.acceleration("wheel"),
+    "body acceleration [m/s²]": lambda h: h.acceleration("body"),
+    "wheel acceleration [m/s²]": lambda h: h.acceleration("wheel"),
 }
 
 FRICTION: dict[str, Run] = {
@@ -105,7 +105,7 @@ def _roads(
             axes[column].set_title(f"road RMS {1e3 * level:g} mm", fontsize=10)
         for panel in axes:
             panel.set_xlabel("frequency [Hz]")
-            panel.set_ylabel("PSD of the body acceleration [(m/s2)2/Hz]", fontsize=8)
+            panel.set_ylabel("PSD of the body acceleration [(m/s²)²/Hz]", fontsize=8)
             panel.legend(fontsize=8)
 
 
@@ -152,7 +152,7 @@ def figure_2_6(runs: Runs, path: Path) -> None:
         time = STEP * np.arange(road.size)
         lines(axes[0], time, [(None, road, COLOURS[0], "-")], xlabel="time [s]", ylabel="road displacement [m]")
         speed = density * (2 * np.pi * frequency) ** 2
-        curves = _curves({"displacement [m2/Hz]": density, "velocity [(m/s)2/Hz]": speed})
+        curves = _curves({"displacement [m²/Hz]": density, "velocity [(m/s)²/Hz]": speed})
         lines(axes[1], frequency, curves, xlabel="frequency [Hz]", ylabel="PSD")
         axes[1].set(xscale="log", yscale="log")
 
@@ -166,7 +166,7 @@ def figure_2_9(runs: Runs, path: Path) -> None:
     quantities: dict[str, Quantity] = {
         "displacement [m]": lambda h: h.displacement("mass"),
         "velocity [m/s]": lambda h: h.velocity("mass"),
-        "acceleration [m/s2]": lambda h: h.acceleration("mass"),
+        "acceleration [m/s²]": lambda h: h.acceleration("mass"),
     }
     with chart(path, caption, rows=3, columns=2, size=(9, 8)) as axes:
         for column, stretch in enumerate(((0.0, 0.5), (0.03, 0.045))):
@@ -193,7 +193,7 @@ def figure_2_14(runs: Runs, path: Path) -> None:
         for level, color in zip(LEVELS, COLOURS, strict=True):
             frequency, density = runs.spectrum("no engine", level)
             axes[0].loglog(frequency, density, color=color, linewidth=1.3, label=f"{1e3 * level:g} mm")
-        axes[0].set(xlabel="frequency [Hz]", ylabel="PSD of the body acceleration [(m/s2)2/Hz]")
+        axes[0].set(xlabel="frequency [Hz]", ylabel="PSD of the body acceleration [(m/s²)²/Hz]")
         axes[0].legend(fontsize=8, title="road RMS")
 
 
@@ -223,7 +223,7 @@ def figure_2_18(runs: Runs, path: Path) -> None:
             history = runs.sine(amplitude, engine="linear").during(3.0)
             body = history.acceleration("body")
             relative = {f"{name} - body": history.acceleration(name) - body for name in ("engine", "wheel")}
-            title, label = f"sine of {1e3 * amplitude:g} mm, 1 Hz", "relative acceleration [m/s2]"
+            title, label = f"sine of {1e3 * amplitude:g} mm, 1 Hz", "relative acceleration [m/s²]"
             lines(panel, history.time, _curves(relative), xlabel="time [s]", ylabel=label, title=title)
 
 

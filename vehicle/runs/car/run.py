@@ -301,5 +301,5 @@ class Run:
 
 
 def _public(name: str) -> Any:
-    """Return a function of `vehicle` that stands above this room; it is imported at the call, not with this module."""
+    """Return a function of `vehicle` from a higher package; the import is at the call, not with this module."""
     return getattr(import_module("vehicle"), name)
