@@ -126,8 +126,9 @@
     const head = document.createElement("thead"), body = document.createElement("tbody");
     head.append(row("th", ["seat rail and dampers", "B, before", "A, now", "change"]));
     for (const [text, value, digits] of rows) {
-      const a = value(now), b = value(before);
-      body.append(row("td", [text, short(b, digits), short(a, digits), b ? `${percent(a, b).toFixed(1)} %` : "–"]));
+      // The table has its size before the first record.
+      const [a, b] = now ? [value(now), value(before)] : [NaN, NaN];
+      body.append(row("td", now ? [text, short(b, digits), short(a, digits), b ? `${percent(a, b).toFixed(1)} %` : "–"] : [text, "–", "–", "–"]));
     }
     byId("table").replaceChildren(head, body);
   }
@@ -226,6 +227,7 @@
   }
 
   controls();
+  table();
   window.addEventListener("resize", () => now && show());
   byId("frf").hidden = !data.frf;
   request("record");
