@@ -188,7 +188,7 @@
         for (const digit of digits) if (digit * 10 ** power >= low * 0.999 && digit * 10 ** power <= high * 1.001) found.push(digit * 10 ** power);
       return found;
     }
-    const rough = (high - low) / 4, size = 10 ** Math.floor(Math.log10(rough)), step = size * [1, 2, 5, 10].find((digit) => digit * size >= rough);
+    const rough = (high - low) / 5, size = 10 ** Math.floor(Math.log10(rough)), step = size * [1, 2, 5, 10].find((digit) => digit * size >= rough);
     const found = [];
     for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(k * step);
     return found;
