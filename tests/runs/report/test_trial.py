@@ -254,13 +254,26 @@ def test_density_and_frf(browser):
     assert np.median(np.array(Page(browser, rubbing, signal).ask("response")["error"])) > 1e-3 * np.max(np.abs(wanted))
 
 
+def test_plates_without_a_common_road_have_tracks_of_their_own(browser):
+    """A rear wheel does not follow the front wheel: no slider for the speed, and each plate has its own heights."""
+    car, drive, skip = driven()
+    heights = dict(drive.signal.displacement)
+    heights["rl"] = np.concatenate([np.zeros(25), heights["rl"][:-25]])
+    other = page_input(car, dataclasses.replace(drive.signal, displacement=heights), drive.road)
+    assert other.road is None and len(other.tracks) == 4
+    page = Page(browser, car, other.at_ratio(), skip=skip)
+    assert "speed" not in page.sliders and not json.loads(page.text)["frf"]
+    found = deviations(page.ask("record"), car, other.at_ratio(), skip)
+    assert found["channel"] < 1e-9 and found["comfort"] < 1e-6 and found["slip"] == 0.0, found
+
+
 def test_frf_of_a_road(browser):
     """The FRF of a linear car is the sum of those of its plates, the rear wheels later by distance over speed."""
     car, drive, skip = driven()
     assert drive.road is not None
     car = car.with_({f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")})
     page = Page(browser, car, drive.at_ratio(), skip=skip, road=drive.road)
-    response = page.ask("response", level=0.25)
+    response = page.ask("response", level=0.01)
     found = np.array(response["re"]) + 1j * np.array(response["im"])
     omega, speed = 2.0 * np.pi * np.array(response["frequency"]), drive.road.speed / 3.6
     wanted = sum(
@@ -268,8 +281,8 @@ def test_frf_of_a_road(browser):
         * np.exp(-1j * omega * behind / speed)
         for wheel, behind in drive.road.behind.items()
     )
-    # The present load on a slope is not in the matrices.
-    assert np.max(np.abs(found - wanted)) < 5e-3 * np.max(np.abs(wanted))
+    # The change of the load on a slope is not in the matrices; its effect is proportional to the level: 1.7 % at 1.
+    assert np.max(np.abs(found - wanted)) < 3e-4 * np.max(np.abs(wanted))
 
 
 def test_the_moving_picture(browser):

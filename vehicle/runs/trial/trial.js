@@ -126,8 +126,9 @@
     const head = document.createElement("thead"), body = document.createElement("tbody");
     head.append(row("th", ["seat rail and dampers", "B, before", "A, now", "change"]));
     for (const [text, value, digits] of rows) {
-      const a = value(now), b = value(before);
-      body.append(row("td", [text, short(b, digits), short(a, digits), b ? `${percent(a, b).toFixed(1)} %` : "–"]));
+      // The table has its size before the first record.
+      const [a, b] = now ? [value(now), value(before)] : [NaN, NaN];
+      body.append(row("td", now ? [text, short(b, digits), short(a, digits), b ? `${percent(a, b).toFixed(1)} %` : "–"] : [text, "–", "–", "–"]));
     }
     byId("table").replaceChildren(head, body);
   }
@@ -187,7 +188,7 @@
         for (const digit of digits) if (digit * 10 ** power >= low * 0.999 && digit * 10 ** power <= high * 1.001) found.push(digit * 10 ** power);
       return found;
     }
-    const rough = (high - low) / 4, size = 10 ** Math.floor(Math.log10(rough)), step = size * [1, 2, 5, 10].find((digit) => digit * size >= rough);
+    const rough = (high - low) / 5, size = 10 ** Math.floor(Math.log10(rough)), step = size * [1, 2, 5, 10].find((digit) => digit * size >= rough);
     const found = [];
     for (let k = Math.ceil(low / step); k * step <= high; k++) found.push(k * step);
     return found;
@@ -226,6 +227,7 @@
   }
 
   controls();
+  table();
   window.addEventListener("resize", () => now && show());
   byId("frf").hidden = !data.frf;
   request("record");

@@ -1,0 +1,119 @@
+"""The section "Try it" as a reader sees it: moving picture, sliders with fixed positions, steady layout, size."""
+
+from __future__ import annotations
+
+import io
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from vehicle.runs.car import Car, Road
+from vehicle.runs.trial.page_input import LONGEST, RunRoad
+from vehicle.runs.trial.trial_data import PAGE, WORKER, scripts, trial_data
+from vehicle.signals.excitation.input_files import find_input
+from vehicle.signals.excitation.signal_file import read_signal
+
+LARGEST = 600_000
+"""Maximum number of bytes that the section adds to a report."""
+
+MOVE = """
+const slider = document.getElementById(`trial-${arguments[0]}`);
+slider.value = arguments[1];
+slider.dispatchEvent(new Event("input"));
+"""
+
+HEIGHT = """
+const section = document.getElementById("trial");
+return [document.getElementById("trial-words").textContent, section.getBoundingClientRect().height];
+"""
+
+
+def picture(browser: Any) -> np.ndarray:
+    """Return the moving picture as it is seen, without the line of text on top."""
+    png = browser.find_element("id", "trial-picture").screenshot_as_png
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=int)[20:]
+
+
+def wait(condition: Callable[[], bool]) -> None:
+    """Wait until a condition holds."""
+    for _ in range(300):
+        if condition():
+            return
+        time.sleep(0.1)
+    pytest.fail("the page did not answer")
+
+
+def words(browser: Any) -> str:
+    return str(browser.find_element("id", "trial-words").text)
+
+
+def drawn(shown: np.ndarray) -> float:
+    """Return the share of red points."""
+    red, green, blue = np.moveaxis(shown, 2, 0)
+    return float(np.mean((red > 150) & (green < 120) & (blue < 120)))
+
+
+def test_the_car_moves_and_stops(browser):
+    browser.execute_script("document.getElementById('trial-picture').scrollIntoView()")
+    wait(lambda: drawn(picture(browser)) > 0.005)
+    first = picture(browser)
+    time.sleep(0.5)
+    assert np.mean(np.abs(first - picture(browser)).max(axis=2) > 30) > 0.002
+    browser.find_element("id", "trial-play").click()
+    still = picture(browser)
+    time.sleep(0.3)
+    assert np.array_equal(still, picture(browser))
+    # Another enlargement is another picture, and is said.
+    browser.execute_script(MOVE, "factor", 0)
+    assert not np.array_equal(still, picture(browser))
+    assert browser.find_element("id", "trial-factor-words").text == "Displacements in the picture: 1 times"
+    browser.find_element("id", "trial-play").click()
+
+
+def test_fixed_positions_change_one_at_a_time(browser):
+    browser.execute_script(MOVE, "tyres-vertical", 2)
+    wait(lambda: "tyres, vertical stiffness factor 1 → 1.2" in words(browser))
+    assert "less comfort" in words(browser) or "more comfort" in words(browser)
+    browser.execute_script(MOVE, "main-springs", 0)
+    wait(lambda: "main springs, stiffness factor 1 → 0.8" in words(browser))
+    assert "tyres" not in words(browser)
+    assert browser.find_element("id", "trial-tyres-vertical").get_attribute("value") == "1"
+    browser.execute_script(MOVE, "main-springs", 1)
+    wait(lambda: words(browser).startswith("Move a slider."))
+
+
+def test_nothing_shifts(browser):
+    """The section has its height before the first record, and keeps it when sliders move."""
+    for _ in range(5):
+        browser.refresh()
+        before, height = browser.execute_script(HEIGHT)
+        if before == "Computing ...":
+            break
+    assert before == "Computing ..."
+    wait(lambda: browser.find_element("id", "trial-time-used").text != "")
+    heights = [browser.execute_script(HEIGHT)[1]]
+    for index in (0, 2, 1):
+        browser.execute_script(MOVE, "damper-mounts", index)
+        time.sleep(0.7)
+        heights.append(browser.execute_script(HEIGHT)[1])
+    assert np.allclose(heights, height, atol=1.0), (height, heights)
+
+
+@pytest.mark.parametrize("vehicle", ["focus", "focus_road"])
+def test_the_section_is_small(vehicle):
+    """Numbers of all cars of the page and its scripts, with a record of the full length."""
+    car, options = Car.load(vehicle), dict[str, Any]()
+    if vehicle == "focus":
+        signal = read_signal(find_input("low.csv"), wheel="fl")
+    else:
+        ride = Road("B", speed=80, duration=LONGEST + 1.0).under(car.vehicle, car.overrides)
+        car, signal = car.with_(ride.overrides), ride.signal()
+        road = RunRoad(road_class="B", speed=80.0, behind={wheel: behind for wheel, behind, _ in ride.wheels})
+        options = {"skip": ride.skip, "road": road}
+    text = trial_data(car, signal, wheel="fl", **options)
+    size = len(text) + len(scripts(WORKER)) + len(scripts(PAGE))
+    assert size < (0.4 if vehicle == "focus" else 1.0) * LARGEST, size
