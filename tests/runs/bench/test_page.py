@@ -226,8 +226,8 @@ def test_a_mode_is_shown_and_absurd_choices_are_not(bench):
             bench.set(client, handle, value)
             bench.wait_for(lambda: "must be" in bench.page._note.content)
             bench.page._say("")
-        for value in (float("nan"), 1e300):
-            bench.set(client, view.amplitude, value)
+        for size in (float("nan"), 1e300):
+            bench.set(client, view.amplitude, size)
         bench.set(client, view.kind, RUN)
         bench.wait_for(lambda: not view.modes)
         bench.set(client, view.slower, float("nan"))
