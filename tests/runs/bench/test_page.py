@@ -25,6 +25,8 @@ from websockets.sync.client import connect  # noqa: E402
 
 from vehicle.runs.bench.page import Page  # noqa: E402
 from vehicle.runs.bench.server import close_server, open_server  # noqa: E402
+from vehicle.runs.bench.stage import CYCLE  # noqa: E402
+from vehicle.runs.bench.view import RUN  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 """Rejected and killed clients leave their sockets to the garbage collector."""
@@ -63,9 +65,12 @@ class Bench:
         return client
 
     def send(self, client, value, path=FRICTION):
-        slider = self.page._sliders[path]
+        self.set(client, self.page._sliders[path], value)
+
+    def set(self, client, handle, value):
+        """Set the value of an element as a browser does."""
         client.send(
-            msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": slider._impl.uuid, "updates": {"value": value}})
+            msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": handle._impl.uuid, "updates": {"value": value}})
         )
 
     def wait_for(self, condition, seconds=10.0):
@@ -185,9 +190,7 @@ def test_files_are_written_by_a_click_alone(bench):
             handle for handle in bench.server.gui._gui_input_handle_from_uuid.values()
             if getattr(handle, "label", "") == "Write vehicle file"
         )  # fmt: skip
-        client.send(
-            msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": button._impl.uuid, "updates": {"value": True}})
-        )
+        bench.set(client, button, True)
         bench.wait_for(lambda: (bench.folder / "car" / "vehicle.toml").exists())
         bench.wait_for(lambda: "written" in bench.page._note.content)
     assert "coulomb_friction = 85" in (bench.folder / "car" / "vehicle.toml").read_text()
@@ -209,6 +212,28 @@ def test_frames_are_sent_to_an_open_page(bench):
     with bench.client() as client:
         received(client)
         bench.wait_for(lambda: bench.page.stage.frames > before + 10)
+
+
+def test_a_mode_is_shown_and_absurd_choices_are_not(bench):
+    view, stage = bench.page.view, bench.page.stage
+    with bench.client() as client:
+        received(client)
+        bench.set(client, view.kind, "modes, dampers stuck")
+        bench.wait_for(lambda: view.modes and view.mode.value == view.mode.options[0])
+        bench.set(client, view.mode, view.mode.options[3])
+        bench.wait_for(lambda: stage.slower == CYCLE * view.modes[3].frequency)
+        for handle, value in ((view.mode, "no mode"), (view.kind, "x" * 1000)):
+            bench.set(client, handle, value)
+            bench.wait_for(lambda: "must be" in bench.page._note.content)
+            bench.page._say("")
+        for size in (float("nan"), 1e300):
+            bench.set(client, view.amplitude, size)
+        bench.set(client, view.kind, RUN)
+        bench.wait_for(lambda: not view.modes)
+        bench.set(client, view.slower, float("nan"))
+        before = stage.frames
+        bench.wait_for(lambda: stage.frames > before + 10)
+        bench.follows(client, 95.0)
 
 
 def test_bad_ports_are_refused():
