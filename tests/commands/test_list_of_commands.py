@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -77,3 +78,19 @@ def test_modules_run_as_commands(name, tmp_path):
     )
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.startswith("error: ") and done.stderr.endswith(f"see python -m vehicle {name} --help\n")
+
+
+def options_of(parser: argparse.ArgumentParser) -> set[str]:
+    """Return the long options of a command and of its subcommands."""
+    names = {name for action in parser._actions for name in action.option_strings if name.startswith("--")}
+    inner = [action.choices for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    return names.union(*(options_of(each) for choices in inner for each in choices.values()))
+
+
+def test_every_option_is_on_a_page():
+    """A page names both axles as `--track-front`, `-rear`."""
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
+    written = set(re.findall(r"--[a-z][a-z-]*", pages))
+    written |= {name.removesuffix("-front") + "-rear" for name in written if name.endswith("-front")}
+    options = set().union(*(options_of(import_module(module_of(name)).parser()) for name in COMMANDS))
+    assert options - written == {"--debug"}, "name the option on the page of its command"

@@ -155,7 +155,11 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
 
 
 def report(table: dict[str, Any]) -> str:
-    """Return the table as text."""
+    """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy.
+
+    Args:
+        table: content of `--json`: modes of the car, unstable modes, notices, modes of the free body.
+    """
     width = max((len(mode["description"]) for mode in table["modes"]), default=0)
     lines = [
         f"assembled car, dampers {table['damper']}, tyres {table['tyre']}",

@@ -35,7 +35,12 @@ class Drawing:
         self.coils = [Coil(motion, composition, spring) for spring in composition.springs]
 
     def pose(self, state: State, factor: float) -> None:
-        """Set the exaggerated poses of all shapes."""
+        """Set the exaggerated poses and colours of all shapes.
+
+        Args:
+            state: positions of the car at the time of the frame.
+            factor: factor on displacements and rotations from the static equilibrium [-].
+        """
         self.data.geom_xpos[:], self.data.geom_xmat[:] = self.motion.geoms(state, factor)
         for coil in self.coils:
             coil.write(self.data, coil.positions(state, factor))

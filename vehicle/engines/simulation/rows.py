@@ -188,7 +188,7 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
     Args:
         model: model with its time step.
         layout: elements of the model.
-        preload: static forces of the rows.
+        preload: static forces of the rows [N], then the torques of the rotations [N m]; see `StaticTrim`.
 
     Returns:
         Weights of the rows.

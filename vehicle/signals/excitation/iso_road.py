@@ -259,6 +259,11 @@ def half_cosine_at(time: NDArray[np.float64], length: float) -> NDArray[np.float
 
 
 def half_cosine_rate_at(time: NDArray[np.float64], length: float) -> NDArray[np.float64]:
-    """Return the derivative of `half_cosine_at` [1/s]."""
+    """Return the derivative of `half_cosine_at` [1/s].
+
+    Args:
+        time: times t [s].
+        length: length of the rise [s].
+    """
     inside = (time > 0.0) & (time < length)
     return np.asarray(np.where(inside, 0.5 * np.pi / length * np.sin(np.pi * time / length), 0.0))

@@ -51,6 +51,9 @@ def knee(costs: Vector) -> int:
 
     With columns scaled to 0 and 1 the plane is sum f_j = 1, so the knee point has the minimum sum.
 
+    Args:
+        costs: criteria of the cars of the front, smaller is better; (cars, criteria).
+
     Source: Das, On characterizing the "knee" of the Pareto curve based on normal-boundary intersection, Structural
     Optimization 18 (1999).
     """
