@@ -1,4 +1,4 @@
-"""Rubber friction in MuJoCo: loops, creep, order in the step, small vibrations, energy, choice of the engine."""
+"""Rubber friction in MuJoCo: loops, creep, order in the step, small vibrations, energy; the reduced engine of a car."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import pytest
 
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec, poles
 from tests.validation import validated
-from vehicle.errors import ConfigurationError
 from vehicle.model.laws.amplitude import friction_elements
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
@@ -170,7 +169,7 @@ def test_small_and_large_vibrations_of_a_car(plain_car):
     """Rubber that does not slide is a spring; the energy of rubber that slides is accounted for."""
     road = Road("A", speed=80, duration=3)
     spring = plain_car.with_(stiffened(plain_car)).run(road)
-    stuck, sliding = (Car.load("focus_road", rubber(factor)).run(road, engine="auto") for factor in (400.0, 1.0))
+    stuck, sliding = (Car.load("focus_road", rubber(factor)).run(road) for factor in (400.0, 1.0))
     for name in ("seat rail z", "engine z", "knuckle fr z"):
         validated(
             "Bushings, springs and stops", f"{name} of a car with 400 times the friction force and stroke",
@@ -184,18 +183,68 @@ def test_small_and_large_vibrations_of_a_car(plain_car):
         "Bushings, springs and stops", "work on a car with rubber friction, less stored and dissipated energy",
         energies.residual, 0.0, abs=2e-4, source="conservation: energy balance",
     )  # fmt: skip
-    assert sliding.recording.statistics.engine == "mujoco" and "rubber friction" in sliding.engine_reason
 
 
-def test_the_reduced_engine_rejects_the_law():
-    car = Car.load("focus_road", rubber())
-    message = (
-        "bushing/suspension_mount_fr along z: has rubber friction (friction_force), which the reduced engine does not "
-        "contain; use engine mujoco or auto, or set friction_force to 0"
-    )
-    with pytest.raises(ConfigurationError) as caught:
-        car.run(Road("A", speed=80, duration=3), engine="reduced")
-    assert str(caught.value) == message
-    with pytest.raises(ConfigurationError) as caught:
-        car.check("reduced")
-    assert str(caught.value) == message
+EVERYWHERE: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+    "front.bushings.suspension_mount": ((0, 0, 70), (0, 0, 2e-4)),
+    "front.bushings.arm_rear": ((0, 60, 0), (0, 2e-4, 0)),
+    "rear.bushings.damper_mount": ((0, 0, 40), (0, 0, 2e-4)),
+    "rear.bushings.trailing_upper_inner": ((60, 0, 0), (2e-4, 0, 0)),
+    "engine.bushings.linear_mount": ((60, 0, 60), (2e-4, 0, 2e-4)),
+    "engine.bushings.hydromount": ((40, 0, 40), (2e-4, 0, 2e-4)),
+    "engine.bushings.torque_arm_body": ((60, 0, 0), (2e-4, 0, 0)),
+    "engine.bushings.torque_arm_engine": ((60, 0, 0), (2e-4, 0, 0)),
+}
+"""Friction force [N] and stroke [m] along 14 axes of the bushings of the `focus_road` car."""
+
+
+@pytest.fixture(scope="module")
+def cars():
+    """The car with friction along 14 axes, and without, at a step of 0.25 ms in MuJoCo."""
+    friction = {
+        f"{path}.friction_{key}": list(values)
+        for path, pair in EVERYWHERE.items()
+        for key, values in zip(("force", "stroke"), pair, strict=True)
+    }
+    step = {"solver.timestep": 0.00025}
+    return Car.load("focus_road", {**friction, **step}), Car.load("focus_road", step)
+
+
+LOADS = {
+    "suspension_mount_fr_force_z", "arm_rear_fr_force_y", "damper_mount_rr_force_z",
+    "trailing_upper_inner_rr_force_x", "linear_mount_force_z", "hydromount_force_z", "torque_arm_body_force_x",
+}  # fmt: skip
+
+
+def ratios(car, road, names):
+    """RMS of channels in the reduced engine over that in MuJoCo."""
+    stepped, run = (car.run(road, engine=engine, channels=names) for engine in ("mujoco", "reduced"))
+    return np.array([np.std(run[name]) / np.std(stepped[name]) for name in names])
+
+
+def test_both_engines_with_friction_along_14_axes(cars):
+    car, _ = cars
+    assert sum(law.friction for law in car.matrices.laws) == 14
+    names = [name for name in car.vehicle.channels if not name.startswith("plate")]
+    found = dict(zip([*names, *sorted(LOADS)], ratios(car, Road("A", speed=80, duration=5), [*names, *sorted(LOADS)])))
+    source = "second derivation: MuJoCo at 0.25 ms"
+    validated(
+        "Reduced engine", "RMS of all channels over that of MuJoCo, rubber friction along 14 axes, class A",
+        np.array([found[name] for name in names]), 1.0, abs=5e-3, source=source,
+    )  # fmt: skip
+    validated(
+        "Reduced engine", "RMS of the loads of bushings over that of MuJoCo, along axes with rubber friction, class A",
+        np.array([found[name] for name in sorted(LOADS)]), 1.0, abs=2e-3, source=source,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("road", [Road("D", speed=30, duration=4), Road("cleat:10x50", speed=30)], ids=["D", "cleat"])
+def test_friction_adds_no_difference_between_the_engines(cars, road):
+    """On rough roads the finite motion of the suspension separates the engines, with friction and without."""
+    names = [name for name in cars[0].vehicle.channels if not name.startswith("plate") and name[-6:] != "_acc_y"]
+    found, plain = (ratios(car, road, names) for car in cars)
+    place = "class D" if road.what == "D" else "a cleat of 10 mm"
+    validated(
+        "Reduced engine", f"RMS over that of MuJoCo, with rubber friction over without, {place}", found / plain, 1.0,
+        abs=5e-3, source="second derivation: MuJoCo at 0.25 ms",
+    )  # fmt: skip

@@ -98,14 +98,16 @@ class CarTable:
         groups, e = cars[0].sliders.stiffness.shape
         rubbers = sum(law.friction for law in cars[0].laws)
         corners = max((len(law.breakpoints) for car in cars for law in car.laws if not law.friction), default=0)
-        layers = max((law.elements.shape[1] for car in cars for law in car.laws), default=0)
+        # The elements of rubber friction are distributed over the parts of a car, too.
+        layers = -(-max((law.elements.shape[1] for car in cars for law in car.laws), default=0) // split)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         count = len(sensors[0].poles)
         self.inputs, self.sums = cars[0].step.shape[1] - 1, d + g + count
         damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
         node_count = max(len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car)
-        sizes = {"pair": pairs * 2 * (1 + self.inputs + self.sums), "real": reals * (1 + self.inputs + self.sums)}
+        sizes = {"pair": 2 * pairs * (1 + self.inputs), "real": reals * (1 + self.inputs)}
+        sizes |= {"sum": 2 * pairs * self.sums, "real_sum": reals * self.sums}
         sizes |= {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
         sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
@@ -114,6 +116,7 @@ class CarTable:
         sizes |= dict.fromkeys(("spring", "give", "share", "slider"), groups * e)
         sizes |= {"corner": 3 * (laws - rubbers) * corners, "own": laws, "excess": laws, "heard": count * laws}
         sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach", "anchor", "middle"), rubbers * layers)
+        sizes["ahead"] = rubbers
         sizes |= {"work": d * (4 + 4 * node_count) + groups * (2 + 4 * e) + 2 * self.sums + TILE}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
@@ -125,9 +128,9 @@ class CarTable:
             record[:, lane] = [array for array, _, _ in damper_data[car]]
             # Repeating the last node gives segments of zero length.
             law = [nodes[np.minimum(np.arange(node_count), len(nodes) - 1)] for _, _, nodes in damper_data[car]]
-            pair_rows, real_rows = (rows[part] for rows in rows_of_cars[car])
+            poles = zip(("pair", "real", "sum", "real_sum"), (rows[part] for rows in rows_of_cars[car]), strict=True)
             slip, gain, ramp = cars[car].gains
-            values = {"pair": pair_rows, "real": real_rows, "gain": gain, "ramp": ramp, "law": np.array(law)}
+            values = {**dict(poles), "gain": gain, "ramp": ramp, "law": np.array(law)}
             # Sums over the poles are added over the parts of a car, with the contribution of the plates once.
             values["slip"] = slip if part.start == 0 else 0.0 * slip
             values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
@@ -141,7 +144,10 @@ class CarTable:
                 effect = np.diag(gain)[d + groups :]
                 tables, friction = cars[car].laws[: laws - rubbers], cars[car].laws[laws - rubbers :]
                 values |= {"own": 0.5 * effect, "corner": _corners(tables, effect[: laws - rubbers], corners)}
-                values |= _rubber(friction, effect[laws - rubbers :], layers)
+                elements = _rubber(friction, effect[laws - rubbers :], split * layers)
+                values |= {
+                    name: numbers.reshape(rubbers, split, layers)[:, part.start] for name, numbers in elements.items()
+                }
                 values |= {
                     "excess": forces_at_start(cars[car].laws, cars[car].columns, start),
                     "heard": heard[car] if heard else np.zeros(0),
@@ -158,7 +164,7 @@ class CarTable:
             self.initial[2 * pairs :, lane][: len(real_start)] = real_start
         for name in ("stuck", "stick"):
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
-        del first_rows["pair"]
+        del first_rows["pair"], first_rows["real_sum"]
         iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
         self.rows = TableRows(
             pairs=pairs,

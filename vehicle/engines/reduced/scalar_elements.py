@@ -26,7 +26,7 @@ from __future__ import annotations
 from typing import Any
 
 from vehicle.engines.reduced.inlining import inlined
-from vehicle.engines.reduced.simd_vector import filled, load, maximum, minimum, select_below, store
+from vehicle.engines.reduced.simd_vector import before, filled, load, maximum, minimum, of_cars, select_below, store
 from vehicle.engines.reduced.table_layout import TableRows
 
 FAR = 1e30
@@ -95,12 +95,12 @@ def law_force(t: Any, r: TableRows, curve: int, value: Any) -> Any:
 @inlined
 def rubber_change(t: Any, r: TableRows, rubber: int, value: Any) -> Any:
     """Return the change g_n - g+ of the force of rubber friction in a step from r', see above."""
-    change = filled(t, 0.0)
+    change, moved = filled(t, 0.0), value - load(t, r.ahead + rubber)
     for i in range(r.layers * rubber, r.layers * (rubber + 1)):
-        distance, reach = value - load(t, r.middle + i), load(t, r.reach + i)
+        distance, reach = moved - load(t, r.middle + i), load(t, r.reach + i)
         inside = minimum(maximum(distance, filled(t, 0.0) - reach), reach)
         change = change + load(t, r.weight + i) * (distance - inside)
-    return change
+    return of_cars(change)
 
 
 @inlined
@@ -120,7 +120,8 @@ def advance_rubber(t: Any, r: TableRows, rubber: int, displacement: Any) -> None
         store(t, r.anchor + i, anchor)
         store(t, r.middle + i, load(t, r.part + i) * anchor + half * held)
         held = held + load(t, r.stiff + i) * anchor
-    store(t, r.excess + curve, filled(t, 0.0) - held)
+    store(t, r.ahead + rubber, half * before(held))
+    store(t, r.excess + curve, filled(t, 0.0) - of_cars(held))
 
 
 @inlined

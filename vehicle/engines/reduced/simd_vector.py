@@ -129,6 +129,26 @@ def _of_cars(typing_context: Any, value: Any) -> Any:
     return (value(value), generate) if isinstance(value, Vector) else None
 
 
+def _before(typing_context: Any, value: Any) -> Any:
+    """Return for each part of a car the sum of the parts before it; zeros in single precision."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        (total,), count = arguments, signature.return_type.lanes
+        zeros = ir.Constant(total.type, [0.0] * count)
+        if signature.return_type.scalar != types.float64:
+            return zeros
+
+        def moved(numbers: Any, by: int) -> Any:
+            return builder.shuffle_vector(numbers, zeros, _mask([count] * by + [*range(count - by)]))
+
+        total, by = moved(total, 1), 1
+        while by < count:
+            total, by = builder.fadd(total, moved(total, by)), 2 * by
+        return total
+
+    return (value(value), generate) if isinstance(value, Vector) else None
+
+
 def _weighted_sum(typing_context: Any, table: Any, row: Any, factors: Any, value: Any) -> Any:
     """Return value + sum over k of table[row + k] factors[k]; factors is a tuple of vectors."""
 
@@ -185,7 +205,7 @@ def _where_below(builder: Any, first: Any, second: Any) -> Any:
 
 
 load, load_tuple, store = map(extending.intrinsic, (_load, _load_tuple, _store))
-broadcast, filled, of_cars = map(extending.intrinsic, (_broadcast, _filled, _of_cars))
+broadcast, filled, of_cars, before = map(extending.intrinsic, (_broadcast, _filled, _of_cars, _before))
 weighted_sum, add_scaled = map(extending.intrinsic, (_weighted_sum, _add_scaled))
 minimum, maximum, less = _choice("<"), _choice(">"), _elementwise(_where_below)
 """Elementwise minimum and maximum, and 1 where a < b, else 0."""

@@ -155,9 +155,11 @@ class CarFactors:
         """Return the number of iterations that leaves an error of the forces over their change in the step.
 
         The change of a force is at most that of its input over the gain, whatever its law, and less if its law has no
-        steep part, so the iteration of the linear equations with the absolute values of the gains is a bound.
+        steep part, so the iteration of the linear equations with the absolute values of the gains is a bound. Laws over
+        displacement come first, then dampers: a law changes the force of a damper that sticks, but hardly the reverse.
         """
-        effects, count = self._effects, 0
+        order = np.roll(np.arange(len(self._effects)), len(self.laws))
+        effects, count = self._effects[np.ix_(order, order)], 0
         error, iteration = np.ones(len(effects)), np.linalg.solve(np.tril(effects), np.triu(effects, 1))
         while count < ITERATIONS[0] or (np.max(error) > accuracy and count < ITERATIONS[1]):
             error, count = iteration @ error, count + 1
@@ -172,21 +174,21 @@ class CarFactors:
         eta = -self.direct[self.integrated, -2 * len(self.columns) :] @ np.append(rates, displacements)
         return eta[: self.pairs], eta[self.pairs :].real
 
-    def rows(self, sensors: Complex) -> tuple[Vector, Vector]:
+    def rows(self, sensors: Complex) -> tuple[Vector, Vector, Vector, Vector]:
         """Return the rows of the pairs and of the real poles for `vehicle.engines.reduced.time_step.advance`.
 
         Args:
             sensors: rows of sensors over the poles; (s, n).
 
         Returns:
-            E - 1, inputs, damper velocities, displacements of Jenkins elements and sensors: (pairs, ...) with real
-            and imaginary parts, (reals, ...).
+            E - 1 and inputs, (pairs, ...) with real and imaginary parts, and (reals, ...); then damper velocities,
+            displacements of scalar elements and sensors over the states, (pairs, 2, ...) and (reals, ...).
         """
         strokes = self.strokes.reshape(-1, self.slip.shape[1])
         sums, p = np.concatenate([self.slip, strokes, sensors])[:, self.integrated].T, self.pairs
         change, inputs = self.step[:p, :1], self.step[:p, 1:]
-        pairs = [change.real, change.imag, inputs.real, inputs.imag, sums[:p].real, -sums[:p].imag]
-        return np.hstack(pairs), np.hstack([self.step[p:].real, sums[p:].real])
+        pairs = np.hstack([change.real, change.imag, inputs.real, inputs.imag])
+        return pairs, self.step[p:].real, np.stack([sums[:p].real, -sums[:p].imag], axis=1), sums[p:].real
 
     def weights(self, rows: Complex) -> Vector:
         """Return the weights of states and direct terms, in the order of `direct`, in sums Re(rows xi).

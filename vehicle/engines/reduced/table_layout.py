@@ -40,12 +40,13 @@ class TableRows(NamedTuple):
             pairs.
         iterations: Gauss-Seidel iterations over the forces.
         real: first row of the factors of the real poles.
+        sum: damper velocities, displacements of groups and laws, and sensors over the states of the poles.
         groups: tuple with the length of the groups of Jenkins elements, which the compiler knows.
         elements: number of elements of a group.
         curves: tuple with the length of the laws over displacement, which the compiler knows.
         corners: number of breakpoints of a law.
         rubbers: number of the laws that are rubber friction, which come last.
-        layers: number of elements of a rubber friction.
+        layers: number of elements of a rubber friction in a column.
         slip: contribution of z' at the end of a step to the damper velocities and to the displacements of groups and
             laws, by plates. level: contribution of z to the latter.
         gain, ramp: contributions of the mean forces of dampers, groups and laws, and of the slopes of damper forces.
@@ -71,7 +72,8 @@ class TableRows(NamedTuple):
         stiff, stroke: stiffness k and stroke x of the elements of rubber friction.
         part, weight, reach: shares, weights and half widths of these over the displacement without their own force, see
             `vehicle.engines.reduced.scalar_elements`.
-        anchor, middle: positions of their sliders, and the middles over that displacement.
+        anchor, middle: positions of their sliders, and the middles over that displacement. ahead: further part of the
+            middles in a column, by the elements of the columns before.
         work: work space for the solution of a step.
     """
 
@@ -85,6 +87,7 @@ class TableRows(NamedTuple):
     rubbers: int
     layers: int
     real: int
+    sum: int
     slip: int
     level: int
     gain: int
@@ -120,6 +123,7 @@ class TableRows(NamedTuple):
     reach: int
     anchor: int
     middle: int
+    ahead: int
     work: int
 
 

@@ -51,17 +51,26 @@ from vehicle.model.laws.damper import friction_limit
 
 
 @inlined
-def add_effects(t: Any, r: TableRows, count: int, sums: int, force: int, change: Any, last: bool) -> None:
-    """Add the effects of the change of a force to the velocities and displacements without the own force.
+def add_effects(t: Any, r: TableRows, count: int, force: int, change: Any, last: bool) -> None:
+    """Add the effects of the change of a force to the velocities and displacements without their own forces.
 
     Args:
         t, r: table and sections; the work space begins with these velocities and displacements.
-        count, sums: numbers of dampers, and of dampers and scalar elements.
+        count: number of dampers.
         force: index of the force.
         change: its change.
-        last: add to those after it only.
+        last: last iteration, in which only the later forces need it: laws come first, then dampers and groups.
     """
-    for i in range(force if last else 0, sums):
+    others = count + len(r.groups)
+    sums = others + len(r.curves)
+    is_law = force >= others
+    for i in range(force + 1 if last and not is_law else 0, others):
+        if i != force:
+            effect = load(t, r.gain + i * sums + force)
+            if force < count:
+                effect = effect + load(t, r.stick + force) * load(t, r.ramp + i * count + force)
+            store(t, r.work + i, load(t, r.work + i) + effect * change)
+    for i in range((force + 1 if is_law else sums) if last else others, sums):
         if i != force:
             effect = load(t, r.gain + i * sums + force)
             if force < count:
@@ -77,8 +86,9 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
     the last step; a force adds the effects of its change to all others.
     """
     count = len(dampers)
-    groups, tables = len(r.groups), len(r.groups) + len(r.curves) - r.rubbers
-    sums = count + len(r.groups) + len(r.curves)
+    groups, tables = len(r.groups), len(r.curves) - r.rubbers
+    others = count + groups
+    sums = others + len(r.curves)
     step, old = r.work + sums, r.inputs
     nodes = r.pieces + 1
     width = 3 * nodes
@@ -97,15 +107,13 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
         for j in range(count, sums):
             if j != i:
                 arriving = arriving + load(t, r.gain + i * sums + j) * load(t, old + count + j)
-        if i >= count:
-            scalar = i - count
-            if scalar < groups:
-                arriving = arriving - load(t, r.place + scalar)
-            else:
-                effect = load(t, r.own + scalar - groups) * load(t, r.excess + scalar - groups)
+        if count <= i < others:
+            arriving = arriving - load(t, r.place + i - count)
+        elif i >= others:
+            effect = load(t, r.own + i - others) * load(t, r.excess + i - others)
+            arriving = arriving - effect
+            if i >= others + tables:
                 arriving = arriving - effect
-                if scalar >= tables:
-                    arriving = arriving - effect
         store(t, r.work + i, arriving)
     for i in range(count):
         store(t, kept + i, load(t, old + i))
@@ -123,6 +131,21 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
             store(t, at + 4 * j + 3, load(t, at + 4 * j + 6) - load(t, at + 4 * j + 2))
     for iteration in range(r.iterations):
         last = iteration == r.iterations - 1
+        for curve in range(len(r.curves)):
+            i, row = others + curve, slider + groups + curve
+            value, excess = load(t, r.work + i), load(t, r.excess + curve)
+            if curve < tables:
+                at_end = law_force(t, r, curve, value)
+                force = zeros - half * (excess + at_end)
+                if last:
+                    store(t, r.excess + curve, at_end)
+            else:
+                change = rubber_change(t, r, curve - tables, value)
+                force = half * change - excess
+                if last:
+                    advance_rubber(t, r, curve - tables, value + load(t, r.own + curve) * change)
+            add_effects(t, r, count, i, force - load(t, row), last)
+            store(t, row, force)
         for i in range(count):
             arriving = load(t, r.work + i)
             at, law = work + 4 * nodes * i, r.law + width * i
@@ -134,29 +157,17 @@ def solve_forces(t: Any, r: TableRows, owners: Any, dampers: Any) -> None:
                 hold = hold + (load(t, law + 3 * j + 4) - load(t, law + 3 * j + 1)) * share
             store(t, r.velocity + i, arriving - load(t, step + i) * force)
             force = zeros - force - load(t, r.hold + i)
-            add_effects(t, r, count, sums, i, force - load(t, old + i), last)
+            add_effects(t, r, count, i, force - load(t, old + i), last)
             store(t, old + i, force)
             if last:
                 store(t, step + i, hold)
-        for scalar in range(sums - count):
-            i, curve = count + scalar, scalar - groups
-            value = load(t, r.work + i)
-            if scalar < groups:
-                force = zeros - group_force(t, corners + (2 + 4 * r.elements) * scalar, 2 * r.elements, value)
-                if last:
-                    advance_group(t, r, owners, scalar, value + load(t, r.gain + i * (sums + 1)) * force)
-            elif scalar < tables:
-                at_end = law_force(t, r, curve, value)
-                force = zeros - half * (load(t, r.excess + curve) + at_end)
-                if last:
-                    store(t, r.excess + curve, at_end)
-            else:
-                change = rubber_change(t, r, scalar - tables, value)
-                force = half * change - load(t, r.excess + curve)
-                if last:
-                    advance_rubber(t, r, scalar - tables, value + load(t, r.own + curve) * change)
-            add_effects(t, r, count, sums, i, force - load(t, slider + scalar), last)
-            store(t, slider + scalar, force)
+        for group in range(groups):
+            i, value = count + group, load(t, r.work + count + group)
+            force = zeros - group_force(t, corners + (2 + 4 * r.elements) * group, 2 * r.elements, value)
+            if last:
+                advance_group(t, r, owners, group, value + load(t, r.gain + i * (sums + 1)) * force)
+            add_effects(t, r, count, i, force - load(t, slider + group), last)
+            store(t, slider + group, force)
     for i in range(count):
         stick = load(t, r.stick + i)
         store(t, old + count + i, stick * (load(t, old + i) - load(t, kept + i)))
@@ -283,7 +294,7 @@ def advance(
     count, plates = len(dampers), rates.shape[1] // 4
     size, width, kept = len(inputs), len(sums), changes.shape[0] > 0
     solved = count + len(r.groups) + len(r.curves)
-    pair_rows, real_rows = 2 + 2 * size + 2 * width, 1 + size + width
+    pair_rows, real_rows = 2 + 2 * size, 1 + size
     set_inputs(t, r, feedback, rates, laws, step, dampers)
     for i in range(width):
         arriving = filled(t, 0.0)
@@ -295,9 +306,7 @@ def advance(
                 level = load(t, r.level + (i - count) * plates + k)
                 arriving = arriving + level * broadcast(rates[step + 1, 2 * plates + k])
         store(t, r.work + i, arriving)
-        store(t, r.work + width + i, filled(t, 0.0))
     u = load_tuple(t, r.inputs, inputs)
-    w, imaginary_sums = load_tuple(t, r.work, sums), load_tuple(t, r.work + width, sums)
     for p in range(r.pairs):
         row = p * pair_rows
         a, b, decay, rotation = load(x, before + 2 * p), load(x, before + 2 * p + 1), load(t, row), load(t, row + 1)
@@ -309,8 +318,6 @@ def advance(
         if kept:
             store(changes, now + 2 * p, load(changes, last + 2 * p) + real_change)
             store(changes, now + 2 * p + 1, load(changes, last + 2 * p + 1) + imaginary_change)
-        w = add_scaled(t, row + 2 + 2 * size, real, w)
-        imaginary_sums = add_scaled(t, row + 2 + 2 * size + width, imaginary, imaginary_sums)
     for q in range(r.reals):
         row, pole_row = r.real + q * real_rows, 2 * r.pairs + q
         a = load(x, before + pole_row)
@@ -319,9 +326,11 @@ def advance(
         store(x, at + pole_row, real)
         if kept:
             store(changes, now + pole_row, load(changes, last + pole_row) + real_change)
-        w = add_scaled(t, row + 1 + size, real, w)
+    w = load_tuple(t, r.work, sums)
+    for k in range(2 * r.pairs + r.reals):
+        w = add_scaled(t, r.sum + k * width, load(x, at + k), w)
     for i in range(width):
-        store(t, r.work + i if i < solved else r.sensors + i - solved, of_cars(w[i] + imaginary_sums[i]))
+        store(t, r.work + i if i < solved else r.sensors + i - solved, of_cars(w[i]))
     solve_forces(t, r, feedback.owners, dampers)
     read_sensors(t, r, rates, step + 1, count, width - solved)
     feedback.step[0] += 1

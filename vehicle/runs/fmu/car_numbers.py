@@ -114,7 +114,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         watched: quantities that must stay within limits.
 
     Raises:
-        ConfigurationError: the C runtime lacks a friction law, or the car has no damper.
+        ConfigurationError: the C runtime lacks a friction law, or rubber friction, or the car has no damper.
     """
     composition = car.vehicle.composition.dampers
     laws = [damper.law for damper in composition]
@@ -122,6 +122,12 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         raise ConfigurationError(f"{car.vehicle.name}: has no damper; an FMU needs a car with dampers at its wheels")
     for damper in composition:
         _require_known(damper.name, damper.law)
+    for law in car.matrices.laws:
+        if law.friction:
+            raise ConfigurationError(
+                f"{law.name}: has rubber friction (friction_force), which an FMU and the sliders of a report do not "
+                "contain; set friction_force to 0"
+            )
     model, wheels = car.poles.without_laws(), car.poles.matrices.system.inputs
     columns, rolling = list(range(len(wheels))), car.poles.slope.shape[1] > 0
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)
