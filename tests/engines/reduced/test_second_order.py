@@ -21,7 +21,7 @@ RATE, PERIOD, PERIODS = 1000, 2000, 4
 """Sample rate [Hz], samples of a period, periods of a run."""
 
 RMS = 5e-3
-"""RMS of the plates [m]: wheel travel as on class C at 80 km/h."""
+"""RMS of the plates [m]: vertical accelerations of the wheels as on class B at 80 km/h."""
 
 WITHOUT_FRICTION = {
     "sedan": [
