@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.drawing.rendering.road_strip import COLOURS, HALF_WIDTH, REACH, THICKNESS
+from vehicle.drawing.rendering.road_strip import COLOURS, HALF_WIDTH, REACH
 from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.signals.excitation.signal import Signal
 
@@ -23,6 +23,9 @@ Vector = npt.NDArray[np.float64]
 
 STRIPE = 0.5
 """Length of a stripe [m]."""
+
+THICKNESS = 0.01
+"""Thickness of the strip at the lowest point of the road [m], exaggerated like the heights."""
 
 
 class RoadScene:
