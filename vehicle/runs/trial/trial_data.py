@@ -25,7 +25,6 @@ from vehicle.names import AXES, axle_and_side, is_wheel
 from vehicle.runs.fmu.car_numbers import PARAMETERS, CarNumbers, car_numbers
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
-from vehicle.signals.excitation.rest import OFFSET_SHARE
 from vehicle.signals.excitation.signal import Signal
 
 if TYPE_CHECKING:
@@ -61,13 +60,15 @@ WORKER = "trial_worker.js"
 
 
 def page_signal(signal: Signal) -> Signal:
-    """Return a plate signal as the page has it: at most `LONGEST` seconds, rounded to `LEVELS` steps of the peak.
+    """Return a plate signal as the page has it: at most `LONGEST` seconds, from the height of the first sample.
+
+    Displacements are rounded to `LEVELS` steps of the peak.
 
     Args:
         signal: displacement of the plates.
     """
     count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
-    rounded = {wheel: _integers(z[:count]) for wheel, z in signal.displacement.items()}
+    rounded = {wheel: _integers(z[:count] - z[0]) for wheel, z in signal.displacement.items()}
     return dataclasses.replace(
         signal,
         time=signal.time[:count],
@@ -139,16 +140,12 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
 
     Raises:
         ConfigurationError: the car is unstable for the reduced engine, lacks the seat rail, or the input has another
-            rate than the record, slopes of its own, a first height other than 0, or ends before the evaluation begins.
+            rate than the record, slopes of its own, or ends before the evaluation begins.
     """
     car.check("reduced")
     car.vehicle.require_channels([f"{POINT}_acc_{axis}" for axis in AXES], car.vehicle.acceleration_channels)
     if signal.slope_velocity or abs(signal.timestep * car.vehicle.solver.record_rate - 1.0) > 1e-6:
         raise ConfigurationError("trial: the input must be heights of the plates at the record rate")
-    for wheel, z in signal.displacement.items():
-        # The C runtime begins in equilibrium over the plates, the engine over plates at 0.
-        if abs(z[0]) > OFFSET_SHARE * signal.rms(wheel):
-            raise ConfigurationError(f"trial: plate {wheel} begins at {z[0]:g} m, must begin at 0")
     if min(signal.duration, LONGEST) < skip + 5.0:
         raise ConfigurationError(f"trial: found {signal.duration:g} s, must be at least {skip + 5.0:g} s")
 
@@ -179,8 +176,8 @@ def _plates(signal: Signal, wheels: Sequence[str]) -> list[dict[str, Any]]:
     count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
     plates = []
     for wheel, z in signal.displacement.items():
-        if np.any(z[:count]):
-            integers, step = _integers(z[:count])
+        if np.any(z[:count] != z[0]):
+            integers, step = _integers(z[:count] - z[0])
             changes = np.diff(integers, 2, prepend=np.zeros(2, dtype="<i2"))
             plates.append({"plate": wheels.index(wheel), "step": step, "changes": _text(changes.tobytes())})
     return plates
