@@ -1,7 +1,7 @@
 """A car over single obstacles at a row of speeds: peaks and doses at seat and rail, knuckle peaks, settling, lift-off.
 
 python -m scenarios.obstacles [--output DIR] [--quick] [--jobs N] [--obstacle TEXT ...] [--speeds KM/H,...]
-    [--video [FILE.mp4]] [--engine auto|reduced|mujoco] [--vehicle FILE.toml] [--set PATH=VALUE]
+    [--video [FILE.mp4]] [--pavement [FILE.mp4]] [--engine auto|reduced|mujoco] [--vehicle FILE.toml] [--set PATH=VALUE]
 
 Rolling tyres that envelop the obstacle by two elliptical cams, and lift off.
 """
@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ import numpy as np
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
+from scenarios.inputs.make_block import write_block
 from scenarios.road.runs import one_sided_tyres
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.commands.parser import Parser
@@ -49,6 +51,9 @@ FILM_SPEED, SLOW, EXAGGERATION = 30.0, 10.0, 2.0
 
 FILM_MARGINS_S = 0.12, 0.35
 """Times before the first wheel reaches the obstacle and after the last one leaves it, in the film [s]."""
+
+PAVEMENT_M, PAVEMENT_START_S, PAVEMENT_FILM_S, PAVEMENT_SLOW = 30.0, 1.0, 4.0, 4.0
+"""Length of the stone pavement [m], the start of its film [s], length of the film [s] and its slow motion."""
 
 Values = Mapping[str, float]
 
@@ -128,11 +133,13 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     obstacles = tuple(options.obstacle or (SHORT[:1] + LONG[1:] if options.quick else OBSTACLES))
     for text in obstacles:
         Obstacle.parse(text)
-    if options.video is not None:
+    films = [name for name in (options.video, options.pavement) if name is not None]
+    if films:
         from vehicle.commands.options import film_name
         from vehicle.drawing.rendering.backend import require_film
 
-        film_name(options.video, "")
+        for name in films:
+            film_name(name, "")
         require_film()
     first = Passage(
         vehicle=runs.vehicle or vehicle_file(CAR),
@@ -157,6 +164,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     failed = [f"{passage.obstacle} at {passage.speed:g} km/h" for passage, row in values.items() if not row]
     if options.video is not None:
         film_passage(folder / options.video, replace(first, engine="mujoco").run())
+    if options.pavement is not None:
+        film_pavement(folder / options.pavement, car)
     return Findings(
         title="A car over obstacles: speed, peaks, doses, settling",
         claims=list(dose_claims(values)),
@@ -265,6 +274,33 @@ def film_passage(path: Path, run: Run) -> None:
     write_whole(path, lambda file: film(run, file, take, jobs=drawing_jobs()))
 
 
+def film_pavement(path: Path, car: Car) -> None:
+    """Write a film of a car on the stone pavement of `scenarios.inputs.make_block`, at `FILM_SPEED`.
+
+    Args:
+        path: MP4 file.
+        car: car whose tyres lift off.
+    """
+    from vehicle.drawing.rendering.crew import drawing_jobs
+    from vehicle.drawing.rendering.film import film
+    from vehicle.drawing.rendering.shot import Take
+
+    with TemporaryDirectory() as folder:
+        surface = Path(folder) / "stone_pavement.crg"
+        write_block(surface, PAVEMENT_M, 1)
+        duration = PAVEMENT_START_S + PAVEMENT_FILM_S / PAVEMENT_SLOW + 0.1
+        run = car.run(Road(surface, speed=FILM_SPEED, duration=duration, contact="cams"), skip=0.0)
+    take = Take(
+        start=PAVEMENT_START_S,
+        duration=PAVEMENT_FILM_S,
+        slow=PAVEMENT_SLOW,
+        exaggeration=1.0,
+        speed=FILM_SPEED / 3.6,
+        profile=(run.signal.time, run.signal.profile),
+    )
+    write_whole(path, lambda file: film(run, file, take, jobs=drawing_jobs()))
+
+
 def _speeds(text: str) -> tuple[float, ...]:
     """Return the speeds of --speeds [km/h]."""
     try:
@@ -283,6 +319,8 @@ def add_options(parser: Parser) -> None:
     parser.add_argument("--speeds", metavar="KM/H,...", help="speeds [km/h], as 10,20,30")
     film = f"film of the first obstacle at the speed next to {FILM_SPEED:g} km/h"
     parser.add_argument("--video", nargs="?", const="obstacle.mp4", metavar="FILE.mp4", help=film)
+    film = f"film on a stone pavement, {FILM_SPEED:g} km/h, in slow motion"
+    parser.add_argument("--pavement", nargs="?", const="pavement.mp4", metavar="FILE.mp4", help=film)
 
 
 main = car_study("obstacles", study, add_options)

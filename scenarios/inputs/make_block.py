@@ -76,16 +76,14 @@ def block_heights(length: float, seed: int) -> NDArray[np.float64]:
     return np.vstack([surface, surface[:1]])
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Write the surface."""
-    parser = argparse.ArgumentParser(prog="python -m scenarios.inputs.make_block", description=__doc__)
-    parser.add_argument("--output", type=Path, default=Path("stone_block.crg"), metavar="FILE.crg")
-    parser.add_argument("--length", type=float, default=100.0, metavar="M", help="length [m]; %(default)s by default")
-    parser.add_argument("--seed", type=int, default=1, metavar="N")
-    options = parser.parse_args(arguments)
-    if not 10.0 <= options.length <= 2000.0:
-        parser.error(f"--length {options.length:g} m: must be 10 to 2000 m")
-    surface = BASE + block_heights(options.length, options.seed)
+def write_block(path: Path, length: float, seed: int) -> None:
+    """Write the surface.
+
+    Args:
+        path: OpenCRG file.
+        length, seed: see `block_heights`.
+    """
+    surface = BASE + block_heights(length, seed)
     head = HEADER.format(
         end=STEP * (len(surface) - 1),
         step=STEP,
@@ -94,7 +92,19 @@ def main(arguments: list[str] | None = None) -> int:
         across=2.0 * HALF_WIDTH / (SECTIONS - 1),
         sections="\n".join(f"D:long section {number},m" for number in range(1, SECTIONS + 1)),
     )
-    write_text(options.output, head + "\n".join("".join(f"{z:10.6f}" for z in row) for row in surface) + "\n")
+    write_text(path, head + "\n".join("".join(f"{z:10.6f}" for z in row) for row in surface) + "\n")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Write the surface of the options."""
+    parser = argparse.ArgumentParser(prog="python -m scenarios.inputs.make_block", description=__doc__)
+    parser.add_argument("--output", type=Path, default=Path("stone_block.crg"), metavar="FILE.crg")
+    parser.add_argument("--length", type=float, default=100.0, metavar="M", help="length [m]; %(default)s by default")
+    parser.add_argument("--seed", type=int, default=1, metavar="N")
+    options = parser.parse_args(arguments)
+    if not 10.0 <= options.length <= 2000.0:
+        parser.error(f"--length {options.length:g} m: must be 10 to 2000 m")
+    write_block(options.output, options.length, options.seed)
     return 0
 
 

@@ -115,7 +115,9 @@ def written(car: Car, folder: Path, **options: Any) -> Fmu:
 def plates_of(signal: Signal, duration: float, step: float = STEP) -> Vector:
     """Return (z, z', slope excess of the next step) of the driven plates at all steps up to a time of the signal."""
     whole = plate_samples(signal, step, round(signal.duration / step), 0)[:]
-    return np.asarray(whole[: round(duration / step) + 1]).reshape(-1, len(signal.wheels), 3)
+    rows = np.array(whole[: round(duration / step) + 1]).reshape(-1, len(signal.wheels), 3)
+    rows[..., 0] += [signal.displacement[wheel][0] for wheel in signal.wheels]
+    return rows
 
 
 def drive(

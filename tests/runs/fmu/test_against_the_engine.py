@@ -142,6 +142,15 @@ def test_the_fmu_gives_the_motion_of_the_engine(case, fmi, tmp_path):
     assert 1e-9 < force < 0.1
 
 
+def test_an_fmu_starts_at_rest_over_plates_at_a_level(tmp_path):
+    """The engine and the FMU start on plates as the record begins, all 1 mm above the design position."""
+    car, signal = on_road("focus_road", "A")
+    lifted = {wheel: z + 0.001 for wheel, z in signal.displacement.items()}
+    found = deviations(written(car, tmp_path), car, replace(signal, displacement=lifted), car.vehicle.channels)
+    found.pop("instantaneous damper force")
+    agree("focus_road on A, plates lifted by 1 mm", found)
+
+
 CONTROL = {
     "minimum_damping": 500,
     "maximum_damping": 4000,

@@ -360,9 +360,20 @@ def test_a_car_that_the_page_cannot_run_has_no_section():
     slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
     with pytest.raises(ConfigurationError, match="heights of the plates"):
         trial_data(car, slopes, wheel="fl")
-    high = dataclasses.replace(signal, displacement={wheel: z + 1e-3 for wheel, z in signal.displacement.items()})
-    with pytest.raises(ConfigurationError, match=r"begins at 0\.001 m"):
-        trial_data(car, high, wheel="fl")
+
+
+def test_the_page_has_the_plates_from_the_height_at_which_the_car_stands():
+    car, signal = shipped("low.csv")
+    # Heights that a level of 2^-10 m changes without round-off.
+    plates = [
+        {wheel: np.rint(z * 2**30) / 2**30 + level for wheel, z in signal.displacement.items()}
+        for level in (0.0, 2.0**-10)
+    ]
+    level, lifted = (
+        json.loads(trial_data(car, dataclasses.replace(signal, displacement=each), wheel="fl"))["plates"]
+        for each in plates
+    )
+    assert lifted == level and level
 
 
 def test_settings_outside_the_valid_range_are_named(browser):

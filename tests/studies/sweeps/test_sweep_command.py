@@ -150,9 +150,12 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
 
 
 def test_a_car_that_fails_has_no_note_on_the_engine():
-    changes = {"front.damper.coulomb_friction": [-1.0, 100.0]}
-    plan = plan_sweep(Car.load("sedan"), changes, Road("C", speed=50.0, duration=4.0))
-    assert plan.engine_notes() == ()
+    road = Road("C", speed=50.0, duration=4.0)
+    friction = {last: {"front.damper.coulomb_friction": [-1.0, last]} for last in (-2.0, 100.0)}
+    assert plan_sweep(Car.load("sedan"), friction[-2.0], road).engine_notes() == ()
+    # The last car needs MuJoCo, too, and it can be run.
+    (note,) = plan_sweep(Car.load("sedan"), friction[100.0], road).engine_notes()
+    assert note.startswith("engine mujoco on road_C_50 (1 of 1 inputs), at least for the last car: ")
 
 
 def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):

@@ -1,5 +1,7 @@
 """Displacement and velocity of the driven plates at the ends of the steps, computed once per signal.
 
+Displacements are from the first sample of the signal: the car stands in equilibrium on plates at that height.
+
 A road whose slope is not the derivative of its height exerts the force of V tan(beta) - z' in addition. It is constant
 over a step: d - delta2(d)/24 with d in the middle of the step, so that the error of a held value, (w h)^2/24, cancels.
 """
@@ -39,7 +41,8 @@ class LongPlateSamples:
         for wheel in signal.wheels:
             spline = signal.spline(wheel, begin, end)
             z, velocity, acceleration = (float(spline(last, order)) for order in range(3))
-            columns.append(np.append(spline(at), continued(z, velocity, acceleration, after)))
+            displacement = np.append(spline(at), continued(z, velocity, acceleration, after))
+            columns.append(displacement - signal.displacement[wheel][0])
             columns.append(np.append(spline(at, 1), velocity + acceleration * after))
             excess = np.zeros(len(index))
             if signal.slope_velocity and len(index):

@@ -1,4 +1,7 @@
-"""Motion of the plates as arrays with a row for each step."""
+"""Motion of the plates as arrays with a row for each step.
+
+Displacements are from the first sample of the signal: the car stands in equilibrium on plates at that height.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +65,8 @@ class PlateArrays:
         begin, end = max(min(first - 2, count - 1), 0), min(last + 2, count + 1 + beyond)
         index = np.arange(begin, min(end, count + 1))
         motion = signal.plate_motion(step * index, wheels)
-        displacement = np.stack([motion.displacement[wheel] for wheel in wheels], axis=1)
+        level = [signal.displacement[wheel][0] if wheel in signal.wheels else 0.0 for wheel in wheels]
+        displacement = np.stack([motion.displacement[wheel] for wheel in wheels], axis=1) - level
         velocity, acceleration = np.zeros_like(displacement), np.zeros_like(displacement)
         velocity[1:-1] = (displacement[2:] - displacement[:-2]) / (2.0 * step)
         acceleration[1:-1] = (displacement[2:] - 2.0 * displacement[1:-1] + displacement[:-2]) / step**2

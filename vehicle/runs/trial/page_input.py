@@ -57,7 +57,7 @@ class PageInput:
     """Input of a car in the page.
 
     Attributes:
-        signal: heights of the plates in the run, not rounded.
+        signal: heights of the plates from their first samples, not rounded.
         tracks: heights of each track at the samples of the run [m].
         wheels: wheels, index of their track, distance b behind its begin [samples of the run].
         road: road of the run; None for plates without a common road.
@@ -110,7 +110,7 @@ class PageInput:
 
 
 def page_input(car: Car, signal: Signal, road: RunRoad | None = None) -> PageInput:
-    """Return the input of a car in the page, at most `LONGEST` seconds.
+    """Return the input of a car in the page: at most `LONGEST` seconds, from the height of the first sample.
 
     Args:
         car: the car.
@@ -118,7 +118,7 @@ def page_input(car: Car, signal: Signal, road: RunRoad | None = None) -> PageInp
         road: road of the run; None for another input.
     """
     count = min(signal.time.size, round(LONGEST / signal.timestep) + 1)
-    moving = {wheel: z[:count] for wheel, z in signal.displacement.items() if np.any(z[:count])}
+    moving = {wheel: z[:count] - z[0] for wheel, z in signal.displacement.items() if np.any(z[:count] != z[0])}
     short = dataclasses.replace(signal, time=signal.time[:count], displacement=moving, profile={})
     if road is not None and (common := _common_road(car, short, road)) is not None:
         return common

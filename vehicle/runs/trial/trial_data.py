@@ -29,7 +29,6 @@ from vehicle.runs.trial.packed_numbers import byte_runs, packed, text
 from vehicle.runs.trial.page_input import LONGEST, PageInput, RunRoad, page_input
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
-from vehicle.signals.excitation.rest import OFFSET_SHARE
 from vehicle.signals.excitation.signal import Signal
 
 if TYPE_CHECKING:
@@ -154,16 +153,12 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
 
     Raises:
         ConfigurationError: the car is unstable for the reduced engine, lacks the seat rail, or the input has another
-            rate than the record, slopes of its own, a first height other than 0, or ends before the evaluation begins.
+            rate than the record, slopes of its own, or ends before the evaluation begins.
     """
     car.check("reduced")
     car.vehicle.require_channels([f"{POINT}_acc_{axis}" for axis in AXES], car.vehicle.acceleration_channels)
     if signal.slope_velocity or abs(signal.timestep * car.vehicle.solver.record_rate - 1.0) > 1e-6:
         raise ConfigurationError("trial: the input must be heights of the plates at the record rate")
-    for wheel, z in signal.displacement.items():
-        # The C runtime begins in equilibrium over the plates, the engine over plates at 0.
-        if abs(z[0]) > OFFSET_SHARE * signal.rms(wheel):
-            raise ConfigurationError(f"trial: plate {wheel} begins at {z[0]:g} m, must begin at 0")
     if min(signal.duration, LONGEST) < skip + 5.0:
         raise ConfigurationError(f"trial: found {signal.duration:g} s, must be at least {skip + 5.0:g} s")
 

@@ -127,7 +127,7 @@ def _first_amplitude(linear: Complex, load: Complex, gap: float, seat: float) ->
 
 
 def _split(motion: Complex) -> Vector:
-    """Return real and imaginary parts beside each other; (m, 2 n)."""
+    """Return the real parts, then the imaginary parts; (m, 2 n)."""
     return np.concatenate([motion.real, motion.imag], axis=1)
 
 
@@ -160,8 +160,8 @@ class _Balance:
         Args:
             starts: starts [m], in the order of their use; the first harmonic alone is the last.
         """
-        found, size = np.array(starts[-1]), self.load.shape[1] // 2
-        waiting = np.arange(len(found))
+        harmonics, size = np.array(starts[-1]), self.load.shape[1] // 2
+        waiting = np.arange(len(harmonics))
         for start, raises in [*((each, 1) for each in starts), *((None, raises) for raises in RAISES)]:
             if not waiting.size:
                 break
@@ -171,9 +171,9 @@ class _Balance:
                 q = start[waiting]
             for stiffness in self.seat * np.geomspace(1.0 if raises == 1 else 1e-3, 1.0, raises):
                 converged = self._newton(q, waiting, float(stiffness))
-            found[waiting[converged]] = q[converged]
+            harmonics[waiting[converged]] = q[converged]
             waiting = waiting[~converged]
-        return np.asarray(found[:, :size] + 1j * found[:, size:])
+        return np.asarray(harmonics[:, :size] + 1j * harmonics[:, size:])
 
     def _residual(self, q: Vector, points: npt.NDArray[np.intp], seat: float) -> tuple[Vector, Vector]:
         """Return residuals [N], (p, 2 n), and displacements over half a period [m], (p, samples)."""
@@ -191,23 +191,23 @@ class _Balance:
             seat: Ks [N/m].
         """
         live = np.arange(len(points))
-        rest, y = self._residual(q, points, seat)
+        residual, y = self._residual(q, points, seat)
         for _ in range(ITERATIONS):
-            left = np.linalg.norm(rest, axis=1) > self.closed[points[live]]
-            live, rest, y = live[left], rest[left], y[left]
+            left = np.linalg.norm(residual, axis=1) > self.closed[points[live]]
+            live, residual, y = live[left], residual[left], y[left]
             if not live.size:
                 break
             seated = seat * (np.abs(y) > self.gap)
             tangent = self.matrix[points[live]] + (self.to_harmonics * seated[:, None, :]) @ self.to_time
-            change = np.linalg.solve(tangent, rest[..., None])[..., 0]
-            norm, step, before = np.linalg.norm(rest, axis=1), np.ones(len(live)), q[live]
+            change = np.linalg.solve(tangent, residual[..., None])[..., 0]
+            norm, step, before = np.linalg.norm(residual, axis=1), np.ones(len(live)), q[live]
             for _ in range(HALVINGS):
                 q[live] = before - step[:, None] * change
-                rest, y = self._residual(q[live], points[live], seat)
-                worse = np.linalg.norm(rest, axis=1) > (1.0 - 1e-4 * step) * norm
+                residual, y = self._residual(q[live], points[live], seat)
+                worse = np.linalg.norm(residual, axis=1) > (1.0 - 1e-4 * step) * norm
                 if not worse.any():
                     break
                 step[worse] *= 0.5
         converged = np.ones(len(points), dtype=bool)
-        converged[live] = np.linalg.norm(rest, axis=1) <= self.closed[points[live]]
+        converged[live] = np.linalg.norm(residual, axis=1) <= self.closed[points[live]]
         return converged

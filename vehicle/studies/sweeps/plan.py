@@ -55,21 +55,25 @@ class SweepPlan:
         return all_tyre_words(self.cases)
 
     def engine_notes(self) -> tuple[str, ...]:
-        """Return a message on the inputs on which "auto" runs the first car with MuJoCo, with the reason.
+        """Return a message on the inputs on which "auto" runs the first or the last car with MuJoCo, with the reason.
 
-        For this the first car is run on each input with the reduced engine.
+        For this both cars, in which the varied values have their first and their last value, are run on each input with
+        the reduced engine.
         """
         if self.cases[0].engine != "auto" or not isinstance(self.measure, BatchMeasure):
             return ()
-        first_cases = [self.cases[number * len(self.cases.changes)] for number in range(len(self.cases.inputs))]
-        reasons = {case.source.name: reason_for_mujoco(case, self.measure) for case in first_cases}
-        outside = [name for name, reason in reasons.items() if reason]
-        if not outside:
+        count, reasons = len(self.cases.changes), {}
+        for number, (source, _) in enumerate(self.cases.inputs):
+            for car, which in {count - 1: "last", 0: "first"}.items():
+                if reason := reason_for_mujoco(self.cases[number * count + car], self.measure):
+                    reasons[source.name] = which, reason
+        if not reasons:
             return ()
-        names = ", ".join(outside[:MOST_NAMED]) + (" ..." if len(outside) > MOST_NAMED else "")
+        names = ", ".join(list(reasons)[:MOST_NAMED]) + (" ..." if len(reasons) > MOST_NAMED else "")
+        which, reason = next(iter(reasons.values()))
         return (
-            f"engine mujoco on {names} ({len(outside)} of {len(reasons)} inputs), at least for the first car: "
-            f"{reasons[outside[0]]}; --engine reduced is many times faster (on class C {ERROR_ON_CLASS_C})",
+            f"engine mujoco on {names} ({len(reasons)} of {len(self.cases.inputs)} inputs), at least for the {which} "
+            f"car: {reason}; --engine reduced is many times faster (on class C {ERROR_ON_CLASS_C})",
         )
 
     def run(
@@ -153,7 +157,7 @@ def sweep(
         progress: called with the finished fraction.
 
     Returns:
-        A row for each run, the inputs varying slowest; a failed run is a row with an error message.
+        A row for each run with its engine, the inputs varying slowest; a failed run is a row with an error message.
 
     Raises:
         ConfigurationError: a path does not exist, an input is missing, or `skip` is out of range.
