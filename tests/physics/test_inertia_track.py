@@ -214,6 +214,23 @@ def test_rubber_and_fluid_share_the_spring_of_the_attachment():
     )  # fmt: skip
 
 
+def test_the_rows_move_with_the_fluid():
+    # Behind a flexible attachment the rubber, with its damper and branch, has Kb/K0 of the motion of the fluid.
+    car = Car.load("focus", {**TRACK, **DECOUPLED, "hydromount.damping.z": 300.0})
+    model, rows, data = car.model.model, Rows(car.model.model, car.static.preload), mujoco.MjData(car.model.model)
+    dofs = [model.joint(f"{kind}/hydromount").dofadr[0] for kind in ("fluid", "decoupler")]
+    data.qpos[[model.joint(f"{kind}/hydromount").qposadr[0] for kind in ("fluid", "decoupler")]] = 2e-3, 5e-4
+    data.qvel[dofs] = 0.3, -0.05
+    with installed(rows):
+        mujoco.mj_forward(model, data)
+    share = CHAMBER * car.trimmed_body.residual["hydromount"][2, 2]
+    for name, factor in (("bushing/hydromount", share), ("fluid/hydromount", -1.0)):
+        index = rows.names.index(name)
+        assert data.efc_J.reshape(-1, model.nv)[rows.layout.bushings.rows[index, 2], dofs] == pytest.approx(factor)
+        assert rows.state.residual[index] == pytest.approx([0.0, 0.0, factor * 2.5e-3], abs=1e-9)
+        assert rows.state.rate[index] == pytest.approx([0.0, 0.0, factor * 0.25], abs=1e-12)
+
+
 def test_a_track_is_refused_where_the_attachment_couples_the_axes():
     mount: dict[str, Any] = {
         "moving": "engine",

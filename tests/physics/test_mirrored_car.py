@@ -92,7 +92,7 @@ def reflected(table):
 
 
 def plates(duration):
-    """Smooth independent motions of four plates from rest, 4 mm RMS up to 30 Hz."""
+    """Smooth independent motions of four plates from rest, 2 to 6 mm RMS up to 30 Hz."""
     time = np.arange(round(duration * 1000)) * 1e-3
     rise = np.clip(time / 0.2, 0.0, 1.0) ** 3
     rng, lines = np.random.default_rng(4), np.arange(1.0, 30.0, 1.7)
