@@ -108,7 +108,9 @@ def history_figures(folder: Path, bumps: Bumps, seeds: BumpSeeds) -> None:
         axes = rows_of(figure, 2, 1)[:, 0]
         for axis, run, size in zip(axes, bumps.noisy, SIZES, strict=True):
             axis.plot(*excerpt(run, start, (-0.05, 0.8), relative_acceleration(run)), color=COLOURS[0])
-            axis.set(ylabel="acceleration [m/s²]", title=f"A = {1e3 * size:g} mm")
+            axis.set(ylabel="relative acceleration\n[m/s²]", title=f"A = {1e3 * size:g} mm")
+            # The automatic number of ticks depends on the height, which changes with their labels during the layout.
+            axis.locator_params(axis="y", nbins=6)
 
 
 def _published_ends(axis: Any, size: float, point: str, seeds: BumpSeeds) -> None:
