@@ -2,7 +2,7 @@
 // Moving picture of the trial: the car of the settings in red before the reference in grey, from the displacements of the
 // body and the wheels that trial_worker.js returns, on the wireframe of the modes.
 const trialPicture = (() => {
-  const RED = "#c0392b", GREY = "#8a949e", GROUND = "#5a6672", FRAME = 40, SPEED = 0.5, AIM = 120, FACTORS = [1, 2, 5, 10, 20, 50, 100, 200];
+  const RED = "#c0392b", GREY = "#8a949e", GROUND = "#5a6672", FRAME = 32, SPEED = 0.5, AIM = 120, FACTORS = [1, 2, 5, 10, 20, 50, 100, 200];
   const byId = (id) => document.getElementById(`trial-${id}`);
   const canvas = byId("picture"), play = byId("play"), factor = byId("factor"), words = byId("factor-words");
   const modes = JSON.parse(document.getElementById("mode-data").textContent), car = modes.cars[0];
