@@ -226,7 +226,8 @@ def test_both_engines_with_friction_along_14_axes(cars):
     car, _ = cars
     assert sum(law.friction for law in car.matrices.laws) == 14
     names = [name for name in car.vehicle.channels if not name.startswith("plate")]
-    found = dict(zip([*names, *sorted(LOADS)], ratios(car, Road("A", speed=80, duration=5), [*names, *sorted(LOADS)])))
+    columns = [*names, *sorted(LOADS)]
+    found = dict(zip(columns, ratios(car, Road("A", speed=80, duration=5), columns), strict=True))
     source = "second derivation: MuJoCo at 0.25 ms"
     validated(
         "Reduced engine", "RMS of all channels over that of MuJoCo, rubber friction along 14 axes, class A",

@@ -163,7 +163,8 @@ def test_a_held_load_does_not_creep():
     )
     validated(
         "Reduced engine", "creep of a mount with rubber friction under a held load and a vibration",
-        60.0 * (mean[1] - mean[0]) / 8.0, 0.0, abs=1e-12, unit="m/min", source="closed form: a held load does not creep",
+        60.0 * (mean[1] - mean[0]) / 8.0, 0.0, abs=1e-12, unit="m/min",
+        source="closed form: a held load does not creep",
     )  # fmt: skip
 
 

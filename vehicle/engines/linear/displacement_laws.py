@@ -10,8 +10,8 @@ that cannot pull has the force max(0, F_0 - K d - D d'): tau = D/K, one breakpoi
 operating points of the tables are those of `vehicle.engines.simulation.force_curves`.
 
 Rubber friction (`vehicle.model.laws.amplitude`) has the force t of Jenkins elements with the stiffness k_i and the
-stroke x_i = l_i/k_i, and K contains their sum: g = t - (sum of k_i) d. Element i has its slider at q_i, and so the force
-k_i (d - q_i): d moves q_i when it is farther than x_i from it,
+stroke x_i = l_i/k_i, and K contains their sum: g = t - (sum of k_i) d. Element i has its slider at q_i, and so the
+force k_i (d - q_i): d moves q_i when it is farther than x_i from it,
 
     q_i = max(d - x_i, min(d + x_i, q_i)),    g = -sum of k_i q_i.
 
