@@ -39,7 +39,7 @@ def completed(script, line):
     ("line", "words"),
     [
         ("vehicle ", list(COMMANDS)),
-        ("vehicle fit-mount --law ", ["auto", "rubber", "hydromount"]),
+        ("vehicle fit-mount --law ", ["auto", "rubber", "hydromount", "decoupler"]),
         ("vehicle s", [name for name in COMMANDS if name.startswith("s")]),
         ("vehicle --v", ["--version"]),
         ("vehicle --print-completion ", ["bash", "zsh"]),

@@ -244,7 +244,7 @@ def test_friction_adds_no_difference_between_the_engines(cars, road):
     """On rough roads the finite motion of the suspension separates the engines, with friction and without."""
     names = [name for name in cars[0].vehicle.channels if not name.startswith("plate") and name[-6:] != "_acc_y"]
     found, plain = (ratios(car, road, names) for car in cars)
-    place = "class D" if road.what == "D" else "a cleat of 10 mm"
+    place = "class D" if road.road == "D" else "a cleat of 10 mm"
     validated(
         "Reduced engine", f"RMS over that of MuJoCo, with rubber friction over without, {place}", found / plain, 1.0,
         abs=5e-3, source="second derivation: MuJoCo at 0.25 ms",
