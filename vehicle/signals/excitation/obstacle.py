@@ -26,7 +26,7 @@ EDGE = 1e-6
 ARC = 32
 """Number of straight lines of an arc; they lie below a half circle of 50 mm by at most 0.06 mm."""
 
-LARGEST = {"height": 500.0, "length": 50_000.0}
+LARGEST = {"height": 500.0, "radius": 500.0, "length": 50_000.0}
 """Maximum sizes [mm]."""
 
 
@@ -77,7 +77,7 @@ def _cobbles(sizes: tuple[float, ...], generator: np.random.Generator) -> tuple[
 
 SHAPES = {
     "cleat": Shape(sizes=("height", "length"), usual=(20.0, 50.0), outline=lambda s, _: _box(s[0], s[1])),
-    "half_round": Shape(sizes=("height",), usual=(50.0,), outline=lambda s, _: _arc(s[0], 2.0 * s[0])),
+    "half_round": Shape(sizes=("radius",), usual=(50.0,), outline=lambda s, _: _arc(s[0], 2.0 * s[0])),
     "speed_bump": Shape(sizes=("height", "length"), usual=(100.0, 3700.0), outline=lambda s, _: _arc(s[0], s[1])),
     "ramp": Shape(
         sizes=("height", "length"),
@@ -132,6 +132,13 @@ class Obstacle:
             largest = LARGEST.get(size_name, 10_000.0)
             if not (1.0 <= size <= largest):
                 raise ConfigurationError(f"obstacle {text!r}: {size_name} {size:g}; allowed: 1 to {largest:g}")
+            if size_name == "number" and size != round(size):
+                raise ConfigurationError(f"obstacle {text!r}: number {size:g}; must be a whole number of stones")
+        if name in ("speed_bump", "cobbles") and sizes[0] > 0.5 * sizes[1]:
+            raise ConfigurationError(
+                f"obstacle {text!r}: height {sizes[0]:g} over a length of {sizes[1]:g}; an arc of a circle is at most "
+                f"half as high as long: at most {0.5 * sizes[1]:g}"
+            )
         return cls(
             name=name,
             sizes=sizes,
