@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import stdtrit
 
 from vehicle.runs.bench.numbers import BenchNumbers
+from vehicle.signals.analysis.phase_averages import PHASES
 
 Vector = npt.NDArray[np.float64]
 
 CLASSES = 120
 """Classes of the damper velocity in the plot of its force."""
 
-BAND = 1.96
-"""Half width of the band of an FRF in standard errors: 95 %."""
+BAND = float(stdtrit(2 * (PHASES - 1), 0.975))
+"""Half width of the 95 % band of an FRF in standard errors: 2.45, as these come from four complex values alone. With
+the 1.96 of a known error the band would contain 90 %."""
 
 
 def frf_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
