@@ -43,7 +43,7 @@ we do not meet, with the reason.
 **Not validated.** No car of our own was measured. Not compared with any measurement: the four-poster, the sedan,
 rolling tyres, semi-active control, road runs at speed, wheel loads and fatigue damage, the comfort of a person on a
 seat. For these the equations are verified, and their parameters are assumed or come from publications. Validate the
-model with your own measurement (`python -m vehicle.compare`) before you trust an absolute value; differences between
+model with your own measurement (`python -m vehicle compare`) before you trust an absolute value; differences between
 variants of one car depend less on its parameters.
 
 **How to read a row.** The tolerance is that of the test: above it the test fails. "Used" is the largest deviation as a

@@ -32,3 +32,11 @@ def test_a_level_of_the_plates_does_not_change_the_run(high_piece, engine):
             np.max(np.abs(np.asarray(lifted[channel]) - exact)) / np.max(np.abs(exact - exact[0])), 0.0, abs=1e-7,
             source="conservation: accelerations do not depend on the height at which the car stands",
         )  # fmt: skip
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "reduced"])
+def test_a_plate_at_a_constant_level_does_not_count_as_moving(high_piece, engine):
+    z = high_piece.displacement["fr"][:200]
+    signal = Signal(time=high_piece.time[:200], displacement={"fr": z - z[0], "fl": np.full(200, 0.005)})
+    run = Car.load("focus").run(signal, engine=engine, channels=["seat_rail_acc_z"])
+    assert run.recording.excited == ("fr",)

@@ -83,6 +83,21 @@ def test_a_quoted_number_is_that_of_the_table(sentence):
     assert [list(quote) for quote in quotes] == [QUOTES[sentence]()] * len(quotes)
 
 
+@pytest.mark.parametrize(
+    ("words", "pattern"),
+    [
+        ("slip share", "levels: slip share of the right damper, high *"),
+        ("vertical wheel mode", "levels: vertical wheel mode, low *"),
+        ("body roll, Ixx 1000", "inertia: roll peak*, Ixx 1000 [[]Hz]"),
+        ("body roll, Ixx 1200", "inertia: roll peak*, Ixx 1200 against 1000"),
+        ("first slip (end of sticking", "bump: *end of stick* with Fd 125 N*"),
+    ],
+)
+def test_a_quoted_row_says_whether_it_is_fitted(words, pattern):
+    rows = [row for text in PAGES.values() for row in re.findall(r"\| ([^|]+) \|", text) if row.startswith(words)]
+    assert rows and all(named(pattern)["status"] in row for row in rows), rows
+
+
 def test_the_page_is_that_of_the_table():
     figures = ROOT / HOME / "figures"
     written = (ROOT / PAGE).read_text(encoding="utf-8")

@@ -28,7 +28,7 @@ def parser() -> Parser:
         "file",
         type=Path,
         metavar="FILE",
-        help="table with frequency [Hz], amplitude [mm] (peak), stiffness [N/mm] and loss_angle [deg]",
+        help="table with frequency [Hz], amplitude [mm] (half of peak to peak), stiffness [N/mm] and loss_angle [deg]",
     )
     parser.add_argument(
         "--law",

@@ -158,7 +158,7 @@ def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
         "--engine",
         choices=ENGINES,
         default=default,
-        help="mujoco: complete nonlinear model; reduced: hundreds of times faster, linear except for the dampers, no "
+        help="mujoco: complete nonlinear model; reduced: hundreds of times faster, all laws but linear geometry, no "
         "film; auto: reduced inside its valid range, otherwise mujoco; %(default)s by default",
     )
 

@@ -187,35 +187,35 @@ def test_stribeck_against_the_stiff_solver():
     )
 
 
-def test_a_plate_that_stands_away_from_zero_when_the_run_begins():
-    # It does not jump: M y'' + C y' + K y = k z0 from rest, without the impulse c z0 of a jump on the wheel.
-    height, damping = 5e-3, 400.0
+def test_a_plate_that_is_raised_and_moves_when_the_run_begins():
+    # The car stands on the raised plate; M y'' + C y' + K y = k v t + c v from rest.
+    height, speed, damping = 5e-3, 0.05, 400.0
     model = matrices(damping)
     system, n = model.system, 6
-    forced = np.linalg.solve(
-        system.mass, np.hstack([-system.stiffness, -system.damping, system.input_stiffness[:, :1]])
-    )
-    state = np.zeros((2 * n + 1, 2 * n + 1))
-    state[:n, n : 2 * n], state[n : 2 * n] = np.eye(n), forced
+    inputs = np.hstack([system.input_stiffness[:, :1], system.input_damping[:, :1]])
+    forced = np.linalg.solve(system.mass, np.hstack([-system.stiffness, -system.damping, inputs]))
+    state = np.zeros((2 * n + 2, 2 * n + 2))
+    state[:n, n : 2 * n], state[n : 2 * n], state[2 * n, 2 * n + 1] = np.eye(n), forced, 1.0
     time, step = uniform_time(samples=200, timestep=1e-3), scipy.linalg.expm(1e-3 * state)
-    states = [np.append(np.zeros(2 * n), height)]
+    states = [np.append(np.zeros(2 * n + 1), speed)]
     for _ in time[1:]:
         states.append(step @ states[-1])
-    wheel, rate = np.array(states)[:, [1, n + 1]].T
+    wheel, rate, plate = np.array(states)[:, [1, n + 1, 2 * n]].T
     run = simulate_reduced(
         pole_model(model),
-        Signal(time=time, displacement={"fr": np.full(time.size, height)}),
+        Signal(time=time, displacement={"fr": height + speed * time}),
         dampers=[damper(coulomb_friction=0.0)] * 2,
         record_rate=1000.0,
         tyre_load={"fr": 1e6, "fl": 1e6},
         channels=["tyre_fr_force_z"],
     )
-    expected = 1e6 + CAR.wheel.tyre_stiffness * (height - wheel) - damping * rate
+    expected = 1e6 + CAR.wheel.tyre_stiffness * (plate - wheel) + damping * (speed - rate)
     # Everything is linear: exact to the round-off of the load.
     validated(
-        "Reduced engine", "wheel load after a start on a raised plate", run["tyre_fr_force_z"], expected, abs=1e-6,
-        unit="N", source="second derivation: matrix exponential of the physical coordinates",
+        "Reduced engine", "wheel load after a start on a raised plate that moves", run["tyre_fr_force_z"], expected,
+        abs=1e-6, unit="N", source="second derivation: matrix exponential of the physical coordinates",
     )  # fmt: skip
+    assert np.ptp(expected) > 100.0
 
 
 @pytest.mark.parametrize("rate", [125.0, 1000.0])

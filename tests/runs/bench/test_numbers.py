@@ -120,6 +120,19 @@ def test_a_road_rolls_and_delays_the_rear_axle():
         bench_drive(car, road("C", 80), seconds=100.0)
 
 
+def test_moved_wheels_take_the_road_where_they_are():
+    car = Car.load("focus_road")
+    drive = bench_drive(car, road("C", 80), seconds=5.0)
+    longer = car.with_({"front.hardpoints.wheel_center.x": 0.81, "front.hardpoints.tyre_patch.x": 0.81})
+    found = numbers(longer.with_(drive.overrides), drive)
+    run = longer.run(road("C", 80, duration=drive.record.duration), engine="reduced")
+    assert found.comfort.values == pytest.approx(run.comfort().values, rel=1e-9)
+    assert found.slip["rr"] == pytest.approx(run.slip_share("rr"))
+    moved = drive.under(longer)
+    assert moved.probe.displacement["rr"][4000] != drive.probe.displacement["rr"][4000]
+    assert drive.under(car.with_({"front.damper.viscous": 1500.0})) is drive
+
+
 def test_an_obstacle_has_the_values_of_its_run():
     car = Car.load("focus_road")
     cleat = road("cleat:20x50", 30)

@@ -12,6 +12,7 @@ from vehicle import read_signal, road
 from vehicle.errors import ConfigurationError
 from vehicle.runs.bench.drive import bench_drive
 from vehicle.runs.bench.results import write_car, write_comparison, write_run
+from vehicle.runs.bench.setting import settings
 from vehicle.runs.bench.state import BenchState, LatestOnly
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
@@ -39,6 +40,13 @@ def test_settings_are_numbers_and_components_with_their_ranges(state):
     for setting in state.settings.values():
         assert setting.low <= setting.value <= setting.high and 0.0 < setting.step < setting.high - setting.low
     assert not [path for path in state.settings if path.rpartition(".")[2] in ("table", "friction_law", "name")]
+
+
+def test_a_zero_has_a_range_of_a_usual_size(car):
+    found = settings(car)
+    damping, mount = (found[f"front.bushings.suspension_mount.{end}.z"] for end in ("damping", "friction_force"))
+    assert (damping.low, damping.value, damping.high) == (0.0, 0.0, 2000.0)
+    assert (mount.low, mount.value, mount.high) == (0.0, 0.0, 500.0)
 
 
 def test_search_finds_words_in_path_or_meaning(state):
@@ -97,7 +105,7 @@ def test_geometry_is_a_setting_too(state):
 def test_a_car_that_cannot_be_computed_keeps_the_last_numbers(state, monkeypatch):
     before = state.present
     state.change(FRICTION, 60.0)
-    for error in (ConfigurationError("unstable: 3 Hz"), FloatingPointError("overflow")):
+    for error in (ConfigurationError("unstable: 3 Hz"), FloatingPointError("overflow"), RuntimeError("any other")):
 
         def fails(car, drive, error=error):
             raise error

@@ -49,7 +49,10 @@ def test_texts_name_shape_sizes_side_and_place() -> None:
         ("cleat:20x50:middle", "HEIGHTxLENGTH"),
         ("cleat:20x50@near", "METRES"),
         ("cleat:20x0", "allowed: 1 to 50000"),
-        ("half_round:900", "allowed: 1 to 500"),
+        ("half_round:900", "radius 900; allowed: 1 to 500"),
+        ("cobbles:10x120x1.5", "number 1.5; must be a whole number"),
+        ("speed_bump:100x100", "height 100 over length 100; must be at most 50"),
+        ("cobbles:20x39x10", "height 20 over length 39; must be at most 19.5"),
     ],
 )
 def test_wrong_texts_are_rejected_with_the_right_form(text, message) -> None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import tomllib
+
 import numpy as np
 import pytest
 
 from tests.validation import validated
 from vehicle.errors import DataError
+from vehicle.model.parameters.force_elements import Hydromount
+from vehicle.model.parameters.toml_file import build
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness, read_stiffness
 from vehicle.studies.mounts.mount_fit import fit_mount
 from vehicle.studies.mounts.mount_laws import friction_stiffness
+from vehicle.studies.mounts.mount_text import caption_of, vehicle_lines
 
 FREQUENCY = np.array([1.0, 2.0, 4.0, 6.0, 8.0, 9.0, 10.0, 11.0, 12.0, 14.0, 17.0, 20.0, 25.0, 30.0, 40.0, 50.0])
 AMPLITUDE = np.array([0.05e-3, 0.2e-3, 1e-3])
@@ -79,7 +84,7 @@ def test_a_fit_finds_the_law_and_its_parameters_in_noise(law, point, values):
     worst, stiffness, angle = 0.0, 0.0, 0.0
     for seed in range(5):
         data, exact = measured(point, seed)
-        best, other = fit_mount(data)
+        best, other = fit_mount(data, ["rubber", "hydromount"])
         assert best.law.name == law and best.criterion < other.criterion - 10.0 and best.determined.all()
         error = np.log(best.stiffness(data.frequency, data.amplitude) / exact)
         stiffness = max(stiffness, float(np.max(np.abs(np.expm1(error.real)))))
@@ -102,6 +107,23 @@ def test_a_parameter_that_the_points_do_not_determine_is_named():
     assert not fit.determined.all()
 
 
+@pytest.mark.parametrize("amplitudes", [(1e-4, 1e-3), (2e-4,)])
+@pytest.mark.parametrize("maxwell_stiffness", [5e4, 0.0])
+def test_parts_that_the_points_do_not_show_stay_within_the_limits_of_a_vehicle_file(amplitudes, maxwell_stiffness):
+    # Without friction, and without a branch, their parameters left every range: a stroke of 1e-10 m, a spring of
+    # 6e10 N/m, 5 N/m in place of 2e5 N/m at rest.
+    frequency, amplitude = (grid.ravel() for grid in np.meshgrid(FREQUENCY, amplitudes))
+    s = 2j * np.pi * frequency
+    branch = maxwell_stiffness * 800.0 * s / (maxwell_stiffness + 800.0 * s)
+    for seed in range(3):
+        relative, angle = 0.03 * np.random.default_rng(seed).standard_normal((2, len(s)))
+        stiffness = (2e5 + 20.0 * s + branch) * np.exp(relative + 1j * angle)
+        data = MeasuredStiffness(frequency=frequency, amplitude=amplitude, stiffness=stiffness)
+        (fit,) = fit_mount(data, ["rubber"])
+        law = build(Hydromount, tomllib.loads(vehicle_lines(fit, caption_of(data, "points.csv"))), "mount")
+        assert law.stiffness[2] > 4e4 and law.friction_force[2] / law.friction_stroke[2] < 0.2 * law.stiffness[2]
+
+
 HEAD = "frequency [Hz],amplitude [mm],stiffness [N/mm],loss_angle [deg]\n"
 ROWS = "".join(f"{f},{a},{300 + f},{5 + f / 10}\n" for a in (0.1, 1.0) for f in (1, 5, 10, 20, 50))
 
@@ -110,7 +132,7 @@ def test_units_and_order_of_the_columns_are_free(tmp_path):
     plain, other = tmp_path / "a.csv", tmp_path / "b.csv"
     plain.write_text(HEAD + ROWS)
     rows = [[float(cell) for cell in row.split(",")] for row in ROWS.splitlines()]
-    head = "loss_angle [rad];amplitude [um];stiffness [N/m];temperature [degC];frequency [Hz]\n"
+    head = "Loss angle [rad];amplitude [um];stiffness [N/m];temperature [degC];Frequency [Hz]\n"
     other.write_text(head + "".join(f"{np.radians(d)};{1e3 * a};{1e3 * k};23;{f}\n" for f, a, k, d in rows))
     first, second = read_stiffness(plain), read_stiffness(other)
     for name in ("frequency", "amplitude", "stiffness"):
@@ -124,7 +146,8 @@ def test_units_and_order_of_the_columns_are_free(tmp_path):
         (HEAD.replace("[N/mm]", "[lbf/in]") + ROWS, r"write stiffness \[N/mm\] or stiffness \[N/m\]"),
         (HEAD.replace(" [mm]", "") + ROWS, r"'amplitude': write amplitude \[mm\]"),
         (HEAD.replace("loss_angle [deg]", "loss factor [-]") + ROWS, r"no column 'loss_angle'; found"),
-        (HEAD + ROWS.replace("5,0.1,305", "5,0.1,-305"), r"a\.csv:3: stiffness: found -305 N/mm, must be 0\.1 to 1e"),
+        (HEAD + ROWS.replace("5,0.1,305", "5,0.1,-305"), r"a\.csv:3: stiffness: found -305 N/mm, must be 3 to 1e"),
+        (HEAD.replace("N/mm", "N/m") + ROWS, r"a\.csv:2: stiffness: found 301 N/m, must be 3000 to 1e"),
         (HEAD.replace("[mm]", "[m]") + ROWS, r"amplitude: found 0\.1 m, must be 1e-07 to 0\.02 m; check the unit"),
         (HEAD + "".join(ROWS.splitlines(keepends=True)[:6]), r"must be at least 8 rows and 4 frequencies"),
     ],

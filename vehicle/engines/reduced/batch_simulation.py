@@ -151,7 +151,7 @@ def simulate_batch(
         time=uniform_time(samples=samples, timestep=interval),
         channels=dict(zip(channels, table, strict=True)),
         units=channel_units(tuple(channels)),
-        excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
+        excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
         statistics=tuple(statistics[car] for car in range(len(models))),
     )
 

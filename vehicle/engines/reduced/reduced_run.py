@@ -94,7 +94,7 @@ def simulate_reduced(
         time=time,
         channels=histories,
         units=channel_units(names),
-        excited=tuple(wheel for wheel in signal.wheels if np.any(signal.displacement[wheel] != 0.0)),
+        excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
         pose_time=np.zeros(0),
         poses=np.zeros((0, 0)),
         statistics=replace(statistics, notices=notices),

@@ -1,4 +1,4 @@
-"""Scalar elements of a time step: groups of Jenkins elements and laws over displacement.
+"""Scalar elements of a time step: groups of Jenkins elements, laws over displacement, and rubber friction.
 
 The Jenkins elements of a group act with the mean of their forces at both ends, t = clamp(t + k u, L) with the change u
 of the displacement over the step: second order, and no work is added at any step and stiffness, because u is exact. The
@@ -17,6 +17,20 @@ and also for a tyre that lifts off. Each segment of slope k gets the slope k/(1 
 
 is a closed form without any search, and exactly zero in the segment in which the car is at rest. The work of the mean
 force is the change of the energy of the law in a step within one segment: second order.
+
+Rubber friction has the force g = -q with q = sum of k_i q_i, whose sliders q_i move in a step. With r' = w + G q_n,
+
+    x+ - G (q+ - q_n)/2 = r',    so that x+ = r' and q+ = q_n if no slider moves.
+
+Sliders of elements with ascending strokes x_i always lie so that they begin to move in this order: |q_i - q_j| is at
+most |x_i - x_j|. When slider i begins to move up, x+ = q_i + x_i, and those before it have moved, which gives
+
+    r' = m_i + e_i,    m_i = p_i q_i + G/2 (sum of k_j q_j before i),    e_i = p_i x_i + G/2 (sum of k_j x_j before i),
+
+with p_i = 1 - G/2 (sum of k_j before i); down, r' = m_i - e_i. Beyond the slope of q+ - q_n over r' rises by the weight
+w_i, that is from S/p to S'/p' with the sums S and S' of the k_j before i and up to i:
+
+    q+ - q_n = sum over i of w_i (r' - max(m_i - e_i, min(m_i + e_i, r'))).
 
 This module imports numba at the top, so only runs that compile import it.
 """
@@ -94,7 +108,7 @@ def law_force(t: Any, r: TableRows, curve: int, value: Any) -> Any:
 
 @inlined
 def rubber_change(t: Any, r: TableRows, rubber: int, value: Any) -> Any:
-    """Return the change g_n - g+ of the force of rubber friction in a step from r', see above."""
+    """Return the change q+ - q_n of the sliders of rubber friction in a step from r', see above [N]."""
     change, moved = filled(t, 0.0), value - load(t, r.ahead + rubber)
     for i in range(r.layers * rubber, r.layers * (rubber + 1)):
         distance, reach = moved - load(t, r.middle + i), load(t, r.reach + i)

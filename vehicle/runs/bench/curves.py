@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+from scipy.special import stdtrit
 
 from vehicle.runs.bench.numbers import BenchNumbers
+from vehicle.signals.analysis.phase_averages import PHASES
 
 Vector = npt.NDArray[np.float64]
 
 CLASSES = 120
 """Classes of the damper velocity in the plot of its force."""
 
-BAND = 1.96
-"""Half width of the band of an FRF in standard errors: 95 %."""
+BAND = float(stdtrit(2 * (PHASES - 1), 0.975))
+"""Half width of the 95 % band of an FRF in standard errors: 2.45, as these come from four complex values alone. With
+the 1.96 of a known error the band would contain 90 %."""
 
 
 def frf_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
@@ -21,13 +24,17 @@ def frf_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, 
     frf, other = present.frf, reference.frf
     size, error = np.abs(frf.response[0]), BAND * frf.random_error[0]
     # The axis is logarithmic: a band that reaches zero ends far below it.
-    return frf.frequency, size, np.maximum(size - error, 1e-3 * size), size + error, np.abs(other.response[0])
+    # On a road, another wheelbase may have other lines.
+    before = np.interp(frf.frequency, other.frequency, np.abs(other.response[0]))
+    return frf.frequency, size, np.maximum(size - error, 1e-3 * size), size + error, before
 
 
 def density_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
     """Return frequency [Hz] and density of the vertical seat rail, A and B [(cm/s2)^2/Hz]; small powers of ten."""
-    spectra = present.spectra[0], reference.spectra[0]
-    return spectra[0].frequency, 1e4 * spectra[0].density, 1e4 * spectra[1].density
+    frequency, other = present.spectra[0].frequency, reference.spectra[0]
+    # Another rate of the samples has other lines.
+    before = np.interp(frequency, other.frequency, other.density)
+    return frequency, 1e4 * present.spectra[0].density, 1e4 * before
 
 
 def damper_curves(present: BenchNumbers, reference: BenchNumbers, wheel: str) -> tuple[Vector, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -39,6 +40,7 @@ class BenchDrive:
         label: description of the input.
         speed: speed on the road [m/s]; None for a signal.
         shown: time in the record at which the moving picture begins [s]: the evaluated part, or an obstacle in it.
+        source, drive: the road with its length, and the drive of a car over it; None for a signal.
     """
 
     record: Signal
@@ -50,6 +52,19 @@ class BenchDrive:
     label: str
     speed: float | None = None
     shown: float = 0.0
+    source: Road | None = None
+    drive: Drive | None = None
+
+    def under(self, car: Car) -> BenchDrive:
+        """Return the input of a variant of the car: on a road, its wheels may be at other points.
+
+        Args:
+            car: variant of the car, with the overrides of the input.
+        """
+        if self.source is None:
+            return self
+        drive = self.source.under(car.vehicle, [text for text in car.overrides if text not in self.overrides])
+        return self if drive == self.drive else _road_drive(self.source, drive, self.inputs.time_step)
 
 
 def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds: float | None = None) -> BenchDrive:
@@ -69,49 +84,74 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
     """
     if seconds is not None and not SHORTEST <= seconds <= LONGEST:
         raise ConfigurationError(f"--seconds {seconds:g}: must be {SHORTEST:g} to {LONGEST:g} s")
-    delays: dict[str, float] = {}
-    overrides: tuple[str, ...] = ()
-    summary: Mapping[str, object] | None = None
-    shown: float | None = None
-    speed: float | None = None
+    interval = 1.0 / car.vehicle.solver.record_rate
     if isinstance(source, Road):
         if isinstance(source.speed, str):
             raise ConfigurationError("bench: a road recorded over time has no constant speed; use a class or a profile")
         drive = source.under(car.vehicle, car.overrides)
-        skip, overrides, label = drive.skip, drive.overrides, drive.name.replace("_", " ")
-        speed = source.speed / 3.6
         if source.duration is None:
-            length = seconds or _usual_length(drive, skip)
-            drive = replace(source, duration=skip + length).under(car.vehicle, car.overrides)
-        record = replace(drive.signal(), source=drive.name)
-        summary = drive.summary(record)
-        delays = {name: behind / speed for name, behind, _ in drive.wheels}
-        if isinstance(times := summary.get("obstacle_s"), Sequence):
-            shown = max(skip, float(times[0]) - BEFORE_S)
-    else:
-        record, skip = excerpt(source, begin, seconds or SECONDS)
-        label = f"{source.source.rpartition('/')[2]}, {begin:g} to {begin + record.duration - skip:g} s"
-    moving = {name: z[round(skip / record.timestep) :] for name, z in record.displacement.items() if np.any(z != z[0])}
-    interval = 1.0 / car.vehicle.solver.record_rate
-    inputs = phase_inputs(record.timestep, moving or record.displacement, delays, interval=interval)
-    size = next(iter(inputs.samples.values())).size
-    probe = Signal(
-        time=uniform_time(samples=size, timestep=interval),
-        displacement=inputs.samples,
-        source=f"random phases of {label}",
-        highest=record.highest,
-    )
+            source = replace(source, duration=drive.skip + (seconds or _usual_length(drive, drive.skip)))
+            drive = source.under(car.vehicle, car.overrides)
+        return _road_drive(source, drive, interval)
+    record, skip = excerpt(source, begin, seconds or SECONDS)
+    inputs, probe = _probe(record, skip, interval)
     return BenchDrive(
         record=record,
         skip=skip,
         inputs=inputs,
         probe=probe,
-        overrides=overrides,
-        road=summary,
-        label=label,
-        speed=speed,
-        shown=skip if shown is None else shown,
+        overrides=(),
+        road=None,
+        label=f"{source.source.rpartition('/')[2]}, {begin:g} to {begin + record.duration - skip:g} s",
+        shown=skip,
     )
+
+
+# A moved wheel is followed by a run, a picture and files, each with this input.
+@lru_cache(maxsize=4)
+def _road_drive(source: Road, drive: Drive, interval: float) -> BenchDrive:
+    """Return the input of the bench for a drive over a road.
+
+    Args:
+        source: the road with its length, at constant speed.
+        drive: drive of a car over it.
+        interval: sampling interval of the inputs of the FRFs [s].
+    """
+    assert not isinstance(source.speed, str)
+    speed, skip = source.speed / 3.6, drive.skip
+    record = replace(drive.signal(), source=drive.name)
+    summary = drive.summary(record)
+    times = summary.get("obstacle_s")
+    inputs, probe = _probe(record, skip, interval, {name: behind / speed for name, behind, _ in drive.wheels})
+    return BenchDrive(
+        record=record,
+        skip=skip,
+        inputs=inputs,
+        probe=probe,
+        overrides=drive.overrides,
+        road=summary,
+        label=drive.name.replace("_", " "),
+        speed=speed,
+        shown=max(skip, float(times[0]) - BEFORE_S) if isinstance(times, Sequence) else skip,
+        source=source,
+        drive=drive,
+    )
+
+
+def _probe(
+    record: Signal, skip: float, interval: float, delays: Mapping[str, float] | None = None
+) -> tuple[PhaseInputs, Signal]:
+    """Return the inputs of the FRFs for a record, and the same as a signal; see `BenchDrive`."""
+    moving = {name: z[round(skip / record.timestep) :] for name, z in record.displacement.items() if np.any(z != z[0])}
+    inputs = phase_inputs(record.timestep, moving or record.displacement, delays, interval=interval)
+    size = next(iter(inputs.samples.values())).size
+    probe = Signal(
+        time=uniform_time(samples=size, timestep=interval),
+        displacement=inputs.samples,
+        source=f"random phases of {record.source}",
+        highest=record.highest,
+    )
+    return inputs, probe
 
 
 def _usual_length(drive: Drive, skip: float) -> float:

@@ -86,6 +86,7 @@ def car_motion(car: Car, drive: BenchDrive) -> CarMotion:
         car: the car, with the overrides of the drive.
         drive: input of the bench.
     """
+    drive = drive.under(car)
     record = drive.record
     count = min(round((drive.shown + SECONDS) / record.timestep) + 1, record.time.size)
     short = replace(

@@ -1,4 +1,4 @@
-"""Values of a car on a short input, from two runs of the reduced engine, for the bench, for pages and for tests."""
+"""Values of a car on a short input, from two runs of the reduced engine, for the bench and for tests."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
         SimulationError: the run could not be carried through.
     """
     started = clock.thread_time()
-    vehicle = car.vehicle
+    vehicle, drive = car.vehicle, drive.under(car)
     wheels = [name for name in vehicle.wheels if f"damper_{name}_velocity" in vehicle.channels]
     seat = tuple(f"seat_acc_{axis}" for axis in AXES) if vehicle.seated else ()
     dampers = [f"damper_{wheel}_{quantity}" for wheel in wheels for quantity in ("velocity", "force")]

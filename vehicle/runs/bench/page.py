@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.linalg import LinAlgError
 
 from vehicle.errors import VehicleError
 from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
@@ -107,6 +106,8 @@ class Page:
                 act()
             except VehicleError as error:
                 self._say(str(error))
+            except Exception as error:  # shown on the page, not as a traceback in the terminal
+                self._say(f"{type(error).__name__}: {error}")
 
     def _say(self, text: str) -> None:
         """Show a message with escaped markup."""
@@ -186,7 +187,7 @@ class Page:
         if not self.worker.pending:
             try:
                 self._show_picture()
-            except (VehicleError, LinAlgError, ArithmeticError, ValueError) as error:
+            except Exception as error:  # the thread goes on with the next change
                 with self._lock:
                     self._say(f"picture: {error}")
 

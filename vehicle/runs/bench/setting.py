@@ -17,6 +17,9 @@ FACTOR = 4.0
 SHIFT = 0.05
 """A slider moves a point by up to this length [m] in each direction."""
 
+FROM_ZERO = {"N": 500.0, "N s/m": 2000.0, "N m/rad": 1000.0, "s": 0.05}
+"""Upper limit of the slider of a zero, by unit; 1 for another unit. Assumed: usual sizes of a small element."""
+
 STEPS = 400
 """Positions of a slider."""
 
@@ -83,7 +86,8 @@ def _range(parameter: Parameter, path: str, value: float, declared: Mapping[str,
     is_point = isinstance(parameter.value, list | tuple) and parameter.unit == "m"
     low, high = sorted((value / FACTOR, value * FACTOR)) if not is_point else (value - SHIFT, value + SHIFT)
     if value == 0.0 and not is_point:
-        low, high = (0.0, 1.0) if declared.get("at_least") is not None else (-1.0, 1.0)
+        high = FROM_ZERO.get(parameter.unit, 1.0)
+        low = 0.0 if declared.get("at_least") is not None else -high
     if declared.get("at_least") == 0.0 and not is_point:
         low = 0.0
     minimum, above, maximum = (declared.get(key) for key in ("at_least", "above", "at_most"))

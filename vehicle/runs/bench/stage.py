@@ -52,15 +52,20 @@ class Stage:
         self.frames = 0
         server.scene.set_up_direction("+z")
         self.car_scene = CarScene(server, car, rig=drive.road is None)
-        self.road_scene = None
-        if drive.speed is not None:
-            span = drive.shown, min(drive.shown + SECONDS, drive.record.duration)
-            self.road_scene = RoadScene(server, car.vehicle.composition.wheels, drive.record, drive.speed, span)
+        self.road_scene: RoadScene | None = None
+        self._drive = drive
+        self._place_road(car, drive)
         self._place_camera()
         self._shown: tuple[CarMotion, float] | None = None
         self._lock, self._ended = threading.Lock(), threading.Event()
         self._thread = threading.Thread(target=self._play, name="bench stage", daemon=True)
         self._thread.start()
+
+    def _place_road(self, car: Car, drive: BenchDrive) -> None:
+        """Draw the road of a drive below the wheels of a car."""
+        if drive.speed is not None:
+            span = drive.shown, min(drive.shown + SECONDS, drive.record.duration)
+            self.road_scene = RoadScene(self.server, car.vehicle.composition.wheels, drive.record, drive.speed, span)
 
     def _place_camera(self) -> None:
         """Place the camera of a new window on the front right of the car."""
@@ -83,7 +88,9 @@ class Stage:
             The exaggeration.
         """
         with self._lock:
-            self.car_scene.update(car)
+            if self.car_scene.update(car) and (drive := self._drive.under(car)) is not self._drive:
+                self._drive = drive
+                self._place_road(car, drive)
             body, largest = self.car_scene.largest(motion)
             if larger is None:
                 larger = round_factor(min(VISIBLE_TRAVEL / largest, LARGEST_FACTOR))

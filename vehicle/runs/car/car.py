@@ -316,8 +316,8 @@ class Car:
             source: displacement of the plates; a file of it or the name of a shipped one, as "low.csv"; or a road, as
                 road("C", 80), on which the tyres roll.
             progress: called with the finished fraction now and then (MuJoCo only; the reduced engine is done at once).
-            engine: "mujoco"; "reduced", hundreds of times faster, linear except for the dampers; "auto": "reduced",
-                and "mujoco" if the motion leaves the valid range, an element of the car needs it, or numba is missing.
+            engine: "mujoco"; "reduced", hundreds of times faster, all laws but linear geometry; "auto": "reduced",
+                and "mujoco" if the motion leaves the valid range.
             channels: names of the recorded channels, those on request (`vehicle.requested_channels`) among
                 them; by default all but those.
             skip: time at the beginning that comfort and slip shares leave out [s]; by default 0, on a road until the
@@ -328,10 +328,9 @@ class Car:
 
         Raises:
             ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range,
-                the car is unstable, the time step of MuJoCo is too large, or the reduced engine was asked for and
-                does not contain an element of the car.
+                the car is unstable, or the time step of MuJoCo is too large.
             DataError: a file cannot be read or holds bad data.
-            MissingPartError: the reduced engine was asked for and numba is not installed.
+            MissingPartError: numba is not installed.
             SimulationError: the run could not be carried through.
         """
         if isinstance(source, Road):

@@ -26,7 +26,7 @@ EDGE = 1e-6
 ARC = 32
 """Number of straight lines of an arc; they lie below a half circle of 50 mm by at most 0.06 mm."""
 
-LARGEST = {"height": 500.0, "length": 50_000.0}
+LARGEST = {"height": 500.0, "radius": 500.0, "length": 50_000.0}
 """Maximum sizes [mm]."""
 
 
@@ -39,11 +39,13 @@ class Shape:
         usual: default sizes.
         outline: function of the sizes [m] and a random generator that returns distances and heights of the corners
             [m], (n,) each, from the beginning of the obstacle on.
+        arc: True if the first size is the height of an arc over the second; above half of it the arc would overhang.
     """
 
     sizes: tuple[str, ...]
     usual: tuple[float, ...]
     outline: Callable[[tuple[float, ...], np.random.Generator], tuple[Vector, Vector]]
+    arc: bool = False
 
 
 def _box(height: float, length: float) -> tuple[Vector, Vector]:
@@ -77,15 +79,17 @@ def _cobbles(sizes: tuple[float, ...], generator: np.random.Generator) -> tuple[
 
 SHAPES = {
     "cleat": Shape(sizes=("height", "length"), usual=(20.0, 50.0), outline=lambda s, _: _box(s[0], s[1])),
-    "half_round": Shape(sizes=("height",), usual=(50.0,), outline=lambda s, _: _arc(s[0], 2.0 * s[0])),
-    "speed_bump": Shape(sizes=("height", "length"), usual=(100.0, 3700.0), outline=lambda s, _: _arc(s[0], s[1])),
+    "half_round": Shape(sizes=("radius",), usual=(50.0,), outline=lambda s, _: _arc(s[0], 2.0 * s[0])),
+    "speed_bump": Shape(
+        sizes=("height", "length"), usual=(100.0, 3700.0), outline=lambda s, _: _arc(s[0], s[1]), arc=True
+    ),
     "ramp": Shape(
         sizes=("height", "length"),
         usual=(50.0, 1000.0),
         outline=lambda s, _: (np.array([0.0, s[1]]), np.array([0.0, s[0]])),
     ),
     "pothole": Shape(sizes=("height", "length"), usual=(50.0, 300.0), outline=lambda s, _: _box(-s[0], s[1])),
-    "cobbles": Shape(sizes=("height", "length", "number"), usual=(10.0, 120.0, 100.0), outline=_cobbles),
+    "cobbles": Shape(sizes=("height", "length", "number"), usual=(10.0, 120.0, 100.0), outline=_cobbles, arc=True),
 }
 """Shapes by name. The speed bump is the circular hump of Watts (TRRL report 597, 1973), the height of a pothole its
 depth; cobbles have the height of a crown, the length of a stone and the number of stones."""
@@ -112,7 +116,8 @@ class Obstacle:
         """Return the obstacle of a text, as "cleat:20x50", "pothole:50x300:right@40" or "speed_bump".
 
         Raises:
-            ConfigurationError: an unknown shape, a wrong number of sizes, or a size out of range.
+            ConfigurationError: an unknown shape, a wrong number of sizes, a size out of range, or an arc that is higher
+                than half its length.
         """
         front, at, distance = text.partition("@")
         name, *parts = front.split(":")
@@ -132,6 +137,13 @@ class Obstacle:
             largest = LARGEST.get(size_name, 10_000.0)
             if not (1.0 <= size <= largest):
                 raise ConfigurationError(f"obstacle {text!r}: {size_name} {size:g}; allowed: 1 to {largest:g}")
+            if size_name == "number" and size != round(size):
+                raise ConfigurationError(f"obstacle {text!r}: number {size:g}; must be a whole number of stones")
+        if shape.arc and sizes[0] > 0.5 * sizes[1]:
+            raise ConfigurationError(
+                f"obstacle {text!r}: height {sizes[0]:g} over length {sizes[1]:g}; must be at most {0.5 * sizes[1]:g}, "
+                "half of the length, or the arc would overhang"
+            )
         return cls(
             name=name,
             sizes=sizes,

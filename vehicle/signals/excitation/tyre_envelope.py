@@ -33,7 +33,7 @@ Vector = NDArray[np.float64]
 
 SAMPLES = 0.005
 """Maximum distance of the points between which a random road is taken as straight [m]; RMS error of the effective
-height on class C: 0.7 um."""
+height on class C: 1.6 um."""
 
 BLOCK = 2048
 """Number of positions evaluated together, which limits the memory."""

@@ -19,13 +19,14 @@ UNITS = {
     "frequency": {"Hz": 1.0},
     "amplitude": {"mm": 1e-3, "um": 1e-6, "m": 1.0},
     "stiffness": {"N/mm": 1e3, "N/m": 1.0, "kN/mm": 1e6},
-    "loss_angle": {"deg": np.pi / 180.0, "rad": 1.0},
+    "loss_angle": {"deg": np.pi / 180.0, "rad": 1.0, "°": np.pi / 180.0},
 }
 """Columns of the table, their units, and the factor of each unit to SI units."""
 
-NEEDED = "frequency [Hz], amplitude [mm] (peak), stiffness [N/mm], loss_angle [deg]"
-LIMITS = {"frequency": (0.01, 1000.0), "amplitude": (1e-7, 0.02), "stiffness": (100.0, 1e9), "loss_angle": (-0.1, 3.0)}
-"""Lowest and highest values in SI units: a mount moves by 0.1 um to 20 mm, and has 0.1 N/mm to 1e6 N/mm."""
+NEEDED = "frequency [Hz], amplitude [mm] (half of peak to peak), stiffness [N/mm], loss_angle [deg]"
+LIMITS = {"frequency": (0.01, 1000.0), "amplitude": (1e-7, 0.02), "stiffness": (3e3, 1e9), "loss_angle": (-0.1, 3.0)}
+"""Lowest and highest values in SI units: a mount moves by 0.1 um to 20 mm, and has 3 N/mm (hangers of an exhaust have
+5 to 20 N/mm) to 1e6 N/mm: values in N/mm below a header with [N/m] are outside."""
 
 LEAST_ROWS, LEAST_FREQUENCIES = 8, 4
 """Minimum numbers of rows and of different frequencies: the laws have five parameters and more."""
@@ -88,7 +89,7 @@ def _frequency(header: Header) -> int:
 def _index(header: Header, name: str) -> int:
     """Return the index of a column; raise DataError for a missing column or unit."""
     heads = [name_and_unit(cell) for cell in header.cells]
-    columns = [index for index, (head, _) in enumerate(heads) if head.strip().replace(" ", "_") == name]
+    columns = [index for index, (head, _) in enumerate(heads) if head.strip().lower().replace(" ", "_") == name]
     if len(columns) != 1:
         raise DataError(
             f"{header.where}: {len(columns) or 'no'} column{'s' if columns else ''} {name!r}; found {header.found}; "

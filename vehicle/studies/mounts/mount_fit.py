@@ -2,8 +2,10 @@
 
     minimise  sum of |ln(K_law / K)|^2,    ln(K_law / K) = relative error of |K| + i error of the loss angle [rad],
 
-over u = ln(parameter), from several starts. The covariance of u is s^2 (J'J)^-1 with s^2 = RSS/(2 m - p) at m points,
-so one standard error of a value is its relative standard error. The law with the least
+over u = ln(parameter), from several starts, within the limits of the vehicle file and of the points (`limits_of`):
+without them a part of a law that the points do not show may become rigid. The covariance of u is s^2 (J'J)^-1 with
+s^2 = RSS/(2 m - p) at m points, so one standard error of u is the relative standard error of the value. The law with
+the least
 
     BIC = 2 m ln(RSS/(2 m)) + p ln(2 m)
 
@@ -12,6 +14,7 @@ is chosen (Bayesian information criterion, Schwarz, Annals of Statistics 6 (1978
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -23,11 +26,21 @@ import numpy.typing as npt
 import scipy
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.model.parameters.force_elements import SHORTEST_STROKE, Hydromount
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness, read_stiffness
 from vehicle.studies.mounts.mount_laws import LAWS, Complex, MountLaw, Stiffness, Vector
 
 WIDEST = float(np.log(1e6))
 """Maximum distance of ln(parameter) from its start."""
+
+SOFTEST = 0.2
+"""Minimum static stiffness over the smallest measured one: rubber is less than five times stiffer in vibration."""
+
+STIFFEST = 30.0
+"""Maximum ratio at which a part of a law still changes K visibly: a spring 30 times stiffer is rigid within 3 %."""
+
+SEEN = 5.0
+"""Maximum ratio of the friction stroke to the largest amplitude, and of the smallest amplitude to this stroke."""
 
 DETERMINED = 0.5
 """Maximum relative standard error of a parameter that the points determine."""
@@ -70,6 +83,25 @@ class MountFit:
         return np.asarray(self.errors <= DETERMINED * self.values)
 
 
+def limits_of(data: MeasuredStiffness, law: MountLaw) -> tuple[Vector, Vector]:
+    """Return the lowest and highest values of the parameters of a law, in their order; both (p,)."""
+    size, omega = np.abs(data.stiffness), 2.0 * np.pi * data.frequency
+    shown = {
+        "stiffness": (SOFTEST * np.min(size), np.inf),
+        "maxwell_stiffness": (0.0, STIFFEST * np.max(size)),
+        "maxwell_damping": (0.0, STIFFEST * np.max(size) / np.min(omega)),
+        "friction_stroke": (np.min(data.amplitude) / SEEN, np.max(data.amplitude) * SEEN),
+    }
+    allowed = {field.name: field.metadata for field in dataclasses.fields(Hydromount)}
+    low, high = [], []
+    for name in law.parameters:
+        least, most = shown.get(name, (0.0, np.inf))
+        shortest = SHORTEST_STROKE if name == "friction_stroke" else allowed[name]["at_least"] or 0.0
+        low.append(max(least, shortest))
+        high.append(min(most, allowed[name]["at_most"] or np.inf))
+    return np.array(low), np.array(high)
+
+
 def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
     """Fit a law by least squares of ln(S/S_measured), real part (stiffness) and imaginary part (loss angle) alike.
 
@@ -80,6 +112,8 @@ def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
     Returns:
         Parameters with standard errors, BIC, and errors of stiffness and loss angle: best fit of all start values.
     """
+    with np.errstate(divide="ignore"):
+        low, high = (np.log(limit) for limit in limits_of(data, law))
     omega, amplitude, measured = 2.0 * np.pi * data.frequency, data.amplitude, data.stiffness
 
     def fit(stiffness: Stiffness, start: Vector, tolerance: float = 1e-12, evaluations: int | None = None) -> Any:
@@ -87,11 +121,11 @@ def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:
             error = np.log(stiffness(np.exp(logarithms), omega, amplitude) / measured)
             return np.concatenate([error.real, error.imag])
 
+        start = np.clip(start, low, high)
+        bounds = np.maximum(start - WIDEST, low), np.minimum(start + WIDEST, high)
         limits = dict.fromkeys(("xtol", "ftol", "gtol"), tolerance)
         with np.errstate(over="ignore", invalid="ignore"):
-            return scipy.optimize.least_squares(
-                residuals, start, bounds=(start - WIDEST, start + WIDEST), max_nfev=evaluations, **limits
-            )
+            return scipy.optimize.least_squares(residuals, start, bounds=bounds, max_nfev=evaluations, **limits)
 
     starts = np.log(law.starts(omega, amplitude, measured))
     if law.approximation and law.refined:

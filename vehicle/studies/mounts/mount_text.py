@@ -14,8 +14,13 @@ from vehicle.studies.mounts.mount_fit import MountFit
 VECTORS = ("stiffness", "damping", "friction_force", "friction_stroke")
 """Parameters of a vehicle file with a value for each axis."""
 
-BEFORE = {"rubber": {"damping": "N s/m"}, "hydromount": {}, "decoupler": {}}
-"""Parameters that the vehicle file needs in addition to those of a law, which are zero."""
+MAXWELL = {"maxwell_stiffness": "N/m", "maxwell_damping": "N s/m", "friction_force": "N"}
+ABSENT = {"rubber": {"damping": "N s/m"}, "hydromount": MAXWELL, "decoupler": MAXWELL}
+"""Parameters that a law does not contain. Their zeros replace the values of a file that is the `base` of the car."""
+
+POOR = 0.1
+"""RMS error of the stiffness [-], and of the loss angle [rad], above which a fit is called poor: three times the
+scatter of a good test rig."""
 
 TITLES = {
     "rubber": "rubber with Maxwell branch and friction",
@@ -38,23 +43,24 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
 
     Args:
         fit: fitted law.
-        caption: description of the points.
+        caption: description of the points, see `caption_of`.
     """
+    source = caption.split(":")[0]
     lines = [
         f"# {TITLES[fit.law.name]}, fitted to {caption}",
         "# z is the measured axis; x and y have the same values: replace them by their own",
         "rotational_stiffness = 0.0  # [N m/rad] not measured",
     ]
-    lines += [
-        f"{name} = [0.0, 0.0, 0.0]  # [{unit}] in the Maxwell branch" for name, unit in BEFORE[fit.law.name].items()
-    ]
+    for name, unit in ABSENT[fit.law.name].items():
+        zero = "[0.0, 0.0, 0.0]" if name in VECTORS else "0.0"
+        lines.append(f"{name} = {zero}  # [{unit}] not in this law")
     for (name, unit), value, error, determined in zip(
         fit.law.parameters.items(), fit.values.tolist(), fit.errors.tolist(), fit.determined, strict=True
     ):
         text = f"{float(f'{value:.5g}')!r}"
         shown = f"[{text}, {text}, {text}]" if name in VECTORS else text
         spread = f"standard error {error:.2g}" if determined else "not determined by these points"
-        lines.append(f"{name} = {shown}  # [{unit}] {spread}")
+        lines.append(f"{name} = {shown}  # [{unit}] fitted to {source}, {spread}")
     return "\n".join(lines) + "\n"
 
 
@@ -91,6 +97,11 @@ def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
     best = fits[0]
     others = f", the least BIC, by {fits[1].criterion - best.criterion:.1f}" if len(fits) > 1 else ""
     lines.append(f"chosen: {TITLES[best.law.name]}{others}")
+    if max(best.stiffness_error[0], best.angle_error[0]) > POOR:
+        lines.append(
+            f"poor fit: the RMS error is above {100.0 * POOR:.0f} % or {np.degrees(POOR):.0f} deg; check units, "
+            "amplitudes (half of peak to peak) and scatter of the points; their mount may have none of these laws"
+        )
     criteria = {fit.law.name: fit.criterion for fit in fits}
     if best.law.name == "hydromount" and "decoupler" in criteria:
         lines.append(
