@@ -29,6 +29,7 @@ FILMS = ("docs/howto/shaker.md", "docs/howto/modes.md")
 
 NOT_RUN = {
     "git clone": "needs the network",
+    "python3 -m venv": "the environment in which this test runs",
     "pip install": "needs the network; tests/commands/test_wheel.py installs the package",
     "make shaker": "sets up the environment in which this test runs",
     "make test": "this test runs in it",
