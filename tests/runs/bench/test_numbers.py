@@ -106,6 +106,7 @@ def test_a_road_rolls_and_delays_the_rear_axle():
     drive = bench_drive(car, road("C", 80), seconds=6.0)
     assert drive.overrides == (f"driving.speed={80 / 3.6!r}",)
     assert drive.record.duration == drive.skip + 6.0
+    assert drive.label == f"road C, 80 km/h, {drive.skip:g} to {drive.skip + 6:g} s"
     front, rear = (drive.inputs.periods(drive.probe.displacement[name][None])[0, 0] for name in ("fr", "rr"))
     wheels = {wheel.name: wheel.center[0] for wheel in car.vehicle.composition.wheels}
     delay = (wheels["rr"] - wheels["fr"]) * 3.6 / 80

@@ -207,6 +207,21 @@ def test_a_searched_parameter_gets_a_slider(bench):
     bench.wait_for(lambda: "**A** unchanged" in bench.page._table.content)
 
 
+def test_large_values_have_a_prefix_as_the_field_shows_five_digits_alone(bench):
+    path = "front.bushings.tyre.stiffness.z"
+    slider = bench.page._sliders[path]
+    assert slider.label == f"{path} [kN/m]" and (slider.value, slider.max) == (250.0, 1000.0)
+    with bench.client() as client:
+        bench.send(client, 251.0, path)
+        bench.wait_for(lambda: bench.page.state.changes.get(path) == 251e3)
+        bench.send(client, 1e300, path)
+        bench.wait_for(lambda: "must be 0 to 1e\\+06 N/m" in bench.page._note.content)
+        bench.wait_for(lambda: slider.value == 251.0)
+    bench.page._reset()
+    bench.wait_for(lambda: "**A** unchanged" in bench.page._table.content)
+    assert slider.value == 250.0
+
+
 def test_frames_are_sent_to_an_open_page(bench):
     before = bench.page.stage.frames
     with bench.client() as client:

@@ -130,7 +130,8 @@ def _road_drive(source: Road, drive: Drive, interval: float) -> BenchDrive:
         probe=probe,
         overrides=drive.overrides,
         road=summary,
-        label=drive.name.replace("_", " "),
+        label=f"road {source.file.name if source.file else source.road}, {source.speed:g} km/h, {skip:g} to "
+        f"{record.duration:g} s",
         speed=speed,
         shown=max(skip, float(times[0]) - BEFORE_S) if isinstance(times, Sequence) else skip,
         source=source,

@@ -15,6 +15,7 @@ import numpy as np
 from vehicle.errors import VehicleError
 from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
 from vehicle.runs.bench.results import write_car, write_comparison, write_run
+from vehicle.runs.bench.setting import Setting
 from vehicle.runs.bench.stage import Stage
 from vehicle.runs.bench.state import BenchState, LatestOnly
 from vehicle.runs.bench.view import View
@@ -111,7 +112,7 @@ class Page:
 
     def _say(self, text: str) -> None:
         """Show a message with escaped markup."""
-        self._note.content = "".join(f"\\{sign}" if sign in "\\`*_{}[]<>()#+!|~$" else sign for sign in text)
+        self._note.content = _escaped(text)
 
     def add_slider(self, path: str, *, more: bool = False) -> None:
         """Add the slider of a setting, if the page has no slider of this path.
@@ -126,12 +127,12 @@ class Page:
         if path in self._sliders:
             return
         setting = self.state.setting(path)
-        unit = "" if setting.unit in ("", "-") else f" [{setting.unit}]"
+        prefix, scale = _prefix(setting)
+        unit = "" if setting.unit in ("", "-") else f" [{prefix}{setting.unit}]"
+        low, high, step, value = (number / scale for number in (setting.low, setting.high, setting.step, setting.value))
 
         def add() -> Any:
-            return self.server.gui.add_slider(
-                f"{path}{unit}", setting.low, setting.high, setting.step, setting.value, hint=setting.meaning
-            )
+            return self.server.gui.add_slider(f"{path}{unit}", low, high, step, value, hint=setting.meaning)
 
         if more:
             with self._added:
@@ -143,13 +144,13 @@ class Page:
 
     def _change(self, path: str) -> None:
         """Take the value of a slider; put the slider back if the value is outside its range."""
-        slider = self._sliders[path]
-        value = slider.value
+        slider, setting = self._sliders[path], self.state.settings[path]
+        value, (_, scale) = slider.value, _prefix(setting)
         try:
-            self.state.change(path, value)
+            self.state.change(path, value if scale == 1.0 else round(value * scale, 6))
         except VehicleError:
             if slider.value is value:  # otherwise a newer value has arrived, whose event follows
-                slider.value = self.state.changes.get(path, self.state.settings[path].value)
+                slider.value = self.state.changes.get(path, setting.value) / scale
             raise
         self._request()
 
@@ -165,7 +166,7 @@ class Page:
     def _reset(self) -> None:
         self.state.reset()
         for path, slider in self._sliders.items():
-            slider.value = self.state.settings[path].value
+            slider.value = self.state.settings[path].value / _prefix(self.state.settings[path])[1]
         self._request()
 
     def _write(self, write: Callable[[BenchState, Path], Path]) -> None:
@@ -206,7 +207,8 @@ class Page:
             lines.append(f"| {name} [{unit}] | {_short(a)} | {_short(b)} | {text} |")
         base = len(state.car.overrides)
         texts = ["; ".join(shown.overrides[base:]) or "unchanged" for shown in (car, other)]
-        lines.append(f"\n**A** {texts[0]} · **B** {texts[1]}\n\n{state.drive.label}; {1e3 * present.seconds:.0f} ms")
+        label = f"{_escaped(state.drive.label)}; computed in {1e3 * present.seconds:.0f} ms"
+        lines.append(f"\n**A** {texts[0]} · **B** {texts[1]}\n\n{label}")
         with self.server.atomic():
             self._table.content = "\n".join(lines)
             for plot, curves in self._plots:
@@ -237,13 +239,13 @@ class Page:
         plots: list[tuple[Any, Callable[..., Any]]] = []
         shown = (
             (
-                "FRF seat rail z [m/s² per m], 95 % band",
+                "FRF seat rail z [m/s² per m] over f [Hz], 95 % band",
                 frf_curves,
                 (axis, line("A", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("B", GREY, 1)),
                 logarithmic(frf_curves(*both)[1]),
             ),
             (
-                "PSD seat rail z [(cm/s²)²/Hz]",
+                "PSD seat rail z [(cm/s²)²/Hz] over f [Hz]",
                 density_curves,
                 (axis, line("A", RED, 2), line("B", GREY, 1)),
                 logarithmic(density_curves(*both)[1]),
@@ -273,6 +275,16 @@ class Page:
         """End the threads of the page."""
         self.worker.stop()
         self.stage.stop()
+
+
+def _prefix(setting: Setting) -> tuple[str, float]:
+    """Return the prefix of the unit of a slider and its factor: the field of a slider shows five digits alone."""
+    return ("k", 1e3) if setting.high >= 1e5 and setting.unit.startswith("N") else ("", 1.0)
+
+
+def _escaped(text: str) -> str:
+    """Return a text with escaped markup."""
+    return "".join(f"\\{sign}" if sign in "\\`*_{}[]<>()#+!|~$" else sign for sign in text)
 
 
 def _short(value: float) -> str:
