@@ -62,7 +62,7 @@ ROOMS: dict[str, set[str]] = {
     | {"reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
     | {"report", "threads"},
-    "mounts": {"records"},
+    "mounts": {"records", "parameters"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}

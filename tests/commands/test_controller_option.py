@@ -28,12 +28,12 @@ def controllers_of(car):
 
 
 def test_all_dampers_with_a_control_have_the_controller(tmp_path, monkeypatch):
-    folder = tmp_path / "my controllers"
+    folder = tmp_path / "my contröllers"
     folder.mkdir()
     controller_fmu(folder / "skyhook.fmu")
     # The path is relative to the folder of the command, in the results it is a whole path.
     monkeypatch.chdir(tmp_path)
-    option = ["--vehicle", "focus_road", "--controller", "my controllers/skyhook.fmu"]
+    option = ["--vehicle", "focus_road", "--controller", "my contröllers/skyhook.fmu"]
     assert shaker.main([*ROAD, *option, "--output", "run"]) == 0
     car = load_vehicle(tmp_path / "run" / "vehicle.toml")
     assert controllers_of(car) == 4 * [("fmu", str(folder / "skyhook.fmu"))]
@@ -48,6 +48,15 @@ def test_a_wildcard_sets_the_controller_of_all_dampers(tmp_path):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     car = load_vehicle(Path("focus_road"), ["*.control.law=fmu", f"*.control.fmu={path}"])
     assert controllers_of(car) == 4 * [("fmu", str(path))]
+
+
+def test_a_path_that_a_vehicle_file_does_not_accept(tmp_path, capsys):
+    path = controller_fmu(tmp_path / "skyhook #1.fmu")
+    option = ["--vehicle", "focus_road", "--controller", str(path), "--output", str(tmp_path / "run")]
+    assert shaker.main([*ROAD, *option]) == 2
+    text = capsys.readouterr().err
+    assert f"--controller {path}: the path has a quotation mark, bracket, # or backslash" in text
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_car_without_controls_and_a_bad_fmu_are_refused(tmp_path, capsys):

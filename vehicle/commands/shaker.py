@@ -36,6 +36,7 @@ from vehicle.commands.options import (
 from vehicle.commands.parser import Parser
 from vehicle.commands.summary_text import summary_text
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.quantity import PATH_PATTERN
 from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.names import CORNERS
 from vehicle.signals.records.formats import TABLES, WRITTEN
@@ -259,6 +260,11 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
             "its coefficient; take --vehicle focus_road, or add [front.damper.control]: docs/vehicle-file.md"
         )
     file = options.controller.resolve().as_posix()
+    if not PATH_PATTERN.fullmatch(file):
+        raise ConfigurationError(
+            f"--controller {file}: the path has a quotation mark, bracket, # or backslash, which a vehicle file does "
+            "not accept in paths; rename or move the FMU"
+        )
     return [f"{path}.control.{text}" for path in paths for text in (f"law={FMU}", f"fmu={file}")]
 
 

@@ -116,6 +116,22 @@ def test_a_lifted_tyre_gives_one_warning(tmp_path):
     assert len(lifted) == 1 and lifted[0].startswith("at 0.0")
 
 
+def test_all_tyres_that_lift_at_once_give_warnings(tmp_path):
+    """Both front tyres lift for 19 ms over a bump of 30 ms: all that a check finds is said, not only its first."""
+    instance = Instance(written(Car.load("focus_road").with_(["driving.speed=20"]), tmp_path))
+    tyres, below = ["tyre_fr_force_z", "tyre_fl_force_z"], 0
+    for time in np.arange(1e-3, 0.15, 1e-3):
+        phase = 2.0 * np.pi * np.clip((time - 0.054) / 0.03, 0.0, 1.0)
+        for wheel in ("fr", "fl"):
+            height, rate = 0.025 * (1.0 - np.cos(phase)), 0.025 * 2.0 * np.pi / 0.03 * np.sin(phase)
+            instance.set({f"plate_{wheel}_displacement": height, f"plate_{wheel}_velocity": rate})
+        instance.step(1e-3)
+        below += max(instance.get(tyres)) < 0.0
+    assert 16 < below < 24
+    lifted = [text for text in instance.messages if "would lift off" in text]
+    assert [text.split(":")[0] for text in lifted] == 2 * [lifted[0].split(":")[0]]
+
+
 def test_a_part_that_turns_too_far_gives_a_warning(tmp_path):
     """The part and the amplitude of the plate at which the reduced engine, too, leaves its valid range."""
     car, time = Car.load("focus_road"), np.arange(0.0, 0.8001, 1e-3)

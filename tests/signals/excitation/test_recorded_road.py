@@ -275,6 +275,11 @@ def test_a_damaged_surface_is_refused(tmp_path):
     path.write_bytes(whole.replace(b"$KD_Def", b"$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$KD_Def"))
     with pytest.raises(DataError, match=r"ROAD_CRG_MODS\) are not supported"):
         read_surface(path)
+    # Lost bytes within a number: "2.002 2.014" became 6805 m in a surface of 2 m.
+    lost = grid.copy()
+    lost[20, 1] = 68.05
+    with pytest.raises(DataError, match=r"changes by 66.* m between rows 20 and 21 .*, 0.5 m apart, .* damaged"):
+        read_road(crg(path, "LRFI", lost), 1.5)
     crg(path, "LRFI", grid)
     path.write_text(path.read_text().rsplit("\n", 3)[0])
     with pytest.raises(DataError, match="truncated or damaged"):

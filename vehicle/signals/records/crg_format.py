@@ -25,6 +25,10 @@ LINE = 80
 LARGEST = 1e4
 """Maximum height of a road above sea level [m]; larger numbers come from shifted bytes."""
 
+STEEPEST = 2.0
+"""Maximum height of a step between two rows of a road [m], a wall that no wheel climbs; larger steps come from lost
+bytes. On a line the road may be twice as high as long."""
+
 _SECTION = re.compile(r"long section(?P<at> at v\s*=\s*(?P<v>[-+.\deE]+))?.*", re.IGNORECASE)
 
 
@@ -109,6 +113,14 @@ def read_surface(path: Path) -> Surface:
         raise DataError(
             f"{path}: height {np.nanmax(np.abs(table)):.3g} m, must be at most {LARGEST:g} m; the file is damaged, "
             "perhaps by a transfer that changes line ends; copy it as a binary file"
+        )
+    jump = np.nan_to_num(np.abs(np.diff(table[:, longs], axis=0))).max(axis=1)
+    high = np.flatnonzero(jump > STEEPEST + 2.0 * step)
+    if high.size:
+        raise DataError(
+            f"{path}: the height changes by {jump[high[0]]:.3g} m between rows {high[0] + 1} and {high[0] + 2} of the "
+            f"numbers, {step:g} m apart, must be at most {STEEPEST + 2.0 * step:.3g} m; the file is damaged; export it "
+            "again"
         )
     u, v = uniform_axis(table.shape[0], step, start), _places(path, [names[index] for index in longs], numbers)
 

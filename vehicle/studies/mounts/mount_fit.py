@@ -86,20 +86,19 @@ class MountFit:
 def limits_of(data: MeasuredStiffness, law: MountLaw) -> tuple[Vector, Vector]:
     """Return the lowest and highest values of the parameters of a law, in their order; both (p,)."""
     size, omega = np.abs(data.stiffness), 2.0 * np.pi * data.frequency
-    shown = {
+    of_points = {
         "stiffness": (SOFTEST * np.min(size), np.inf),
         "maxwell_stiffness": (0.0, STIFFEST * np.max(size)),
         "maxwell_damping": (0.0, STIFFEST * np.max(size) / np.min(omega)),
-        "friction_stroke": (np.min(data.amplitude) / SEEN, np.max(data.amplitude) * SEEN),
+        "friction_stroke": (max(np.min(data.amplitude) / SEEN, SHORTEST_STROKE), np.max(data.amplitude) * SEEN),
     }
-    allowed = {field.name: field.metadata for field in dataclasses.fields(Hydromount)}
-    low, high = [], []
+    of_file = {field.name: field.metadata for field in dataclasses.fields(Hydromount)}
+    limits = []
     for name in law.parameters:
-        least, most = shown.get(name, (0.0, np.inf))
-        shortest = SHORTEST_STROKE if name == "friction_stroke" else allowed[name]["at_least"] or 0.0
-        low.append(max(least, shortest))
-        high.append(min(most, allowed[name]["at_most"] or np.inf))
-    return np.array(low), np.array(high)
+        lower, upper = of_points.get(name, (0.0, np.inf))
+        limits.append((max(lower, of_file[name]["at_least"] or 0.0), min(upper, of_file[name]["at_most"] or np.inf)))
+    low, high = np.array(limits).T
+    return low, high
 
 
 def fit_law(data: MeasuredStiffness, law: MountLaw) -> MountFit:

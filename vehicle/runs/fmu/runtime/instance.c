@@ -263,11 +263,10 @@ int communication_step(State *s, double point, double length, char *message) {
   return 1;
 }
 
-/* Index of a watched quantity that newly left its limits, or -1; checked every CHECK_TIME. */
+/* Index of a watched quantity that newly left its limits; -1 after the last of a check. Checked every CHECK_TIME. */
 int64_t new_notice(State *s) {
   const Car *car = s->car;
   if (s->time[0] < s->checked[0]) return -1;
-  s->checked[0] = s->time[0] + CHECK_TIME;
   for (int64_t k = 0; k < car->n.watched; k++) {
     if (s->warned[k] > 0.0) continue;
     double value = output_value(s, car->n.outputs + k);
@@ -275,5 +274,6 @@ int64_t new_notice(State *s) {
     s->warned[k] = 1.0;
     return k;
   }
+  s->checked[0] = s->time[0] + CHECK_TIME;
   return -1;
 }
