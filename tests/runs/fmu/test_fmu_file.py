@@ -100,7 +100,8 @@ def test_refusals_in_python(car: Car, tmp_path: Path):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(car_numbers, "DAMPER_FIELDS", [name for name in DAMPER_FIELDS if name != "gas_force"])
         with pytest.raises(
-            ConfigurationError, match=r"damper_fr.gas_force: found 100.* an FMU does not contain this law"
+            ConfigurationError,
+            match=r"damper_fr.gas_force: found 100.* an FMU and the sliders of a report do not contain this law",
         ):
             write_fmu(pushed, tmp_path / "car.fmu")
     assert write_fmu(pushed, tmp_path / "car.fmu").path.is_file()

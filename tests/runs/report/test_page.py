@@ -209,6 +209,12 @@ def test_what_follows_a_parameter_is_not_named(reported, tmp_path):
     assert len(changed_parameters([base.car.vehicle, run.car.vehicle])) > 3
     wanted = "(body mass 900 instead of 813 kg, front suspension mount stiffness z 600000 instead of 700000 N/m)"
     assert wanted in answer([base, run], [modes_of(base), modes_of(run)])
+    # Parameters that the first run sets, and the second does not, are named too; a word has no unit.
+    wanted = "(body mass 813 instead of 900 kg, front suspension mount stiffness z 700000 instead of 600000 N/m)"
+    assert wanted in answer([run, base], [modes_of(run), modes_of(base)])
+    law = {"front.damper.friction_law": "presliding", "front.damper.presliding_stiffness": 1e6}
+    other = dataclasses.replace(base, car=base.car.with_(law))
+    assert "friction law presliding instead of coulomb, front" in answer([base, other], [modes_of(base)] * 2)
 
 
 def test_parameters_are_in_words():

@@ -14,7 +14,6 @@ import scipy
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
 from vehicle.runs.report.finished_run import read_run, recorded_signal
@@ -81,7 +80,7 @@ def deviations(result: dict[str, Any], car: Car, signal: Signal, skip: float = 0
         "channel": max(float(np.max(np.abs(a - b)) / np.max(np.abs(b))) for a, b in pairs),
         "rms": max(float(np.std(a - b) / np.std(b)) for a, b in pairs),
         "comfort": abs(result["comfort"] / comfort.overall - 1.0),
-        "slip": max(abs(damper["slip"] - share) for damper, share in zip(result["dampers"], shares, strict=True)),
+        "slip": max(abs(slip - share) for slip, share in zip(result["slips"], shares, strict=True)),
     }
 
 
@@ -167,6 +166,20 @@ def test_friction_and_level_equal_the_reduced_engine(browser, overrides):
     page = Page(browser, car, signal)
     worst = worst_of(page, car, signal, random_states(page, 6, curve=False))
     assert worst["channel"] < 1e-9 and worst["comfort"] < 1e-6 and worst["slip"] == 0.0, worst
+
+
+def test_each_damper_has_its_own_slip_and_force(browser):
+    """Chromium 150 gave all dampers those of the last one in about half of the third records of a fresh worker."""
+    car, signal = shipped("low.csv", seconds=LONGEST)
+    factor = {"front-coulomb_friction": 117.0, "level": 3.25}
+    states = ({**factor, "level": 1.6}, {**factor, "front-curve_scale": 1.7}, {**factor, "main-springs": 0.8})
+    for _ in range(4):
+        page = Page(browser, car, signal)
+        for state in states:
+            result = page.ask("record", **state)
+            for index, damper in enumerate(result["dampers"]):
+                assert result["slips"][index] == np.mean(np.abs(damper["velocity"]) > car.vehicle.damper.slip_velocity)
+                assert result["highest"][index] == np.max(np.abs(damper["force"]))
 
 
 def test_the_damper_curve_is_within_a_thousandth(browser):
@@ -353,15 +366,6 @@ def test_the_section_says_what_the_slider_did(browser, reported):
     assert f"{now:.4g}" in table and f"{total:.4g}" in table
 
 
-def test_a_car_that_the_page_cannot_run_has_no_section():
-    car, signal = shipped("low.csv")
-    with pytest.raises(ConfigurationError, match="must be at least 35 s"):
-        trial_data(car, signal, wheel="fl", skip=30.0)
-    slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
-    with pytest.raises(ConfigurationError, match="heights of the plates"):
-        trial_data(car, slopes, wheel="fl")
-
-
 def test_the_page_has_the_plates_from_the_height_at_which_the_car_stands():
     car, signal = shipped("low.csv")
     # Heights that a level of 2^-10 m changes without round-off.
@@ -370,7 +374,7 @@ def test_the_page_has_the_plates_from_the_height_at_which_the_car_stands():
         for level in (0.0, 2.0**-10)
     ]
     level, lifted = (
-        json.loads(trial_data(car, dataclasses.replace(signal, displacement=each), wheel="fl"))["plates"]
+        json.loads(trial_data(car, dataclasses.replace(signal, displacement=each), wheel="fl"))["tracks"]
         for each in plates
     )
     assert lifted == level and level

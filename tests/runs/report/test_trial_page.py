@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import io
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from tests.runs.report.test_trial import STRIBECK
+from vehicle.commands.shaker import main
 from vehicle.runs.car import Car, Road
 from vehicle.runs.trial.page_input import LONGEST, RunRoad
 from vehicle.runs.trial.trial_data import PAGE, WORKER, scripts, trial_data
 from vehicle.signals.excitation.input_files import find_input
-from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.excitation.random_road import random_road
+from vehicle.signals.excitation.signal_file import read_signal, write_signal
 
 LARGEST = 600_000
 """Maximum number of bytes that the section adds to a report."""
@@ -117,3 +120,46 @@ def test_the_section_is_small(vehicle):
     text = trial_data(car, signal, wheel="fl", **options)
     size = len(text) + len(scripts(WORKER)) + len(scripts(PAGE))
     assert size < (0.4 if vehicle == "focus" else 1.0) * LARGEST, size
+
+
+@pytest.fixture
+def longer(browser, tmp_path) -> Iterator[Any]:
+    """A run of 32 s of a car with Stribeck friction, opened in a narrow window; afterwards the other report again."""
+    signal = tmp_path / "longer.csv"
+    write_signal(signal, random_road(rms=5.25e-4, seed=3, wheel="fl", duration=32.0), plain=True)
+    words = [
+        "--input",
+        str(signal),
+        "--output",
+        str(tmp_path / "run"),
+        "--engine",
+        "reduced",
+        "--no-figures",
+        "--quiet",
+    ]
+    assert main([*words, "--report", *(word for one in STRIBECK for word in ("--set", one))]) == 0
+    report, size = browser.current_url, browser.get_window_size()
+    browser.set_window_size(800, 900)
+    browser.get((tmp_path / "run/report.html").as_uri())
+    yield browser
+    browser.set_window_size(size["width"], size["height"])
+    browser.get(report)
+    wait(lambda: browser.find_element("id", "trial-time-used").text != "")
+
+
+def test_a_longer_run_with_stribeck_friction_in_a_narrow_window(longer):
+    # Nothing to keep before the first record.
+    longer.execute_script("[...document.querySelectorAll('#trial-controls button')].at(-1).click()")
+    wait(lambda: words(longer).startswith("Move a slider. Now the weighted acceleration of the first 30 s is "))
+    longer.execute_script(MOVE, "front-coulomb_friction", 200)
+    wait(lambda: "Coulomb friction 60 N → 200 N" in words(longer))
+    # The page runs no static friction below the Coulomb friction, and says so.
+    assert "front static friction (Stribeck) 95 N → 200 N" in words(longer)
+    label = longer.find_element("css selector", "label[for=trial-front-static_friction]")
+    assert label.text == "front static friction (Stribeck): 200 N"
+    # The titles of the plots have room.
+    widths = longer.execute_script(
+        "return [...document.querySelectorAll('.plots canvas')].map((one) => one.clientWidth)"
+    )
+    assert len(widths) == 5 and min(widths) > 400
+    assert [entry for entry in longer.get_log("browser") if str(longer.current_url) in entry["message"]] == []

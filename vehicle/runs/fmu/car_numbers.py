@@ -119,7 +119,10 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
     composition = car.vehicle.composition.dampers
     laws = [damper.law for damper in composition]
     if not laws:
-        raise ConfigurationError(f"{car.vehicle.name}: has no damper; an FMU needs a car with dampers at its wheels")
+        raise ConfigurationError(
+            f"{car.vehicle.name}: has no damper; an FMU and the sliders of a report need "
+            "a car with dampers at its wheels"
+        )
     for damper in composition:
         _require_known(damper.name, damper.law)
     for law in car.matrices.laws:
@@ -226,7 +229,8 @@ def _require_known(name: str, law: Damper) -> None:
         value = getattr(law, entry.name)
         if entry.name not in DAMPER_FIELDS and value != entry.default:
             raise ConfigurationError(
-                f"{name}.{entry.name}: found {value!r}; an FMU does not contain this law of a damper: leave it out"
+                f"{name}.{entry.name}: found {value!r}; an FMU and the sliders of a report do not contain this "
+                "law of a damper: leave it out"
             )
 
 

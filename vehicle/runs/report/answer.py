@@ -186,12 +186,14 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
 
 
 def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[Changed]) -> list[Changed]:
-    """Return the changed parameters that the second run sets; all if it sets none, or has another vehicle file.
+    """Return the changed parameters that one of the runs sets; all if they set none, or have other vehicle files.
 
     Others follow them, as the inertia of the body follows its mass.
     """
     origins = [each.summary["vehicle"] for each in (first, run)]
-    paths = [text.partition("=")[0].strip() for text in origins[1]["overrides"] if text not in origins[0]["overrides"]]
+    old, new = (origin["overrides"] for origin in origins)
+    texts = [text for text in [*new, *old] if text not in new or text not in old]
+    paths = list(dict.fromkeys(text.partition("=")[0].strip() for text in texts))
     # A component of a vector, as stiffness.z, is a part of the parameter.
     paths = [path[:-2] if path[-2:] in (".x", ".y", ".z") else path for path in paths]
     rows_of = [[row for row in changed if f".{row[0]}".endswith(f".{path}")] for path in paths]
@@ -202,6 +204,7 @@ def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[C
 
 def _change_words(path: str, unit: str, old: str, new: str) -> str:
     """Return a changed parameter in words: of a vector only the components that differ."""
+    unit = unit.strip("-")
     values = [text[1:-1].split(", ") if text.startswith("[") else [text] for text in (old, new)]
     if len(values[0]) != len(values[1]) or len(values[1]) != len(AXES):
         return f"{parameter_words(path)} {new}{f' instead of {old}' if old != MISSING else ''} {unit}".rstrip()

@@ -24,7 +24,7 @@ from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, mov
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
-from vehicle.runs.report.trial_section import trial, trial_numbers
+from vehicle.runs.report.trial_section import trial
 from vehicle.runs.trial.trial_data import PAGE, WORKER, scripts
 from vehicle.version import package_version
 
@@ -58,9 +58,10 @@ def report_page(
     done = progress or (lambda fraction: None)
     modes = [modes_of(run) for run in runs]
     done(0.1)
-    numbers = trial_numbers(runs[0]) if len(runs) == 1 else ""
+    numbers = ""
     if len(runs) == 1:
-        parts = _of_one(runs[0], modes[0], trial(runs[0]) if numbers else None)
+        numbers, trial_part = trial(runs[0])
+        parts = _of_one(runs[0], modes[0], trial_part)
     else:
         parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share))
     first, others = runs[0].name, [run.name for run in runs[1:]]
@@ -97,7 +98,7 @@ def _explained() -> Markup:
     return tag("p", EXPLANATION, class_="about")
 
 
-def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup | None) -> list[Part]:
+def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     """Return the sections of the report of a single run, with the given section for trials."""
     base = base_run(run)
     single = joined([answer([run], [modes]), sections.tiles(run)])

@@ -44,6 +44,7 @@
     }
     place();
     box.append(button("Back to the car of the run", () => move(start)), button("Keep as B", () => {
+      if (!now) return;
       before = now;
       show();
     }));
@@ -55,10 +56,16 @@
     return element;
   }
 
+  // Static friction acts as at least the Coulomb friction of its dampers.
+  function acting(slider, settings) {
+    const below = data.names[slider.parameter] === "static_friction" ? settings[slider.id.replace("static", "coulomb")] : -Infinity;
+    return Math.max(settings[slider.id], below);
+  }
+
   function place() {
     for (const [slider, input, label] of inputs.values()) {
       if (Number(input.value) !== toSlider(slider, settings[slider.id])) input.value = toSlider(slider, settings[slider.id]);
-      label.textContent = `${slider.words}: ${words(slider, settings[slider.id])}`;
+      label.textContent = `${slider.words}: ${words(slider, acting(slider, settings))}`;
     }
   }
 
@@ -103,11 +110,11 @@
   const percent = (a, b) => 100 * (a / b - 1);
 
   function sentence() {
-    const changed = data.sliders.filter(({ id }) => now.settings[id] !== before.settings[id]);
-    const damper = data.dampers[data.shown], slip = (run) => run.record.dampers[data.shown].slip;
+    const changed = data.sliders.filter((slider) => acting(slider, now.settings) !== acting(slider, before.settings));
+    const damper = data.dampers[data.shown], slip = (run) => run.record.slips[data.shown];
     const slipping = `the ${damper.name} damper slips ${short(100 * slip(now), 2)} % of the time`;
-    if (!changed.length) return `Move a slider. Now the weighted acceleration is ${short(now.record.comfort)} m/s², and ${slipping}.`;
-    const list = changed.map((slider) => `${slider.words} ${words(slider, before.settings[slider.id])} → ${words(slider, now.settings[slider.id])}`);
+    if (!changed.length) return `Move a slider. Now the weighted acceleration${data.shortened ? ` of the first ${short(now.record.seconds)} s` : ""} is ${short(now.record.comfort)} m/s², and ${slipping}.`;
+    const list = changed.map((slider) => `${slider.words} ${words(slider, acting(slider, before.settings))} → ${words(slider, acting(slider, now.settings))}`);
     const change = percent(now.record.comfort, before.record.comfort);
     const comfort = Math.abs(change) < 0.05 ? "Comfort as before" : `${short(Math.abs(change), 2)} % ${change < 0 ? "more" : "less"} comfort`;
     return `${comfort}: weighted acceleration ${short(before.record.comfort)} → ${short(now.record.comfort)} m/s²; ${slipping}, before ${short(100 * slip(before), 2)} %. Changed: ${list.join(", ")}.`;
@@ -116,8 +123,8 @@
   function table() {
     const rows = [["a_v, weighted (ISO 2631-1) [m/s²]", (run) => run.record.comfort, 4]];
     ["x", "y", "z"].forEach((axis, k) => rows.push([`a_w ${axis} [m/s²]`, (run) => run.record.axes[k], 4]));
-    data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.dampers[k].slip, 3]));
-    data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.dampers[k].highest, 4]));
+    data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.slips[k], 3]));
+    data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.highest[k], 4]));
     const row = (name, cells) => {
       const line = document.createElement("tr");
       cells.forEach((text, k) => line.append(Object.assign(document.createElement(name), { textContent: text, className: k ? "number" : "" })));
@@ -148,7 +155,7 @@
     pen.font = "12px system-ui, sans-serif";
     pen.fillStyle = INK;
     pen.textAlign = "left";
-    pen.fillText(title, 4, 13);
+    pen.fillText(title, 4, 13, width - 8);
     pen.strokeStyle = LINE;
     pen.lineWidth = 1;
     pen.textAlign = "center";

@@ -26,7 +26,7 @@ from vehicle.runs.fmu.output_rows import Output, car_outputs, joined_rows, motio
 from vehicle.runs.trial.car_sets import stepped_sliders
 from vehicle.runs.trial.moving_car import moving_picture, picture_rows, turning_parts
 from vehicle.runs.trial.packed_numbers import byte_runs, packed, text
-from vehicle.runs.trial.page_input import LONGEST, PageInput, RunRoad, page_input
+from vehicle.runs.trial.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
 from vehicle.signals.excitation.signal import Signal
@@ -50,6 +50,12 @@ FRICTION = {
     "stribeck_exponent": ("Stribeck exponent", 4.0),
 }
 """Parameters with a slider: words, and usual end of the range, which is larger for a car with larger values."""
+
+WINDOW = 4096
+"""Samples of a window of the densities; LINES of trial_worker.js."""
+
+SHORTEST = 1.05 * max(SPEEDS)
+"""Minimum length of the evaluated record in windows: one window at the highest speed, and the lost last samples."""
 
 WORKER = ("trial_signals.js", "trial_worker.js")
 """Scripts of the numbers, which the page runs in a worker."""
@@ -85,6 +91,7 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
         "cars": [packed(each.content, byte_runs(each, shown, exact=each is base)) for each in numbers],
         "interval": signal.timestep,
         "samples": drive.signal.time.size,
+        "shortened": drive.signal.time.size < signal.time.size,
         "skip": round(skip / signal.timestep),
         **drive.data(base.plates),
         "plateCount": len(base.plates),
@@ -153,14 +160,18 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
 
     Raises:
         ConfigurationError: the car is unstable for the reduced engine, lacks the seat rail, or the input has another
-            rate than the record, slopes of its own, or ends before the evaluation begins.
+            rate than the record, slopes of its own, or is too short for a density at the highest speed.
     """
     car.check("reduced")
     car.vehicle.require_channels([f"{POINT}_acc_{axis}" for axis in AXES], car.vehicle.acceleration_channels)
     if signal.slope_velocity or abs(signal.timestep * car.vehicle.solver.record_rate - 1.0) > 1e-6:
-        raise ConfigurationError("trial: the input must be heights of the plates at the record rate")
-    if min(signal.duration, LONGEST) < skip + 5.0:
-        raise ConfigurationError(f"trial: found {signal.duration:g} s, must be at least {skip + 5.0:g} s")
+        raise ConfigurationError("the input must be heights of the plates at the record rate")
+    shortest = skip + SHORTEST * WINDOW * signal.timestep
+    if min(signal.duration, LONGEST) < shortest:
+        raise ConfigurationError(
+            f"the input of {signal.duration:g} s, of which the page runs at most {LONGEST:g} s, must have at least "
+            f"{shortest:.3g} s"
+        )
 
 
 def _module() -> bytes:
@@ -210,6 +221,9 @@ def _sliders(car: Car, numbers: CarNumbers, road: RunRoad | None) -> list[dict[s
             )
     low, high = CURVE_SCALES
     for axle, indices in axles.items():
+        if dampers[indices[0]].law.controlled:
+            # The controller sets the coefficient; a factor would act on the softest line alone.
+            continue
         sliders.append(
             {
                 "id": f"{axle}-curve_scale",

@@ -119,17 +119,20 @@ class Trial {
     const [x, y] = weighted(acceleration[0], acceleration[1], w, interval);
     const [z] = weighted(acceleration[2], null, data.weightings[2], interval);
     const axes = [x, y, z].map((history) => rms(history, skip));
-    const dampers = Array.from({ length: count }, (_, i) => {
-      const velocity = histories[3 + 2 * i].subarray(0, samples), force = histories[4 + 2 * i].subarray(0, samples);
-      let slipping = 0, highest = 0;
+    const dampers = Array.from({ length: count }, (_, i) => ({ velocity: histories[3 + 2 * i].subarray(0, samples), force: histories[4 + 2 * i].subarray(0, samples) }));
+    // In typed arrays: as numbers in an object for each damper, Chromium 150 gives all dampers the numbers of the last one
+    // when it optimises the loop while it runs.
+    const slips = new Float64Array(count), highest = new Float64Array(count);
+    for (let i = 0; i < count; i++) {
+      const { velocity, force } = dampers[i];
       for (let k = skip; k < samples; k++) {
-        slipping += Math.abs(velocity[k]) > data.dampers[i].slip;
-        highest = Math.max(highest, Math.abs(force[k]));
+        if (Math.abs(velocity[k]) > data.dampers[i].slip) slips[i]++;
+        highest[i] = Math.max(highest[i], Math.abs(force[k]));
       }
-      return { velocity, force, slip: slipping / (samples - skip), highest };
-    });
+      slips[i] /= samples - skip;
+    }
     return {
-      acceleration, dampers, axes, notices, skip,
+      acceleration, dampers, slips, highest, axes, notices, skip,
       comfort: Math.hypot(...axes.map((value, axis) => value * data.factors[axis])),
       density: density(acceleration[2], skip, LINES, interval),
       resolution: 1 / (LINES * interval),

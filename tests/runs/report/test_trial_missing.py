@@ -1,0 +1,52 @@
+"""Reports without the section "Try it", or without one of its sliders."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from typing import Any
+
+import pytest
+
+from tests.runs.report.test_trial import shipped
+from vehicle.errors import ConfigurationError
+from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.page import report_page
+from vehicle.runs.report.trial_section import trial
+from vehicle.runs.trial.trial_data import trial_data
+
+
+def test_a_report_without_sliders_says_why(reported):
+    run = read_run(reported.folder)
+    rubbing = dataclasses.replace(run, car=run.car.with_({"front.damper.side_force_coefficient": 0.2}))
+    assert "damper_fr.side_force_coefficient: found 0.2" in trial(rubbing)[1]
+    assert "This report has no sliders for this car or input" in report_page([rubbing])
+    summary: Any = run.summary
+    cams: Any = {**summary, "input": {**summary["input"], "road": {"tyre_contact": "cams"}}}
+    assert "through cams" in trial(dataclasses.replace(run, summary=cams))[1]
+    silent = {name: history for name, history in run.recording.channels.items() if not name.startswith("plate")}
+    recording = dataclasses.replace(run.recording, channels=silent)
+    numbers, content = trial(dataclasses.replace(run, recording=recording))
+    assert numbers == "" and "no channel &#x27;plate_fl_displacement&#x27;" in content
+
+
+def test_a_car_that_the_page_cannot_run_has_no_section():
+    car, signal = shipped("low.csv")
+    with pytest.raises(
+        ConfigurationError, match=r"12 s, of which the page runs at most 30 s, must have at least 35\.4 s"
+    ):
+        trial_data(car, signal, wheel="fl", skip=30.0)
+    slopes = dataclasses.replace(signal, slope_velocity=signal.displacement)
+    with pytest.raises(ConfigurationError, match="heights of the plates"):
+        trial_data(car, slopes, wheel="fl")
+
+
+def test_a_controlled_damper_has_no_slider_for_its_curve():
+    """A factor would act on the softest line alone; the coefficient comes from the controller."""
+    control = (
+        "front.damper.control={law='skyhook', minimum_damping=500, maximum_damping=4000, skyhook_damping=2500, "
+        "groundhook_damping=1500, skyhook_share=0.5, control_period=1e-3}"
+    )
+    car, signal = shipped("low.csv", (control,))
+    names = {slider["id"] for slider in json.loads(trial_data(car, signal, wheel="fl"))["sliders"]}
+    assert "front-coulomb_friction" in names and "front-curve_scale" not in names
