@@ -127,6 +127,8 @@ def test_it_may_record_few_channels(car, high_piece):
         np.testing.assert_allclose(few[name], everything[name], atol=1e-9 * np.max(np.abs(everything[name])))
     with pytest.raises(ConfigurationError, match="no channel 'seat_acc'"):
         car.run(high_piece, engine="reduced", channels=["seat_acc"])
+    with pytest.raises(ConfigurationError, match="found the text 'loads', must be a list of names"):
+        car.run(high_piece, engine="reduced", channels="loads")
 
 
 def test_it_says_what_it_is(car, high_piece):

@@ -227,13 +227,15 @@ class Shot:
         highest = 0.5 / cut.interval
         if highest < FASTEST_MOTION:
             speed += f" (faster than {highest:g} Hz averages out)"
+        scale = f"exaggerated {cut.exaggeration:g} times" if cut.exaggeration != 1.0 else "true to scale"
         road, exaggerated = [], "motion"
         if self.road is not None:
+            level += ", effective height"
             road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
             exaggerated = "motion and road"
         return [
             f"{Path(run.signal.source).name}: {level} under the {wheel}",
-            f"{exaggerated} exaggerated {cut.exaggeration:g} times, {speed}",
+            f"{exaggerated} {scale}, {speed}",
             *road,
             f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s; tyres "
             f"{self.vehicle.driving.words}",
@@ -245,8 +247,9 @@ class Shot:
         ahead = 0.5 * self.visible
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
         traces = []
+        input_label = "plate [mm]" if self.road is None else "effective height of the road [mm]"
         for label, channel, scale, band in (
-            ("plate [mm]" if self.road is None else "road [mm]", f"plate_{wheel}_displacement", 1e3, None),
+            (input_label, f"plate_{wheel}_displacement", 1e3, None),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
             (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
         ):

@@ -352,6 +352,11 @@ class Car:
         if engine not in ENGINES:
             raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
         defaults = self.vehicle.channels
+        if isinstance(channels, str):
+            raise ConfigurationError(
+                f"channels: found the text {channels!r}, must be a list of names; for loads, set "
+                "[*car.vehicle.channels, *car.vehicle.load_channels]"
+            )
         self.vehicle.require_channels(channels or (), (*defaults, *self.vehicle.requested_channels))
         self.vehicle.require_wheels(signal.wheels)
         names = defaults if channels is None else channels
