@@ -149,6 +149,17 @@ def test_the_wheels_stand_on_the_road(road_car, server, cleat):
         spin = cleat.speed * time / (wheels["fr"].center[2] - wheels["fr"].patch[2])
         turned = Rotation.from_quat(rim.wxyz, scalar_first=True).as_matrix()
         np.testing.assert_allclose(turned, Rotation.from_euler("y", -spin).as_matrix(), atol=1e-6)
+        # Front wheels moved by 40 mm: the road is drawn again, and they are on the cleat at their time.
+        longer = car.with_({"front.hardpoints.wheel_center.x": 0.81, "front.hardpoints.tyre_patch.x": 0.81})
+        moved = cleat.under(longer)
+        stage.show(longer, car_motion(longer, cleat), slower=1.0, larger=2.0)
+        times = moved.road["obstacle_s"]
+        stage.frame(times[0] + 0.025 / moved.speed - moved.shown)
+        strip = np.vstack([node(server, f"/road/fr_{shade}").vertices for shade in (0, 1)])
+        below = strip[strip[:, 2] > 0.019, 0] + node(server, "/road").position[0]
+        assert below.min() < 0.81 < below.max()
+        # Centre of the cleat: 0.81 m, before 0.85 m.
+        assert 0.5 * (below.min() + below.max()) == pytest.approx(0.81, abs=0.005)
     finally:
         stage.stop()
 
