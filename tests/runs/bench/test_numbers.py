@@ -119,6 +119,10 @@ def test_a_road_rolls_and_delays_the_rear_axle():
         bench_drive(car, recorded)
     with pytest.raises(ConfigurationError, match=r"--seconds 100: must be 5 to 60 s"):
         bench_drive(car, road("C", 80), seconds=100.0)
+    with pytest.raises(ConfigurationError, match=r"--seconds 6: --duration 12 sets the length; omit one"):
+        bench_drive(car, road("C", 80, duration=12.0), seconds=6.0)
+    with pytest.raises(ConfigurationError, match=r"--duration 500: must be .* to .* s, of which the first"):
+        bench_drive(car, road("C", 80, duration=500.0))
 
 
 def test_moved_wheels_take_the_road_where_they_are():

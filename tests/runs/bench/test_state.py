@@ -40,6 +40,8 @@ def test_settings_are_numbers_and_components_with_their_ranges(state):
     for setting in state.settings.values():
         assert setting.low <= setting.value <= setting.high and 0.0 < setting.step < setting.high - setting.low
     assert not [path for path in state.settings if path.rpartition(".")[2] in ("table", "friction_law", "name")]
+    # The solver has no effect on the numbers of the reduced engine.
+    assert not [path for path in state.settings if path.startswith("solver.")]
 
 
 def test_a_zero_has_a_range_of_a_usual_size(car):

@@ -89,6 +89,13 @@ def bench_drive(car: Car, source: Signal | Road, *, begin: float = 0.0, seconds:
         if isinstance(source.speed, str):
             raise ConfigurationError("bench: a road recorded over time has no constant speed; use a class or a profile")
         drive = source.under(car.vehicle, car.overrides)
+        if source.duration is not None and seconds is not None:
+            raise ConfigurationError(f"--seconds {seconds:g}: --duration {source.duration:g} sets the length; omit one")
+        if source.duration is not None and not SHORTEST <= source.duration - drive.skip <= LONGEST:
+            raise ConfigurationError(
+                f"--duration {source.duration:g}: must be {SHORTEST + drive.skip:g} to {LONGEST + drive.skip:g} s, of "
+                f"which the first {drive.skip:g} s are not evaluated"
+            )
         if source.duration is None:
             source = replace(source, duration=drive.skip + (seconds or _usual_length(drive, drive.skip)))
             drive = source.under(car.vehicle, car.overrides)

@@ -59,7 +59,7 @@ def settings(car: Car) -> dict[str, Setting]:
     """Return the numbers of a car that a slider can change, by path, in the order of the vehicle file.
 
     Vectors with three components, as points, stiffnesses and damping, are three settings. Tables of curves, names,
-    counts and truth values have none.
+    counts, truth values and steps of the solver have none.
 
     Args:
         car: the car.
@@ -67,6 +67,7 @@ def settings(car: Car) -> dict[str, Setting]:
     return {
         setting.path: setting
         for parameter in car.search()
+        if not parameter.path.startswith("solver.")
         for setting in _settings(parameter, car.vehicle.quantity_of(parameter.path))
     }
 
