@@ -10,7 +10,7 @@ from vehicle.compiler import numba_module
 from vehicle.engines.reduced.car_table import CarTable
 from vehicle.engines.reduced.inlining import EXACT
 from vehicle.engines.reduced.pole_model import Outputs
-from vehicle.engines.reduced.step_factors import CarFactors
+from vehicle.engines.reduced.step_factors import ACCURACY, CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, SINGLE
 from vehicle.engines.reduced.time_step import solve_forces
 from vehicle.model.laws.damper import damper_curve
@@ -64,7 +64,9 @@ def test_velocities_and_forces_of_coupled_dampers_are_consistent(count, own_gain
         solve(t, r, np.zeros(0, dtype=np.int64), (0.0,) * count)
         velocity, force = t[r.velocity :][:count, 0], t[r.inputs :][:count, 0]
         # v = a + G f, and f follows from v: the curve acts with the mean of both ends.
-        np.testing.assert_allclose(velocity, arriving + gain @ force, rtol=1e-7, atol=1e-7 * size)
+        # The iteration leaves a share `ACCURACY` of the change of a force in the step, here from 0.
+        left = ACCURACY * np.max(gain) * np.max(np.abs(force))
+        np.testing.assert_allclose(velocity, arriving + gain @ force, rtol=1e-7, atol=1e-7 * size + left)
         for v, f, half, law in zip(velocity, force, hold, laws, strict=True):
             curve = damper_curve(law)
             excess = 0.5 * float(curve.force(v) - curve.least_slope * v)

@@ -93,6 +93,8 @@ def test_nothing_shifts(browser):
     """The section has its height before the first record, and keeps it when sliders move."""
     for _ in range(5):
         browser.refresh()
+        # The driver may go on before the script of the page has filled the table.
+        wait(lambda: browser.execute_script("return document.querySelectorAll('#trial-table tr').length") > 0)
         before, height = browser.execute_script(HEIGHT)
         if before == "Computing ...":
             break
