@@ -230,8 +230,10 @@ class Shot:
         scale = f"exaggerated {cut.exaggeration:g} times" if cut.exaggeration != 1.0 else "true to scale"
         road, exaggerated = [], "motion"
         if self.road is not None:
-            level += ", effective height"
-            road = [f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long"]
+            road = [
+                f"road passes at {3.6 * self.road.speed:.4g} km/h, a stripe is {self.road.stripe:g} m long; "
+                "heights in numbers: effective, as the tyre takes them"
+            ]
             exaggerated = "motion and road"
         return [
             f"{Path(run.signal.source).name}: {level} under the {wheel}",
@@ -247,7 +249,7 @@ class Shot:
         ahead = 0.5 * self.visible
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
         traces = []
-        input_label = "plate [mm]" if self.road is None else "effective height of the road [mm]"
+        input_label = "plate [mm]" if self.road is None else "effective road [mm]"
         for label, channel, scale, band in (
             (input_label, f"plate_{wheel}_displacement", 1e3, None),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
