@@ -65,8 +65,9 @@ def draw_responses(axes: npt.NDArray[Any], responses: Sequence[FrfComparison]) -
             phase.plot(response.frequency, wrapped_phase(values.copy()), **LOOKS[label])
             if np.isfinite(beside).any():
                 coherence.plot(response.frequency, beside, label=label, **LOOKS[label])
+        to_plate = f" to {response.plate}" if response.plate else ""
         magnitude.set_title(
-            f"{response.channel}\nFRAC {response.frac:.3f}; {response.scaled_frac:.3f} with frequencies times "
+            f"{response.channel}{to_plate}\nFRAC {response.frac:.3f}; {response.scaled_frac:.3f} with frequencies times "
             f"{response.scale:.3f}"
         )
         magnitude.legend(loc="best")

@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
 from vehicle.signals.excitation.signal_file import read_signal
@@ -23,7 +24,7 @@ from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
 from vehicle.signals.records.table import Record, Vector
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
-from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.record_target import KEPT, RecordTarget
 from vehicle.studies.tuning.road_car import RoadCar
@@ -112,8 +113,12 @@ def measured_responses(
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
     plate_signal = None if stuck else _signal(signal, car, path, measured, asked, inverted)
-    wheel = car.vehicle.shaker_wheel if plate_signal is None else plate_signal.wheels[0]
-    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=wheel, averages=averages)
+    if plate_signal is not None:
+        data = to_driven_plates(data, motions_of(plate_signal), str(path))
+    else:
+        shaker = plates_of({car.vehicle.shaker_wheel: 1.0})
+        data = data.renamed([name if name.motion else ResponseName(name.output, shaker) for name in data.names])
+    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, averages=averages)
     return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
 
 

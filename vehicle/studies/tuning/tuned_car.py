@@ -84,7 +84,7 @@ class TunedCar:
             if not isinstance(target, RecordTarget):
                 errors = [_response_errors(target, car) for car in (self.start, self.fitted)]
                 measures: tuple[tuple[str, str], ...] = (("magnitude", "dB"), ("phase", "deg"))
-                channels: Sequence[str] = target.data.channels
+                channels: Sequence[str] = target.data.labels
             else:
                 errors = [
                     100.0 * np.sqrt(np.mean(target.residuals(car) ** 2, axis=1))[:, None]
