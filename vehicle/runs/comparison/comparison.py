@@ -189,7 +189,8 @@ class Comparison:
         """Return the content of `compare.csv`; columns of the other kind of row are empty."""
         header = (
             f"# measured {self.measured}, simulated {self.run}; worst first; plate: input of the response; "
-            "error: root of the mean of |ln(simulated / measured)|^2 weighted by both coherences; magnitude positive where simulated is larger; "
+            "error: root of the mean of |ln(simulated / measured)|^2 weighted by both coherences; magnitude positive "
+            "where simulated is larger; "
             "iso18571: ISO/TS 18571, 0 to 1, mean over windows of window_s at the full rate, weighted by their RMS; "
             "lag: positive where simulated is late, in the middle of the record; drift: its change per time"
         )

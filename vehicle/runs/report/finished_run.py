@@ -75,10 +75,10 @@ class FinishedRun:
 
         The words are empty for a single motion.
         """
-        if len(self.responses) < 2:
-            return [(self.wheel, "", self.summary["peaks"])]
         estimate, wheels = self.summary["frf"], self.car.vehicle.wheels
-        each = [motion.get("peaks", self.summary["peaks"]) for motion in (estimate or {}).get("to", ())]
+        if len(self.responses) < 2 or estimate is None:
+            return [(self.wheel, "", self.summary["peaks"])]
+        each = [motion.get("peaks", self.summary["peaks"]) for motion in estimate.get("to", ())]
         return [
             (motion.first, " and ".join(f"plate {side_of(wheel, wheels)}" for wheel in motion.motion), peaks)
             for motion, peaks in zip(self.responses, each, strict=True)

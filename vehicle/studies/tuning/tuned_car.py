@@ -14,6 +14,7 @@ from vehicle.model.parameters.paths import overrides_of, unit_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
+from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -33,7 +34,9 @@ class Agreement:
 
     Attributes:
         measurement: name of the measurement.
-        channel: channel.
+        channel: channel; of an FRF its output.
+        plate: input of an FRF, as "plate_fr"; empty for a time history.
+        label: channel, with its plate if the measurement has FRFs to several.
         measure: quantity: "magnitude", "phase" or "history".
         unit: dB, deg, or % of the RMS of the measured history.
         before, after: RMS of the error over the fitted frequencies or times.
@@ -41,6 +44,8 @@ class Agreement:
 
     measurement: str
     channel: str
+    plate: str
+    label: str
     measure: str
     unit: str
     before: float
@@ -84,20 +89,24 @@ class TunedCar:
             if not isinstance(target, RecordTarget):
                 errors = [_response_errors(target, car) for car in (self.start, self.fitted)]
                 measures: tuple[tuple[str, str], ...] = (("magnitude", "dB"), ("phase", "deg"))
-                channels: Sequence[str] = target.data.labels
+                names: Sequence[ResponseName] = target.data.names
+                labels: Sequence[str] = target.data.labels
             else:
                 errors = [
                     100.0 * np.sqrt(np.mean(target.residuals(car) ** 2, axis=1))[:, None]
                     for car in (self.start, self.fitted)
                 ]
-                measures, channels = (("history", "% of RMS"),), tuple(target.record.channels)
-            for row, channel in enumerate(channels):
+                measures, labels = (("history", "% of RMS"),), tuple(target.record.channels)
+                names = [ResponseName(channel) for channel in labels]
+            for row, (name, label) in enumerate(zip(names, labels, strict=True)):
                 for column, (measure, unit) in enumerate(measures):
                     before, after = (float(table[row, column]) for table in errors)
                     rows.append(
                         Agreement(
                             measurement=target.name,
-                            channel=channel,
+                            channel=name.output,
+                            plate=name.input,
+                            label=label,
                             measure=measure,
                             unit=unit,
                             before=before,
@@ -136,6 +145,7 @@ class TunedCar:
                 {
                     "measurement": row.measurement,
                     "channel": row.channel,
+                    "plate": row.plate or None,
                     "measure": row.measure,
                     "unit": row.unit,
                     "before": row.before,

@@ -45,7 +45,7 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
     """
     models = {"start": target.model_response(start), "fitted": target.model_response(fitted)}
     data, frequency = target.data, target.data.frequency
-    shown = data.names[:ACROSS]
+    shown = data.labels[:ACROSS]
     estimator = "local rational model" if target.window is None else f"H1, Hann windows of {target.window:g} s"
     model = (
         "linear car from its matrices, dampers stuck"
@@ -68,8 +68,7 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
                 fading(magnitude, frequency, np.abs(response[row]), weight, label, **LOOKS[label])
                 phase.plot(frequency, wrapped_phase(response[row].copy()), **LOOKS[label])
             coherence.plot(frequency, data.coherence[row], **LOOKS["measured"])
-            to_plate = f" to {name.input}" if len(data.inputs) > 1 else ""
-            magnitude.set_title(textwrap.fill(channel_words(name.output) + to_plate, 40))
+            magnitude.set_title(textwrap.fill(channel_words(name), 40))
             magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.5, 1))
         if isinstance(target, LevelTarget):
