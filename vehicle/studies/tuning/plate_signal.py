@@ -38,16 +38,14 @@ def plate_choices(asked: Choice, file: Path, signal: object) -> tuple[Choice, Ch
     measurement, other = read_record(file, asked.databases), read_record(_input_file(signal))
     driving = {role: wanted for role, wanted in named.items() if matching(other, wanted, _is_history)}
     elsewhere = {role for role in driving if not matching(measurement, plates[role], _is_history)}
-    own = {
-        name: {role: value for role, value in getattr(asked, name).items() if role not in elsewhere}
-        for name in ("channels", "units")
-    }
+    own = {role: wanted for role, wanted in asked.channels.items() if role not in elsewhere}
+    units = {role: unit for role, unit in asked.units.items() if role not in elsewhere}
     wheels = {role: role.removeprefix("plate_").removesuffix("_displacement") for role in driving}
     of_signal = Choice(
         channels={wheels[role]: wanted for role, wanted in driving.items()},
         units={wheels[role]: unit for role, unit in asked.units.items() if role in driving},
     )
-    return replace(asked, **own), of_signal if driving else None
+    return replace(asked, channels=own, units=units), of_signal if driving else None
 
 
 def _is_history(channel: Channel) -> bool:
@@ -79,10 +77,12 @@ def plate_signal(
             signal = read_signal(_input_file(source), wheel=car.vehicle.shaker_wheel, choice=chosen)
         except ForeignTableError:
             held = read_record(_input_file(source)).channels
-            plates = {role: name for role, name in suggested_channels(held).items() if PLATE_CHANNEL.fullmatch(role)}
-            options = map_options(plates) or "--map plate_fl_displacement=NAME"
-            names = ", ".join(repr(channel.name) for channel in held[:20])
-            raise DataError(f"--signal {source}: no column names its plate; set {options} (columns: {names})") from None
+            named = {role: name for role, name in suggested_channels(held).items() if PLATE_CHANNEL.fullmatch(role)}
+            options = map_options(named) or "--map plate_fl_displacement=NAME"
+            listed = ", ".join(repr(channel.name) for channel in held[:20])
+            raise DataError(
+                f"--signal {source}: no column names its plate; set {options} (columns: {listed})"
+            ) from None
         return _turned(signal, inverted) if chosen is not None else signal
     plates = {} if measured.record is None else measured.record.channels
     names = {wheel: f"plate_{wheel}_displacement" for wheel in CORNERS.values()}
