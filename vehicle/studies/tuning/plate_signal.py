@@ -38,14 +38,14 @@ def plate_choices(asked: Choice, file: Path, signal: object) -> tuple[Choice, Ch
     measurement, other = read_record(file, asked.databases), read_record(_input_file(signal))
     driving = {role: wanted for role, wanted in named.items() if matching(other, wanted, _is_history)}
     elsewhere = {role for role in driving if not matching(measurement, plates[role], _is_history)}
-    own = {role: wanted for role, wanted in asked.channels.items() if role not in elsewhere}
+    roles = {role: wanted for role, wanted in asked.channels.items() if role not in elsewhere}
     units = {role: unit for role, unit in asked.units.items() if role not in elsewhere}
     wheels = {role: role.removeprefix("plate_").removesuffix("_displacement") for role in driving}
     of_signal = Choice(
         channels={wheels[role]: wanted for role, wanted in driving.items()},
         units={wheels[role]: unit for role, unit in asked.units.items() if role in driving},
     )
-    return replace(asked, channels=own, units=units), of_signal if driving else None
+    return replace(asked, channels=roles, units=units), of_signal if driving else None
 
 
 def _is_history(channel: Channel) -> bool:
@@ -76,10 +76,10 @@ def plate_signal(
         try:
             signal = read_signal(_input_file(source), wheel=car.vehicle.shaker_wheel, choice=chosen)
         except ForeignTableError:
-            held = read_record(_input_file(source)).channels
-            named = {role: name for role, name in suggested_channels(held).items() if PLATE_CHANNEL.fullmatch(role)}
+            channels = read_record(_input_file(source)).channels
+            named = {role: name for role, name in suggested_channels(channels).items() if PLATE_CHANNEL.fullmatch(role)}
             options = map_options(named) or "--map plate_fl_displacement=NAME"
-            listed = ", ".join(repr(channel.name) for channel in held[:20])
+            listed = ", ".join(repr(channel.name) for channel in channels[:20])
             raise DataError(
                 f"--signal {source}: no column names its plate; set {options} (columns: {listed})"
             ) from None
