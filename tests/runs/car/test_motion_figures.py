@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,12 +20,13 @@ from vehicle.commands.modes import main as modes
 from vehicle.commands.new import main as new
 from vehicle.commands.show import main as show
 from vehicle.engines.linear.car_matrices import CarMatrices
-from vehicle.engines.linear.motion_names import description, leading_motions
 from vehicle.engines.simulation.axle_ride import Support
 from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.runs.car.car_text import figures_table
 from vehicle.runs.car.motion_figures import STATES, MotionFigure, motion_figures
+from vehicle.runs.output.mode_file import mode_shapes
+from vehicle.runs.report.answer import mode_words
 from vehicle.runs.report.car_section import car_section
 
 Vector = npt.NDArray[np.float64]
@@ -331,12 +333,15 @@ def test_damping_is_that_of_the_quarter_car(wheel, tyre, sprung, unsprung):
 
 
 def test_a_mode_below_half_of_the_energy_is_named_by_two_motions(cars):
-    for state in STATES:
-        for mode in cars["sedan"].modes(state):
-            leading = leading_motions(mode.motions)
-            assert list(leading) == list(mode.motions)[: len(leading)]
-            assert len(leading) == (1 if max(mode.motions.values()) >= 0.5 else 2)
-            assert all(name in description(mode.motions) for name in leading)
+    shapes = mode_shapes(cars["sedan"])
+    for mode, shape in zip(cars["sedan"].modes(), shapes, strict=True):
+        first, second, *_ = (name.partition(" (")[0] for name in mode.motions)
+        mixed = max(mode.motions.values()) < 0.5
+        names = f"{first} with {second}" if mixed else first
+        assert f"({names}, damping ratio" in mode_words(mode)
+        assert shape.name == mode.description or (mixed and re.fullmatch(r".* \(\d+ %\) with others", shape.name))
+        assert len(shape.name) <= 80
+    assert any(" with others" in shape.name for shape in shapes)
 
 
 def test_roll_needs_no_gravity_and_sinks_with_the_centre_of_gravity():
