@@ -81,7 +81,7 @@ def test_changes_give_the_numbers_of_the_changed_car(car, state):
     assert table["comfort unweighted"][0] == pytest.approx(loaded.unweighted.overall, rel=1e-9)
     name, a, b, change, unit = state.rows()[0]
     assert (name, unit) == ("comfort unweighted", "m/s2")
-    assert (a, b) == (table[name][0], unchanged[name][0]) and change == pytest.approx(100.0 * (a / b - 1.0))
+    assert (a, b) == (unchanged[name][0], table[name][0]) and change == pytest.approx(100.0 * (b / a - 1.0))
     assert change < -5.0
     state.keep()
     assert all(row[1] == row[2] for row in state.rows())

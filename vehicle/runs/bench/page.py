@@ -24,7 +24,7 @@ FIRST = ("coulomb_friction", "damper.viscous", "main_spring.stiffness", "tyre.st
 """Ends of the paths of the sliders at the start; the first path with each."""
 
 RED, PALE, GREY = "#c0392b", "rgba(192,57,43,0.35)", "#888888"
-"""Colours of A, of its band, and of B."""
+"""Colours of B, of its band, and of A."""
 
 DECADES = 3e4
 """Highest over lowest value of a logarithmic axis."""
@@ -78,7 +78,7 @@ class Page:
             self.view = View(gui, self.stage, self.state.drive)
         self._plots = self._add_plots()
         with gui.add_folder("Reference and files"):
-            keep, reset = gui.add_button("Keep as B"), gui.add_button("Undo all changes")
+            keep, reset = gui.add_button("Keep as A"), gui.add_button("Undo all changes")
             files = [
                 (gui.add_button("Write vehicle file"), write_car),
                 (gui.add_button("Write run"), write_run),
@@ -193,7 +193,7 @@ class Page:
                     self._say(f"picture: {error}")
 
     def _show_picture(self) -> None:
-        """Compute and show the moving picture of A."""
+        """Compute and show the moving picture of B."""
         with self.state.computing:
             self.view.show(self.state.present[0])
 
@@ -208,7 +208,7 @@ class Page:
         base = len(state.car.overrides)
         texts = ["; ".join(shown.overrides[base:]) or "unchanged" for shown in (car, other)]
         label = f"{_escaped(state.drive.label)}; computed in {1e3 * present.seconds:.0f} ms"
-        lines.append(f"\n**A** {texts[0]} · **B** {texts[1]}\n\n{label}")
+        lines.append(f"\n**A** {texts[1]} · **B** {texts[0]}\n\n{label}")
         with self.server.atomic():
             self._table.content = "\n".join(lines)
             for plot, curves in self._plots:
@@ -241,13 +241,13 @@ class Page:
             (
                 "FRF seat rail z [m/s² per m] over f [Hz], 95 % band",
                 frf_curves,
-                (axis, line("A", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("B", GREY, 1)),
+                (axis, line("B", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("A", GREY, 1)),
                 logarithmic(frf_curves(*both)[1]),
             ),
             (
                 "PSD seat rail z [(cm/s²)²/Hz] over f [Hz]",
                 density_curves,
-                (axis, line("A", RED, 2), line("B", GREY, 1)),
+                (axis, line("B", RED, 2), line("A", GREY, 1)),
                 logarithmic(density_curves(*both)[1]),
             ),
             (
@@ -255,8 +255,8 @@ class Page:
                 lambda a, b: damper_curves(a, b, wheel),
                 (
                     uplot.Series(label="v [m/s]"),
-                    *(line(f"A {end}", RED, 2) for end in ("low", "high")),
-                    *(line(f"B {end}", GREY, 1) for end in ("low", "high")),
+                    *(line(f"B {end}", RED, 2) for end in ("low", "high")),
+                    *(line(f"A {end}", GREY, 1) for end in ("low", "high")),
                 ),
                 {"x": uplot.Scale(time=False), "y": uplot.Scale(range=(-force, force))},
             ),
