@@ -232,7 +232,9 @@ def _job(options: argparse.Namespace) -> None:
             command=shlex.join(["python", "-m", "vehicle.shaker", *options.words]),
         )
     if not options.quiet:
-        print(summary_text(summary, output))
+        from vehicle.runs.report.general_notices import without_general
+
+        print(summary_text({**summary, "notices": without_general(summary["notices"], car.vehicle)}, output))
 
 
 def _check_signal(options: argparse.Namespace, signal: Signal) -> None:

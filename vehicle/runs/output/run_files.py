@@ -108,8 +108,9 @@ def write_run(
         VehicleError: a file cannot be made or written.
     """
     channels = run.car.vehicle.acceleration_channels
-    # On a road, FRFs that cannot be estimated are left out with a notice.
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
+    if run.road is not None:
+        missing = []  # on every road the rear plates repeat the front ones, which no user can change
     files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
         files["frf"] = "frf.csv"

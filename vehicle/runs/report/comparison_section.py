@@ -11,7 +11,7 @@ from vehicle.drawing.rendering.several_runs import plot_responses, shared_channe
 from vehicle.names import side_of, wheel_words
 from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.general_notices import notices_of
+from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
@@ -64,7 +64,7 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
 
 def _notices(runs: Sequence[FinishedRun]) -> Markup:
     """Return the notices of all runs; those that are not of all runs name theirs."""
-    of_runs = {run.name: notices_of(run) for run in runs}
+    of_runs = {run.name: without_general(run.summary["notices"], run.car.vehicle) for run in runs}
     texts = dict.fromkeys(text for notices in of_runs.values() for text in notices)
     if not texts:
         return Markup()

@@ -16,7 +16,7 @@ from vehicle.runs.report.comfort_class import reactions
 from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.general_notices import notices_of
+from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
@@ -66,7 +66,7 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
         for part in (tag("dt", topic), tag("dd", *(tag("p", text) for text in texts)))
     ]
     parts = [tag("dl", *rows, class_="findings")]
-    if notices := notices_of(run):
+    if notices := without_general(run.summary["notices"], run.car.vehicle):
         said = [tag("li", text) for text in notices]
         parts += [tag("h3", "Notices"), tag("ul", *said, class_="notices")]
     return joined(parts)

@@ -81,11 +81,11 @@ def _content(run: FinishedRun) -> Markup:
             tag(
                 "p",
                 "Grey: A, the reference; red: B, the car with these settings. The page computes the first "
-                f"{duration:g} s. Friction, Stribeck parameters, level and road class recompute exactly. Stiffness and speed are "
-                "stored in steps; change one of them at a time (histories within 0.02 % of their peaks). The damper "
-                "curve is within 0.1 %; with Stribeck friction single peaks may differ by up to 4 %, comfort by "
-                "0.002 %. Comfort is the weighted acceleration of the seat rail (vector sum, ISO 2631-1); lower is "
-                "better."
+                f"{duration:g} s. Friction, Stribeck parameters, level and road class recompute exactly. Stiffness and "
+                "speed are stored in steps; change one of them at a time (histories within 0.02 % of their peaks). "
+                "The damper curve is within 0.1 %; with Stribeck friction single peaks may differ by up to 4 %, "
+                "comfort by 0.002 %. Comfort is the weighted acceleration of the seat rail (vector sum, ISO 2631-1); "
+                "lower is better."
                 f"{other} ",
                 tag("span", id="trial-time-used"),
                 class_="about",
