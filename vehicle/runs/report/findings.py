@@ -56,7 +56,7 @@ def _dampers(summary: RunSummary) -> list[str]:
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
         times = "never exceeds" if first is None else "exceeds"
-        share_text = "" if first is None else f" for {100 * share:.2g} % of the time, first at {first:.3f} s"
+        share_text = "" if first is None else f" for {number(100 * share, 2)} % of the time, first at {first:.3f} s"
         if share <= STICKS:
             state = "sticks: it dissipates almost no energy, and the strut acts as a rigid link"
         elif share >= WORKS:
@@ -160,8 +160,8 @@ def _linearity(run: FinishedRun) -> list[str]:
             sentences.append(
                 f"At the {point} the median of the {multiple} is {np.median(finite):.3f}"
                 + (
-                    f"; it is below {COHERENT:g} on {100 * low:.2g} % of the lines: there the response is nonlinear "
-                    "or very small."
+                    f"; it is below {COHERENT:g} on {number(100 * low, 2)} % of the lines: there the response is "
+                    "nonlinear or very small."
                     if low > 0.0
                     else f"; it is never below {COHERENT:g}: the response is linear."
                 )

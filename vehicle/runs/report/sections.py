@@ -40,7 +40,7 @@ def tiles(run: FinishedRun) -> Markup:
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
     values += [
-        (f"{100 * share:.2g} %", f"of the time in slip, {side_of(wheel, shares)} damper")
+        (f"{number(100 * share, 2)} %", f"of the time in slip, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
     for wheel, plate, resonances in run.peaks[:1]:
