@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.engines.reduced.validity import REMEDY
 from vehicle.errors import VehicleError
 from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
 from vehicle.runs.bench.results import write_car, write_comparison, write_run
@@ -19,6 +20,7 @@ from vehicle.runs.bench.setting import Setting
 from vehicle.runs.bench.stage import Stage
 from vehicle.runs.bench.state import BenchState, LatestOnly
 from vehicle.runs.bench.view import View
+from vehicle.runs.report.differences import parameter_words
 
 FIRST = ("coulomb_friction", "damper.viscous", "main_spring.stiffness", "tyre.stiffness.z", "body.mass")
 """Ends of the paths of the sliders at the start; the first path with each."""
@@ -132,7 +134,8 @@ class Page:
         low, high, step, value = (number / scale for number in (setting.low, setting.high, setting.step, setting.value))
 
         def add() -> Any:
-            return self.server.gui.add_slider(f"{path}{unit}", low, high, step, value, hint=setting.meaning)
+            hint = f"{path}: {setting.meaning}"
+            return self.server.gui.add_slider(f"{parameter_words(path)}{unit}", low, high, step, value, hint=hint)
 
         if more:
             with self._added:
@@ -215,7 +218,10 @@ class Page:
                 plot.data = curves(present, reference)
             self._note.content = ""
             if present.warnings:
-                self._say("outside the valid range: " + "; ".join(present.warnings))
+                warnings = "; ".join(text.removesuffix(REMEDY) for text in present.warnings)
+                self._say(
+                    f"outside the valid range: {warnings}; write the vehicle file and run it with --engine mujoco"
+                )
 
     def _add_plots(self) -> list[tuple[Any, Callable[..., Any]]]:
         """Add the plots; return each with the function of its curves."""
