@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -33,9 +33,9 @@ from vehicle.model.laws.controller_fmu import require_controllers
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import assignments, full_path
 from vehicle.model.parameters.shipped import vehicle_file
-from vehicle.model.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
+from vehicle.model.parameters.vehicle import Vehicle, load_file, load_vehicle, varied_file, vehicle_of
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
-from vehicle.model.parameters.whole_body import varied_table
+from vehicle.model.parameters.whole_body import restated
 from vehicle.names import ENGINES
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.run import Run
@@ -76,7 +76,7 @@ class Car:
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._base: Car | None = None
-        self._compose_anew: Callable[[Iterable[str]], Vehicle] | None = None
+        self._step: tuple[str, ...] = ()
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
@@ -94,14 +94,19 @@ class Car:
         """
         file = None if path is None else vehicle_file(Path(path))
         changes = assignments(overrides)
-        car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
+        table, vehicle = load_file(file, changes)
+        car = cls(vehicle, folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._compose_anew = lambda more: load_vehicle(file, [*changes, *more])
+        car._table = table
         return car
 
     def with_(self, overrides: Overrides) -> Car:
         """Return a variant of this car with changed parameters; fast for many variants.
+
+        The variation acts on this car as it is: what follows the mass or the CoG of the body follows from its values,
+        also from those that a variation before has set (docs/vehicle-file.md). `overrides` of the variant lists the
+        values of all steps, so that `Car.load(file, variant.overrides)` loads the same car.
 
         If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
         terms of this car, computed once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built at
@@ -114,23 +119,38 @@ class Car:
             ConfigurationError: a name or a value is wrong.
         """
         more = assignments(overrides)
-        car = Car(self._variants.variant(more, self.overrides), folder=self.folder)
+        vehicle = self._variants.variant(more)
+        optional = partial(optional_paths, vehicle.table, self._home)
+        more += restated(self.vehicle.table, vehicle.table, self.overrides, optional)
+        car = Car(vehicle, folder=self.folder)
         car.overrides = (*self.overrides, *more)
         car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
-        car._base = self
+        car._base, car._step = self, tuple(more)
         return car
 
     # Made by the first variant of this car: the reference back to the car is a cycle, and the thousands of cars of a
     # sweep, a megabyte each, must be freed without waiting for the garbage collector.
     @cached_property
     def _variants(self) -> VehicleVariants:
-        return VehicleVariants(self.vehicle, self.folder or Path(), self._compose_anew or self._anew)
+        return VehicleVariants(self.vehicle, self._home, self._anew)
+
+    @property
+    def _home(self) -> Path:
+        return self.folder or Path()
+
+    @cached_property
+    def _table(self) -> Mapping[str, Any]:
+        """Vehicle file of this car; if it is a variant of a loaded car, `curve` still names files of force laws."""
+        if self._base is None:
+            return self.vehicle.table
+        try:
+            return varied_file(self._base._table, self._step, self._home)
+        except ConfigurationError:  # the variation sets numbers that a file has given
+            return self.vehicle.table
 
     def _anew(self, overrides: Iterable[str]) -> Vehicle:
         """Return the parameters of this car with other values, composed again from the vehicle table."""
-        table, folder = self.vehicle.table, self.folder
-        optional = partial(optional_paths, table, folder or Path())
-        return vehicle_of(varied_table(table, list(overrides), optional, self.overrides), folder)
+        return vehicle_of(varied_file(self._table, overrides, self._home), self.folder)
 
     def show(self) -> CarData:
         """Return masses, loads, stiffnesses, frequencies, geometry and parameters of the car; `print` shows them.
