@@ -37,19 +37,22 @@ SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc
 POINTERS = (*(f"efc_{name}" for name in Efc._fields), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""
 
+FUNCTIONS = ("mj_step", "mj_comVel", "mj_rne")
+"""Functions of MuJoCo that compiled code calls."""
+
 PROBE = """<mujoco><size nuserdata="2"/><option jacobian="sparse"/><worldbody><body>
 <joint type="free" frictionloss="1"/><geom size=".1"/></body></worldbody></mujoco>"""
 """A model with user data and six constraint rows in sparse format."""
 
 
 class Offsets(NamedTuple):
-    """Byte offsets in MuJoCo's structures, and the address of `mj_step`.
+    """Byte offsets in MuJoCo's structures, and addresses of its functions.
 
     Attributes:
         user_size: offset of `nuserdata` in mjModel.
         time, row_count, nonzeros: offsets of `time`, `nefc` and `nJ` in mjData.
         pointers: offsets of the array pointers in mjData, by name.
-        step: address of `mj_step`.
+        functions: addresses of `FUNCTIONS`, by name.
     """
 
     user_size: int
@@ -57,7 +60,7 @@ class Offsets(NamedTuple):
     row_count: int
     nonzeros: int
     pointers: dict[str, int]
-    step: int
+    functions: dict[str, int]
 
 
 @functools.cache
@@ -159,8 +162,8 @@ def scalar_offsets(data: mujoco.MjData) -> tuple[int, int, int]:
     return int(structure.time.offset), int(structure.nefc.offset), int(structure.nJ.offset)
 
 
-def step_address() -> int:
-    """Return the address of `mj_step` in the library that the Python bindings of MuJoCo use.
+def function_addresses() -> dict[str, int]:
+    """Return the addresses of `FUNCTIONS` in the library that the Python bindings of MuJoCo use, by name.
 
     Raises:
         LookupError: there is no single library next to the bindings, or the bindings use another copy of it.
@@ -177,7 +180,7 @@ def step_address() -> int:
         mujoco.set_mjcb_control(None)
     if not callback:
         raise LookupError(f"mjcb_control (the bindings use another library than {paths[0]})")
-    return int(ctypes.cast(library.mj_step, ctypes.c_void_p).value or 0)
+    return {name: int(ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0) for name in FUNCTIONS}
 
 
 @functools.cache
@@ -200,7 +203,7 @@ def offsets() -> Offsets:
             row_count=row_count,
             nonzeros=nonzeros,
             pointers=pointer_offsets(data, POINTERS),
-            step=step_address(),
+            functions=function_addresses(),
         )
     except LookupError as error:
         raise MissingPartError(
