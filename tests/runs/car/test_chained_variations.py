@@ -53,7 +53,7 @@ def test_a_table_about_the_origin_follows_too():
 @pytest.mark.parametrize("about", list(STEPS))
 @pytest.mark.parametrize("order", list(itertools.permutations(range(4))))
 def test_each_step_acts_on_the_car_before_it_whatever_the_order(about, order):
-    """A mass keeps radii of gyration, a CoG the inertia about the CoG, whatever was set before; a set value is as set."""
+    """A mass keeps radii of gyration, a CoG the inertia about the CoG, whatever was set before; a moment is as set."""
     car, steps = Car.load("sedan", ORIGIN if about == "origin" else []), STEPS[about]
     for number in order:
         before, step = car.vehicle.body, steps[number]
