@@ -101,6 +101,10 @@ class Vehicle:
     driving: Driving = field(compare=False)
     composition: Composition = field(compare=False)
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Vehicle({self.name}, wheels {', '.join(self.wheels)})"
+
     @property
     def points(self) -> Mapping[str, Point]:
         """Hardpoints by name, as "strut_top_fr" [m]."""

@@ -9,17 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.engines.simulation.recording import Recording, Statistics
+from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import DataError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.names import wheel_words
 from vehicle.runs.car import Car
+from vehicle.runs.output.saved_run import file_of_run, read_recording
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.frf_file import read_frf
-from vehicle.signals.records.reader import read_columns
-from vehicle.signals.records.run_summary import SUMMARY_FILE, ComfortSummary, FrfSummary, RunSummary, read_summary
+from vehicle.signals.records.run_summary import ComfortSummary, FrfSummary, RunSummary, read_summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -138,38 +138,13 @@ def read_run(
         DataError: a file of it is missing or damaged.
     """
     summary = read_summary(folder)
-    names, solver = summary["files"], summary["solver"]
-    paths = {purpose: folder / names[purpose] for purpose in ("vehicle", "time", "frf") if purpose in names}
-    if missing := next((purpose for purpose in ("vehicle", "time") if purpose not in paths), None):
-        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{missing}: missing); run the simulation again")
-    for purpose, path in paths.items():
-        if not path.is_file():
-            raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
-    if recording is None:
-        record = read_columns(paths["time"])
-        recording = Recording(
-            time=record.time,
-            channels=record.channels,
-            units=record.units,
-            excited=tuple(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
-            pose_time=np.empty(0),
-            poses=np.empty((0, 0)),
-            statistics=Statistics(
-                engine=solver["engine"],
-                callback=solver["callback"],
-                timestep=solver["timestep_s"],
-                steps=solver["steps"],
-                wall_time=solver["wall_s"],
-                warnings=tuple(solver["warnings"]),
-                energies=None,
-            ),
-        )
-    run_car = car or _car(paths["vehicle"], summary)
+    vehicle_file, recording = file_of_run(folder, summary, "vehicle"), recording or read_recording(folder, summary)
+    run_car = car or _car(vehicle_file, summary)
     estimate = summary["frf"]
     frfs: tuple[MotionResponse, ...] = ()
-    if estimate is not None and "frf" in paths:
+    if estimate is not None and "frf" in summary["files"]:
         motions = [motion["plates"] for motion in estimate.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
-        frfs = _responses(paths["frf"], run_car.vehicle.acceleration_channels, estimate, motions)
+        frfs = _responses(file_of_run(folder, summary, "frf"), run_car.vehicle.acceleration_channels, estimate, motions)
     return FinishedRun(
         name=(final_path or folder).resolve().name,
         folder=folder,
