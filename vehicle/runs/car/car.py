@@ -382,8 +382,8 @@ class Car:
             source if isinstance(source, Signal) else read_signal(find_input(source), wheel=self.vehicle.shaker_wheel)
         )
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
-        run = simulated_run(self, signal, progress, engine, channels)
-        return replace(run, skip=start) if start else run
+        car, recording, reason = simulated_run(self, signal, progress, engine, channels)
+        return Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start)
 
 
 def _is_stuck(damper: str) -> bool:

@@ -7,16 +7,16 @@ from typing import Any
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.judgement import require_finite, require_samples
+from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
-from vehicle.runs.car.run import Run
 from vehicle.signals.excitation.signal import Signal
 
 
 def simulated_run(
     car: Any, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None
-) -> Run:
+) -> tuple[Any, Recording, str]:
     """Simulate a car on a signal.
 
     Args:
@@ -25,7 +25,7 @@ def simulated_run(
         progress, engine, channels: as in `Car.run`.
 
     Returns:
-        The run.
+        The simulated car, with its time step if MuJoCo ran; the recording; the reason for the choice of the engine.
 
     Raises:
         VehicleError: see `Car.run`.
@@ -60,11 +60,11 @@ def simulated_run(
         if engine == "reduced" or recording.statistics.within_validity:
             if engine == "auto":
                 reason = "the motion stayed within the validity of the reduced engine"
-            return Run(car=car, signal=signal, recording=recording, engine_reason=reason)
+            return car, recording, reason
         reason = "; ".join(recording.statistics.warnings)
     stepped = car.stepped()
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
     require_finite(recording)
     if channels is not None:
         recording = recording.only(channels)
-    return Run(car=stepped, signal=signal, recording=recording, engine_reason=reason)
+    return stepped, recording, reason
