@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from tests.validation import validated
 from vehicle.runs.car import Car
@@ -29,7 +30,7 @@ def mirror_errors(car: Car, engine: str) -> dict[str, float]:
         for seed in range(len(car.vehicle.wheels))
     ]
     displacement = dict(zip(car.vehicle.wheels, roads, strict=True))
-    time = np.arange(roads[0].size) * 1e-3
+    time: npt.NDArray[np.float64] = np.arange(roads[0].size) * 1e-3
     run = car.run(Signal(time=time, displacement=displacement), engine=engine)
     mirrored = {OTHER[wheel]: height for wheel, height in displacement.items()}
     image = car.run(Signal(time=time, displacement=mirrored), engine=engine)

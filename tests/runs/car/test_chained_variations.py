@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -14,6 +16,8 @@ from vehicle.runs.car import Car
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import _car_of, run_of
+from vehicle.studies.tuning.fit_result import TuningResult
+from vehicle.studies.tuning.tuned_car import TunedCar
 
 ORIGIN = ["body.inertia.about=origin", "body.inertia.ixx=1600", "body.inertia.iyy=9900", "body.inertia.izz=9200",
           "body.inertia.izx=2662"]  # fmt: skip
@@ -111,3 +115,18 @@ def test_both_engines_of_a_sweep_run_the_car_of_the_second_step():
     expected = Car.load("sedan", changes[:1]).with_(changes[1:]).vehicle
     assert expected.body.inertia.iyy > 3000.0
     assert _car_of(case).vehicle == expected and run_of(case).car.vehicle == expected
+
+
+def test_the_line_that_a_fit_prints_makes_the_fitted_car():
+    """A fit varies the car that `--set` has made; its line beside those options is one variation with them."""
+    start = Car.load("sedan", ["body.inertia.iyy=2500"])
+    result = SimpleNamespace(values={"body.mass": 1500.0})
+    tuned = TunedCar(start=start, result=cast(TuningResult, result), measurements=(), engine="reduced", final=None)
+    printed = [*start.overrides, *tuned.settings.replace("--set ", "").split()]
+    assert Car.load("sedan", printed).vehicle == tuned.fitted.vehicle
+    assert tuned.fitted.vehicle.body.inertia.iyy == pytest.approx(2500.0 * 1500.0 / start.vehicle.body.mass, rel=1e-14)
+    # Without a value of the body before, it is the fitted value alone.
+    plain = TunedCar(
+        start=Car.load("sedan"), result=cast(TuningResult, result), measurements=(), engine="reduced", final=None
+    )
+    assert plain.settings == "--set body.mass=1500"
