@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from tests.validation import validated
 from vehicle.runs.car import Car
@@ -25,12 +24,12 @@ SOURCE = "conservation: the mirror image of a motion of a symmetric car is a mot
 
 def mirror_errors(car: Car, engine: str) -> dict[str, float]:
     """Return the RMS difference between a run and the mirror image of the run on the mirrored road, over the RMS."""
-    roads = [
-        random_road(rms=2e-3, seed=seed, wheel="fr", duration=1.0, taper_length=0.2).displacement["fr"]
-        for seed in range(len(car.vehicle.wheels))
+    wheels = car.vehicle.wheels
+    signals = [
+        random_road(rms=2e-3, seed=seed, wheel="fr", duration=1.0, taper_length=0.2) for seed in range(len(wheels))
     ]
-    displacement = dict(zip(car.vehicle.wheels, roads, strict=True))
-    time: npt.NDArray[np.float64] = np.arange(roads[0].size) * 1e-3
+    time = signals[0].time
+    displacement = {wheel: signal.displacement["fr"] for wheel, signal in zip(wheels, signals, strict=True)}
     run = car.run(Signal(time=time, displacement=displacement), engine=engine)
     mirrored = {OTHER[wheel]: height for wheel, height in displacement.items()}
     image = car.run(Signal(time=time, displacement=mirrored), engine=engine)
