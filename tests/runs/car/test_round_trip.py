@@ -85,6 +85,10 @@ def test_a_saved_car_is_the_car(tmp_path):
         car.save(file)
     changed = Car.load(file).with_({"body.mass": 1400})
     assert Car.load(changed.save(file, force=True)).vehicle == changed.vehicle
+    # In another place, without its file, a car is the same but for the sources of its values.
+    moved = pickle.dumps(Car.load(file))
+    file.unlink()
+    assert pickle.loads(moved)["body.mass"].value == 1400
     with pytest.raises(ConfigurationError, match=r"written as \.toml"):
         car.save(tmp_path / "car.txt")
 
