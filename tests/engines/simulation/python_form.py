@@ -13,7 +13,6 @@ import pytest
 from vehicle.engines.simulation import stepping
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.centred_bias import centre_bias
 from vehicle.engines.simulation.compiled import CompiledRows
 from vehicle.engines.simulation.element_records import copy_row
 from vehicle.engines.simulation.recording import Recording
@@ -45,10 +44,9 @@ class PythonRows:
     def control(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Rewrite the rows of a state of the model."""
         if model._address == self.rows.model._address:
-            centre_bias(model, data)
             self.rows(model, data)
 
-    def attach(self, data: mujoco.MjData, *, sparse: bool, centred: bool) -> None:
+    def attach(self, data: mujoco.MjData, *, sparse: bool) -> None:
         """Store the state that the loop steps; its rows stay dense."""
         self.data = data
 

@@ -155,7 +155,7 @@ def test_another_copy_of_the_library_is_an_error(monkeypatch: pytest.MonkeyPatch
         shutil.copy(path, tmp_path / path.name)
     monkeypatch.setattr(mujoco, "__file__", str(tmp_path / "__init__.py"))
     with pytest.raises(LookupError, match=r"mjcb_control \(the bindings use another library"):
-        structures.function_addresses()
+        structures.step_address()
     assert callbacks_in_place() == [None, None, None]
 
 

@@ -25,7 +25,7 @@ from vehicle.engines.simulation.record_pointers import at, packed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop, keep_sample, move_plates
 from vehicle.engines.simulation.sparse_rows import Mask, nonzero_columns, solution_of, sparse_rows
-from vehicle.engines.simulation.step_records import Centring, Efc, Simulation, SparseRows, Ticket
+from vehicle.engines.simulation.step_records import Efc, Simulation, SparseRows, Ticket
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
 from vehicle.model.laws.function_address import address_as_pointer
@@ -50,22 +50,8 @@ def _call_step(typing_context: Any, function: Any, model: Any, data: Any) -> Any
     return types.void(types.int64, types.int64, types.int64), generate
 
 
-def _call_bias(typing_context: Any, function: Any, model: Any, data: Any, result: Any) -> Any:
-    """Call `void mj_rne(mjModel*, mjData*, int, mjtNum*)` without accelerations by its address."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pointer, whole = ir.IntType(8).as_pointer(), ir.IntType(32)
-        signature_type = ir.FunctionType(ir.VoidType(), [pointer, pointer, whole, pointer])
-        target = builder.inttoptr(arguments[0], signature_type.as_pointer())
-        model, data, result = (builder.inttoptr(argument, pointer) for argument in arguments[1:])
-        builder.call(target, [model, data, ir.Constant(whole, 0), result])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.int64, types.int64), generate
-
-
 simulation_at, loop_at = at(Simulation), at(Loop)
-as_pointer, call_step, call_bias = intrinsic(address_as_pointer), intrinsic(_call_step), intrinsic(_call_bias)
+as_pointer, call_step = intrinsic(address_as_pointer), intrinsic(_call_step)
 
 
 @numba.njit
@@ -145,17 +131,6 @@ def rows_at(data, t, velocities):  # type: ignore[no-untyped-def]
     )
 
 
-@numba.njit
-def centre_bias(model, data, fields, centring):  # type: ignore[no-untyped-def]
-    """Evaluate the bias forces of a step at its own time, see `vehicle.engines.simulation.centred_bias`."""
-    for dof in range(centring.velocity.shape[0]):
-        centring.velocity[dof] = fields.qvel[dof]
-        fields.qvel[dof] += centring.half_step * fields.qacc[dof]
-    call_step(centring.com_velocity, model, data)
-    call_bias(centring.bias, model, data, fields.qfrc_bias.ctypes.data)
-    copy_row(fields.qvel, centring.velocity)
-
-
 @contextmanager
 def compiler_settings() -> Iterator[None]:
     """Set the optimisation level of the compiler to 1, with vector operations for neighbouring sums.
@@ -189,8 +164,6 @@ def _callbacks(user_size: int, user_data: int, mark: int) -> tuple[Any, Any, Any
             # The number of rows differs from the records: make the state invalid, so that the run stops.
             simulation.fields.qfrc_applied[:] = np.nan
             return
-        if simulation.ticket.centring.half_step > 0.0:
-            centre_bias(model, data, simulation.fields, simulation.ticket.centring)
         efc = rows_at(data, simulation.ticket, simulation.fields.qvel.shape[0])
         rewrite(
             vector(data + simulation.ticket.time, 1)[0],
@@ -282,14 +255,13 @@ class CompiledRows:
         functions = _callbacks(located.user_size, located.pointers["userdata"], stamp())
         self.control, self.gain, self.bias = (function.ctypes for function in functions)
 
-    def attach(self, data: mujoco.MjData, *, sparse: bool = False, centred: bool = False) -> None:
+    def attach(self, data: mujoco.MjData, *, sparse: bool = False) -> None:
         """Make the callbacks act on a state of the model, with the present state of the rows.
 
         Args:
             data: the state.
             sparse: until `detach`, store the rows in MuJoCo's sparse format and solve for the acceleration of each
                 step; for runs. Otherwise MuJoCo's rows are dense, for code that reads them.
-            centred: evaluate the bias forces at the time of each step, see `centred_bias`; for runs.
         """
         rows, model, located = self.rows, self.model, self.offsets
         nonzero: Mask | None = None
@@ -299,10 +271,7 @@ class CompiledRows:
         record, pattern = sparse_rows(nonzero, located)
         solution = solution_of(model, rows.layout, nonzero)
         efc = np.array([located.pointers[f"efc_{name}"] for name in Efc._fields], dtype=np.int64)
-        half_step = 0.5 * model.opt.timestep if centred else 0.0
-        addresses = located.functions["mj_comVel"], located.functions["mj_rne"]
-        centring = Centring(half_step, *addresses, np.zeros(model.nv))
-        ticket = Ticket(model._address, rows.layout.row_count, located.row_count, located.time, efc, record, centring)
+        ticket = Ticket(model._address, rows.layout.row_count, located.row_count, located.time, efc, record)
         simulation = Simulation(ticket, rows.fields(data), rows.layout, rows.weights, rows.state, solution)
         memory = packed(simulation)
         data.userdata[:USER_SIZE] = memory.ctypes.data, stamp()
@@ -323,7 +292,7 @@ class CompiledRows:
 
     def step(self, data: mujoco.MjData) -> None:
         """Take a step of an attached state by the address of `mj_step`, like the compiled loop."""
-        step = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.offsets.functions["mj_step"])
+        step = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(self.offsets.step)
         step(self.model._address, data._address)
 
     def loop(self, loop: Loop) -> Callable[[int, int, int], int]:
@@ -336,9 +305,7 @@ class CompiledRows:
             Function of the first and the last step and of the first row in the buffers; it returns the number of
             stored poses.
         """
-        order = loop.order._replace(
-            step=self.offsets.functions["mj_step"], force_offset=self.offsets.pointers["efc_force"]
-        )
+        order = loop.order._replace(step=self.offsets.step, force_offset=self.offsets.pointers["efc_force"])
         compiled, loop = _loop(stamp()), loop._replace(order=order)
         memory = packed(loop)
 

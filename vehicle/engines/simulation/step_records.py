@@ -12,7 +12,6 @@ class Fields(NamedTuple):
 
     qpos: Vector
     qvel: Vector
-    qacc: Vector
     xmat: Table
     site_xpos: Table
     site_xmat: Table
@@ -152,21 +151,6 @@ class SparseRows(NamedTuple):
     size: int
 
 
-class Centring(NamedTuple):
-    """Compiled form of `vehicle.engines.simulation.centred_bias`.
-
-    Attributes:
-        half_step: h/2 [s]; 0 where the bias forces stay those of MuJoCo.
-        com_velocity, bias: addresses of `mj_comVel` and `mj_rne`.
-        velocity: the velocities qvel, while those of the time of the step are in their place; (nv,).
-    """
-
-    half_step: float
-    com_velocity: int
-    bias: int
-    velocity: Vector
-
-
 class Ticket(NamedTuple):
     """Addresses with which a compiled callback finds and checks its state.
 
@@ -176,7 +160,6 @@ class Ticket(NamedTuple):
         row_count, time: byte offsets of `nefc` and `time` in mjData.
         efc: byte offsets of the pointers of `Efc`, in its order; (8,).
         sparse: Jacobian in MuJoCo's sparse format.
-        centring: bias forces at the time of the step.
     """
 
     model: int
@@ -185,7 +168,6 @@ class Ticket(NamedTuple):
     time: int
     efc: Index
     sparse: SparseRows
-    centring: Centring
 
 
 class Solution(NamedTuple):

@@ -87,7 +87,7 @@ def simulate(
     recorder = Recorder(
         car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
-    compiled.attach(data, sparse=True, centred=True)
+    compiled.attach(data, sparse=True)
     advance = compiled.loop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
     laws = {damper.name: damper.law.controlled for damper in car.vehicle.composition.dampers}
     names = [rows.laws.dampers[index] for index in rows.layout.controls.dampers]

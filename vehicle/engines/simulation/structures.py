@@ -37,22 +37,19 @@ SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc
 POINTERS = (*(f"efc_{name}" for name in Efc._fields), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""
 
-FUNCTIONS = ("mj_step", "mj_comVel", "mj_rne")
-"""Functions of MuJoCo that compiled code calls."""
-
 PROBE = """<mujoco><size nuserdata="2"/><option jacobian="sparse"/><worldbody><body>
 <joint type="free" frictionloss="1"/><geom size=".1"/></body></worldbody></mujoco>"""
 """A model with user data and six constraint rows in sparse format."""
 
 
 class Offsets(NamedTuple):
-    """Byte offsets in MuJoCo's structures, and addresses of its functions.
+    """Byte offsets in MuJoCo's structures, and the address of `mj_step`.
 
     Attributes:
         user_size: offset of `nuserdata` in mjModel.
         time, row_count, nonzeros: offsets of `time`, `nefc` and `nJ` in mjData.
         pointers: offsets of the array pointers in mjData, by name.
-        functions: addresses of `FUNCTIONS`, by name.
+        step: address of `mj_step`.
     """
 
     user_size: int
@@ -60,7 +57,7 @@ class Offsets(NamedTuple):
     row_count: int
     nonzeros: int
     pointers: dict[str, int]
-    functions: dict[str, int]
+    step: int
 
 
 @functools.cache
@@ -162,8 +159,8 @@ def scalar_offsets(data: mujoco.MjData) -> tuple[int, int, int]:
     return int(structure.time.offset), int(structure.nefc.offset), int(structure.nJ.offset)
 
 
-def function_addresses() -> dict[str, int]:
-    """Return the addresses of `FUNCTIONS` in the library that the Python bindings of MuJoCo use, by name.
+def step_address() -> int:
+    """Return the address of `mj_step` in the library that the Python bindings of MuJoCo use.
 
     Raises:
         LookupError: there is no single library next to the bindings, or the bindings use another copy of it.
@@ -180,7 +177,7 @@ def function_addresses() -> dict[str, int]:
         mujoco.set_mjcb_control(None)
     if not callback:
         raise LookupError(f"mjcb_control (the bindings use another library than {paths[0]})")
-    return {name: int(ctypes.cast(getattr(library, name), ctypes.c_void_p).value or 0) for name in FUNCTIONS}
+    return int(ctypes.cast(library.mj_step, ctypes.c_void_p).value or 0)
 
 
 @functools.cache
@@ -203,7 +200,7 @@ def offsets() -> Offsets:
             row_count=row_count,
             nonzeros=nonzeros,
             pointers=pointer_offsets(data, POINTERS),
-            functions=function_addresses(),
+            step=step_address(),
         )
     except LookupError as error:
         raise MissingPartError(
