@@ -46,7 +46,7 @@ def test_the_reduced_engine_mirrors():
 
 
 def test_mujoco_mirrors_with_an_error_of_first_order():
-    """Its gyroscopic and centrifugal forces are late by half a step, differently on both sides of the tree of bodies."""
+    """Its gyroscopic and centrifugal forces are late by half a step, differently on the sides of the tree of bodies."""
     coarse, fine = (
         mirror_errors(Car.load("sedan", [*SYMMETRIC, f"solver.timestep={step}"]), "mujoco") for step in (1e-3, 5e-4)
     )
