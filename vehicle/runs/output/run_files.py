@@ -303,19 +303,24 @@ def summarise(
             "engine_reason": engine_reason,
         },
         "frf": _frf_summary(responses, channels) if responses else None,
-        "notices": [
-            *([body.report] if body.repaired else []),
-            *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
-            *idle_parameters(vehicle, run.car.overrides),
-            *body_notices(vehicle, run.car.overrides),
-            *run.signal.notices,
-            *([motion_notice] if motion_notice else []),
-            *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
-            *comfort_notices(run),
-            *statistics.notices,
-            *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
-            *notices,
-        ],
+        # A run that was read from its folder has all of its notices, and makes most of them again.
+        "notices": list(
+            dict.fromkeys(
+                [
+                    *([body.report] if body.repaired else []),
+                    *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
+                    *idle_parameters(vehicle, run.car.overrides),
+                    *body_notices(vehicle, run.car.overrides),
+                    *run.signal.notices,
+                    *([motion_notice] if motion_notice else []),
+                    *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
+                    *comfort_notices(run),
+                    *statistics.notices,
+                    *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
+                    *notices,
+                ]
+            )
+        ),
         "files": files,
         "measured": measured,
         "tyre": vehicle.driving.words,

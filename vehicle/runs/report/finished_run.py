@@ -9,25 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.engines.simulation.recording import Recording, Statistics
+from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import DataError
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.names import in_order, side_of, wheel_words
+from vehicle.names import side_of, wheel_words
 from vehicle.runs.car import Car
+from vehicle.runs.output.saved_run import file_of_run, read_recording
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.response_name import PLATE, ResponseName
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.reader import read_columns
 from vehicle.signals.records.run_frf import run_frf
-from vehicle.signals.records.run_summary import (
-    SUMMARY_FILE,
-    ComfortSummary,
-    FrfSummary,
-    Peaks,
-    RunSummary,
-    read_summary,
-)
+from vehicle.signals.records.run_summary import ComfortSummary, FrfSummary, Peaks, RunSummary, read_summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -156,37 +149,13 @@ def read_run(
         DataError: a file of it is missing or damaged.
     """
     summary = read_summary(folder)
-    names, solver = summary["files"], summary["solver"]
-    paths = {purpose: folder / names[purpose] for purpose in ("vehicle", "time", "frf") if purpose in names}
-    if missing := next((purpose for purpose in ("vehicle", "time") if purpose not in paths), None):
-        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{missing}: missing); run the simulation again")
-    for purpose, path in paths.items():
-        if not path.is_file():
-            raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
-    if recording is None:
-        record = read_columns(paths["time"])
-        recording = Recording(
-            time=record.time,
-            channels=record.channels,
-            units=record.units,
-            excited=in_order(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
-            pose_time=np.empty(0),
-            poses=np.empty((0, 0)),
-            statistics=Statistics(
-                engine=solver["engine"],
-                callback=solver["callback"],
-                timestep=solver["timestep_s"],
-                steps=solver["steps"],
-                wall_time=solver["wall_s"],
-                warnings=tuple(solver["warnings"]),
-                energies=None,
-            ),
-        )
-    run_car = car or _car(paths["vehicle"], summary)
+    vehicle_file, recording = file_of_run(folder, summary, "vehicle"), recording or read_recording(folder, summary)
+    run_car = car or _car(vehicle_file, summary)
     estimate = summary["frf"]
     frfs: tuple[MotionResponse, ...] = ()
-    if estimate is not None and "frf" in paths:
-        frfs = _responses(paths["frf"], run_car.vehicle.acceleration_channels, estimate, summary)
+    if estimate is not None and "frf" in summary["files"]:
+        table = file_of_run(folder, summary, "frf")
+        frfs = _responses(table, run_car.vehicle.acceleration_channels, estimate, summary)
     return FinishedRun(
         name=(final_path or folder).resolve().name,
         folder=folder,

@@ -30,6 +30,10 @@ class MotionResponse:
     motion: Mapping[str, float]
     response: FrequencyResponse
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"MotionResponse({', '.join(self.motion)}; {self.response!r})"
+
     @property
     def first(self) -> str:
         """Wheel of the plate to which the FRFs refer."""

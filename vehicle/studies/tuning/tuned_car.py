@@ -77,8 +77,12 @@ class TunedCar:
 
     @property
     def settings(self) -> str:
-        """Options that set the fitted values in every command."""
-        return " ".join(f"--set {path}={value:.8g}" for path, value in self.result.values.items())
+        """Options that set the fitted values in every command, beside the options of the start car."""
+        values = self.result.values
+        restated = self.fitted.overrides[len(self.start.overrides) + len(values) :]
+        return " ".join(
+            f"--set {text}" for text in (*(f"{path}={value:.8g}" for path, value in values.items()), *restated)
+        )
 
     @cached_property
     def agreement(self) -> tuple[Agreement, ...]:
