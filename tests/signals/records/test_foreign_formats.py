@@ -58,7 +58,7 @@ def test_structures_of_testlab(tmp_path):
     with path.open("wb") as file:
         savemat(file, {"Signal": exported(label="g", unit_transformation={"factor": 1.0})})
     (channel,) = read_record(path).channels
-    assert channel.unit == "" and channel.remark.endswith("its factor to SI 1: a contradiction")
+    assert channel.unit == "" and channel.remark.endswith("the factor from SI to it 1: a contradiction")
 
 
 @pytest.mark.parametrize("version", ["4", "5"])
