@@ -90,6 +90,8 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         return "", f"{', '.join(channel.name for channel in empty[:4])}: no values{note}"
     if any(channel.kind == "frequency" for channel in measurement.channels):
         return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
+    if not measurement.channels:
+        return "", "no channels, nodes only"
     if histories:
         return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"

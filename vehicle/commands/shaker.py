@@ -219,7 +219,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def plate_signal(options: argparse.Namespace, file: Path, wheel: str, choice: Choice | None) -> Signal:
-    """Return the plate signals of --input; reject plates whose FRFs cannot be separated.
+    """Return the plate signals of --input; reject plates whose FRFs cannot be estimated.
 
     Args:
         options: parsed options of the command.
@@ -238,8 +238,7 @@ def plate_signal(options: argparse.Namespace, file: Path, wheel: str, choice: Ch
         accept_implausible=options.any_level,
         choice=choice,
     )
-    if not options.any_level:
-        require_plates(signal)
+    require_plates(signal, separable=not options.any_level)
     return signal
 
 

@@ -120,17 +120,17 @@ def _coarse_unit(time: Vector, steps: Vector) -> StampClock | None:
     unit = _unit(time)
     if unit is None:
         return None
-    multiples = steps / unit
-    most_common = float(np.max(np.unique(np.rint(multiples), return_counts=True)[1])) / steps.size
-    if most_common > 1.0 - ROUNDED_SHARE:
-        return None  # few other steps may be lost samples
+    multiples, counts = np.unique(np.rint(steps / unit), return_counts=True)
+    if multiples[np.argmax(counts)] > 0.0 and counts.max() > (1.0 - ROUNDED_SHARE) * steps.size:
+        return None  # few other steps may be lost samples, or rows that were written twice
     count, mean = np.arange(time.size), float(time[-1] - time[0]) / (time.size - 1)
 
     def excess(step: float) -> float:
         return float(np.ptp(time - count * step)) - (1.0 + SAME) * unit
 
     half = 2.0 * unit / (time.size - 1)
-    best = float(scipy.optimize.minimize_scalar(excess, bounds=(mean - half, mean + half)).x)
+    options = {"xatol": 1e-6 * half}
+    best = float(scipy.optimize.minimize_scalar(excess, bounds=(mean - half, mean + half), options=options).x)
     if excess(best) > 0.0 or best - 2.0 * half <= 0.0:
         return None
     # The spread is convex in the step, and one unit more than the best at a distance of unit / (n - 1).
