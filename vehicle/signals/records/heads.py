@@ -23,7 +23,7 @@ TIME_NAME = re.compile(
     r"((rel\w*|abs\w*|elapsed|x)[ _.]?)?"
     r"(time([ _]?(stamp|axis|value))?s?|zeit\w*|timestamps?|t|temps|x-?values?|seconds|sec)\b.*|"
     r"time_?(stamps?)?[ _]?(m?s|us|ns|secs?|seconds|millis|micros|unix\w*|utc|since\w*|elapsed)|timestamp\w*|"
-    r"seconds_elapsed|(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|"
+    r"seconds_elapsed|elapsed|epoch|(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|"
     r"recording)[ _]?time([ _]?stamp)?s?(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
     re.IGNORECASE,
 )

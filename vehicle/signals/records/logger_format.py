@@ -173,13 +173,23 @@ def _texts(
 
 def _key(heads: Heads, kinds: Sequence[Kind]) -> int:
     """Return the index of the numeric time column, preferably with a known unit; -1 if there is none."""
-    named = [
+    named = _time_columns(heads, kinds)
+    with_unit = [index for index in named if find_unit(heads.units[index]) is not None]
+    return next(iter((*with_unit, *named)), -1)
+
+
+def _time_columns(heads: Heads, kinds: Sequence[Kind]) -> list[int]:
+    """Return the indices of the numeric columns with the name of a time."""
+    return [
         index
         for index, name in enumerate(heads.names)
         if kinds[index] == "number" and _is_axis(name, heads.units[index], "time")
     ]
-    with_unit = [index for index in named if find_unit(heads.units[index]) is not None]
-    return next(iter((*with_unit, *named)), -1)
+
+
+def _rises(values: Vector) -> bool:
+    """Return True if the values of a column never decrease; a clock that restarts decreases."""
+    return bool((np.diff(values) >= 0.0).all() and values[-1] > values[0])
 
 
 def _axis(
@@ -189,6 +199,9 @@ def _axis(
     clock = _clock_axis(path, heads, texts, numbers) if texts else None
     start = clock.start if clock is not None else ""
     key = _key(heads, kinds)
+    others = [column for column in _time_columns(heads, kinds) if column != key and _rises(values[:, column])]
+    if key >= 0 and not _rises(values[:, key]) and others:
+        key = others[0]
     if key >= 0:
         name, unit = heads.names[key], heads.units[key]
         time_unit = find_unit(unit)

@@ -78,6 +78,7 @@ def _is_number(data_type: Any) -> bool:
         or types.is_floating(data_type)
         or types.is_decimal(data_type)
         or types.is_duration(data_type)
+        or types.is_time(data_type)  # some writers store durations as times of day
     )
 
 
@@ -89,7 +90,7 @@ def _column(column: Any) -> tuple[Any, str]:
     """Return the numbers of a column, NaN if missing, and the unit of a date or duration; keep integer counts."""
     unit = getattr(column.type, "unit", "") if hasattr(column.type, "unit") else ""
     if unit:
-        column = column.cast("int64")
+        column = column.cast("int32" if column.type.bit_width == 32 else "int64").cast("int64")
     elif not (column.type.bit_width or 0) or str(column.type).startswith("decimal"):
         column = column.cast("float64")
     values = np.asarray(column.to_numpy())

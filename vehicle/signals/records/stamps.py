@@ -24,6 +24,9 @@ REPEATS = 4
 SAME = 1e-3
 """Maximum difference of equal steps, over the mean step [-]."""
 
+LOST_SHARE = 0.25
+"""Maximum share of steps over a lost sample [-]; with more, stamps are rounded."""
+
 SMALL_STEP = 0.25
 """Maximum step within a batch, over the mean step [-]."""
 
@@ -85,6 +88,8 @@ def stamp_clock(time: Vector) -> StampClock | None:
     steps = np.diff(time)
     if steps.min() < 0.0 or not time[-1] > time[0]:
         return None
+    if _lost_samples(steps):
+        return None
     return _pattern(time, steps) or _coarse_unit(time, steps) or _batches(time, steps)
 
 
@@ -100,7 +105,7 @@ def _pattern(time: Vector, steps: Vector) -> StampClock | None:
             continue
         spans = time[period:] - time[:-period]
         length = float(spans.mean())
-        if np.ptp(spans) > tolerance or _regularly_lost(steps):
+        if np.ptp(spans) > tolerance:
             return None
         rate = period / length
         rate = float(round(rate)) if abs(rate - round(rate)) < 1e-6 * rate else rate
@@ -109,10 +114,12 @@ def _pattern(time: Vector, steps: Vector) -> StampClock | None:
     return None
 
 
-def _regularly_lost(steps: Vector) -> bool:
-    """Return True if all steps are one or two times the median step: true times, with regularly lost samples."""
-    multiples = steps / float(np.median(steps)) if np.median(steps) > 0.0 else np.zeros(1)
-    return bool(np.all(np.abs(multiples - np.rint(multiples)) < 0.05) and multiples.min() > 0.5 and multiples.max() < 2.5)
+def _lost_samples(steps: Vector) -> bool:
+    """Return True if all steps are the median step or, up to `LOST_SHARE` of them, twice it: true times."""
+    median = float(np.median(steps))
+    multiples = steps / median if median > 0.0 else np.zeros(1)
+    whole = np.abs(multiples - np.rint(multiples)) < 0.05
+    return bool(whole.all() and multiples.min() > 0.5 and multiples.max() < 2.5 and np.mean(multiples > 1.5) < LOST_SHARE)
 
 
 def _coarse_unit(time: Vector, steps: Vector) -> StampClock | None:

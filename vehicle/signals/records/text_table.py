@@ -177,6 +177,8 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
     for column, settled_kind in enumerate(table.kinds):
         cells = [row[column] for row in sampled if column < len(row)]
         kinds = {_kind(cell, table.delimiter) for cell in cells} - {"missing"}
+        if settled_kind == "missing" and not kinds:  # remarks may stand in a few rows
+            kinds = _kinds_of_column(rows, column, table.delimiter)
         if "other" in kinds:
             kinds = kinds - {"other"} | {"text"}
         if settled_kind == "missing":
@@ -188,6 +190,12 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
         settled.append(settled_kind)
     _check_alternation(path, rows, settled, table.delimiter, names)
     return tuple(settled)
+
+
+def _kinds_of_column(rows: Sequence[str], column: int, delimiter: str) -> set[Kind]:
+    """Return the types of the cells of a column in all rows, without missing ones."""
+    cells = (cells_of(row, delimiter) for row in rows)
+    return {_kind(row[column], delimiter) for row in cells if column < len(row) and row[column]} - {"missing"}
 
 
 def _check_alternation(
