@@ -190,7 +190,9 @@ def _clock(*channels: Channel) -> tuple[str, ...]:
         return clock_options(axis)
     begin, end = edges[int(np.argmax(edges[:, 1] - edges[:, 0]))].tolist()
     options = clock_options(axis[begin:end])
-    return options if "--from" in options else ("--from", f"{axis[begin]:.9g}", "--to", f"{axis[end - 1]:.9g}", *options)
+    return (
+        options if "--from" in options else ("--from", f"{axis[begin]:.9g}", "--to", f"{axis[end - 1]:.9g}", *options)
+    )
 
 
 def _plates(

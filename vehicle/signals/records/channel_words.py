@@ -115,7 +115,9 @@ def may_be_plate(channel: Channel, channels: Sequence[Channel]) -> bool:
     words = set(words_of(channel.name))
     if words & (ROUTE | SPRING):
         return False
-    return not of_receiver(channels) or bool(wheel_of(channel.name) or words & {"plate", "displacement", "left", "right"})
+    return not of_receiver(channels) or bool(
+        wheel_of(channel.name) or words & {"plate", "displacement", "left", "right"}
+    )
 
 
 def suggested_channels(channels: Sequence[Channel], model_channels: Collection[str] | None = None) -> dict[str, str]:

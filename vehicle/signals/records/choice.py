@@ -292,7 +292,7 @@ def _has_rate(time: Vector, rate: float) -> bool:
 
 
 def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
-    """Return times without the rounding of their stamps; reject pauses, decreasing times, and stamps without a clock."""
+    """Return times without the rounding of their stamps; reject pauses, decreasing times, and unusable stamps."""
     check_stamps(path, time)
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():

@@ -29,7 +29,7 @@ def read(path: Path) -> Measurement:
     parquet = import_module("pyarrow.parquet")
     notices: list[str] = []
     try:
-        with parquet.ParquetFile(path) as file:
+        with parquet.ParquetFile(path, page_checksum_verification=True) as file:
             rows, fields = file.metadata.num_rows, file.schema_arrow
             wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
             needed = 2 * 8 * rows * len(wanted)

@@ -42,13 +42,15 @@ def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTab
             if lines[n].strip():
                 filled[n] = filled[n].rstrip() + (names - width) * delimiter
     remarks: tuple[Kind, ...] = ("text",) * (names - width)
-    notices = [] if remarks else [f"remarks beyond the last column are ignored: {len(wide)} rows, such as line {wide[0] + 1}"]
+    notices = [] if remarks else [f"remarks beyond the last column are ignored, the first in line {wide[0] + 1}"]
     return filled, TextTable(start=start, delimiter=delimiter, kinds=(*table.kinds, *remarks)), notices
 
 
 def _is_row(line: str, delimiter: str, columns: Sequence[Kind]) -> bool:
     """Return True if a line has the columns of a table, and remarks beyond them."""
     kinds = kinds_of(line, delimiter)
-    return len(kinds) > len(columns) and all(
-        kind in (column, "missing") for kind, column in zip(kinds, columns, strict=False)
-    ) and "number" in kinds[: len(columns)]
+    return (
+        len(kinds) > len(columns)
+        and all(kind in (column, "missing") for kind, column in zip(kinds, columns, strict=False))
+        and "number" in kinds[: len(columns)]
+    )

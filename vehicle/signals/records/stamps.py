@@ -119,7 +119,9 @@ def _lost_samples(steps: Vector) -> bool:
     median = float(np.median(steps))
     multiples = steps / median if median > 0.0 else np.zeros(1)
     whole = np.abs(multiples - np.rint(multiples)) < 0.05
-    return bool(whole.all() and multiples.min() > 0.5 and multiples.max() < 2.5 and np.mean(multiples > 1.5) < LOST_SHARE)
+    return bool(
+        whole.all() and multiples.min() > 0.5 and multiples.max() < 2.5 and np.mean(multiples > 1.5) < LOST_SHARE
+    )
 
 
 def _coarse_unit(time: Vector, steps: Vector) -> StampClock | None:
