@@ -221,15 +221,24 @@ def clock_options(time: Vector) -> tuple[str, ...]:
         return ()
     cut: tuple[str, ...] = ()
     if longest.size < time.size:
-        first, last = f"{longest[0]:.9g}", f"{longest[-1]:.9g}"
-        inside = np.flatnonzero((time >= float(first)) & (time <= float(last)))
-        if np.any(np.diff(inside) != 1) or inside[0] < ends[part] or inside[-1] >= ends[part + 1]:
+        others = np.concatenate([time[: ends[part]], time[ends[part + 1] :]])
+        longest = _without(longest, others[np.isfinite(others)])
+        if longest.size < 3:
             return ()  # another part of the file has equal times
-        cut = ("--from", first, "--to", last)
+        cut = ("--from", f"{longest[0]:.9g}", "--to", f"{longest[-1]:.9g}")
     if is_uniform(longest) or clock_of_rounded(longest) is not None:
         return cut
     rate = typical_rate(longest)
     return (*cut, "--resample", f"{round(rate)}" if rate >= 20.0 else f"{rate:.3g}")
+
+
+def _without(part: Vector, others: Vector) -> Vector:
+    """Return the longest piece of increasing times, (n,), without other times of the file between its ends."""
+    inside = np.unique(others[(others >= part[0]) & (others <= part[-1])])
+    begins = np.concatenate([[0], np.searchsorted(part, inside, "right")])
+    ends = np.concatenate([np.searchsorted(part, inside, "left"), [part.size]])
+    longest = int(np.argmax(ends - begins))
+    return part[begins[longest] : ends[longest]]
 
 
 def longest_step(median: float) -> float:
