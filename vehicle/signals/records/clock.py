@@ -180,7 +180,9 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
     remedy = " ".join(clock_options(time))
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0])
-        cure = f"set {remedy} for the longest increasing part" if remedy else "split the file there"
+        repeats = bool((steps >= 0.0).all())
+        cure = "set --rate HZ if the samples are uniform" if repeats else "split the file there"
+        cure = f"set {remedy} for the longest increasing part" if remedy else cure
         return (f"times do not increase after {time[at]:.9g} s: {cure}",)
     median = float(np.median(steps))
     gaps = np.flatnonzero(steps > longest_gap(median) * (1.0 + UNIFORM_TOLERANCE))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.errors import DataError
+from vehicle.signals.records.clock_text import is_clock
 from vehicle.signals.records.units import find_unit
 
 HEAD_LINES = 6
@@ -178,6 +179,8 @@ def _lines_of_heads(
         if not any(cells):
             continue
         if above and count > 2 and sum(map(bool, cells)) == 1:  # a title line
+            break
+        if above and any(cell[:1].isdigit() and is_clock(cell) for cell in cells):  # times of laps, no sources
             break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))
