@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.errors import VehicleError
+from vehicle.signals.records.channel import NOT_OVER_TIME, ROAD_PROFILE
 from vehicle.signals.records.channel_words import axis_of, map_options, suggested_channels, wheel_of, words_of
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
     histories = [
         (number, channel)
         for number, channel in enumerate(measurement.channels, 1)
-        if channel.kind == "time" and channel.function != "road profile" and channel.axis is not None
+        if channel.kind == "time" and channel.axis is not None
     ]
     by = {
         quantity: [(number, channel) for number, channel in histories if channel.quantity == quantity]
@@ -57,6 +58,8 @@ def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
         return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
     if histories:
         return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
+    if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
+        return "", "the channels are over distance or angle, not over time; export them over time"
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"
 
 
@@ -89,7 +92,7 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     """Return the command line that drives over a road profile, and a reason if there is none; None for other files."""
     from vehicle.signals.excitation.measured_road import read_road
 
-    profile = measurement.format in ("crg", "erd")
+    profile = any(channel.function == ROAD_PROFILE for channel in measurement.channels)
     if not profile and not any(channel.name.strip().lower() == "distance" for channel in measurement.channels):
         return None
     try:
@@ -101,10 +104,18 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     ), "drives over the road at 80 km/h"
 
 
-def _clock(channel: Channel) -> tuple[str, ...]:
+def _clock(*channels: Channel) -> tuple[str, ...]:
+    """Return the options that make the times of the channels uniform and common."""
     from vehicle.signals.records.clock import clock_options
+    from vehicle.signals.records.common_span import blocks_of, cut, resampling_rate
 
-    return () if channel.axis is None else clock_options(channel.axis)
+    if any(channel.axis is None for channel in channels):
+        return ()
+    (block, *others), _ = cut("", blocks_of({str(number): channel for number, channel in enumerate(channels)}))
+    options = clock_options(block.time)
+    if others and "--resample" not in options:
+        options = (*options, "--resample", resampling_rate([block, *others]))
+    return options
 
 
 def _plates(
@@ -112,6 +123,7 @@ def _plates(
 ) -> tuple[str, str]:
     """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
+    from vehicle.signals.records.common_span import overlap
 
     plain = {channel.name.strip().rstrip(".").lower() for _, channel in moves}
     if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
@@ -121,7 +133,8 @@ def _plates(
     wheels: dict[str, int] = {}
     for number, channel in moves:
         wheel = wheel_of(channel.name)
-        if wheel and wheel not in wheels:
+        together = [measurement.channels[other - 1] for other in wheels.values()]
+        if wheel and wheel not in wheels and all(overlap(channel, other) for other in together):
             wheels[wheel] = number
     addition = ""
     if not wheels:
@@ -140,7 +153,7 @@ def _plates(
         "--input",
         file,
         *picks,
-        *_clock(measurement.channels[next(iter(wheels.values())) - 1]),
+        *_clock(*(measurement.channels[number - 1] for number in wheels.values())),
     ]
     command, why = _tried(measurement.path, arguments, (["--detrend"],))
     purpose = "puts the displacement on the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels)
@@ -171,11 +184,14 @@ def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, C
     """Return the comfort command for the accelerations of one point."""
     import numpy as np
 
+    from vehicle.signals.records.common_span import overlap
+
     seats = [pair for pair in those if {"seat", "sitz"} & set(words_of(pair[1].name + " " + pair[1].place))]
     axes: dict[str, int] = {}
     for number, channel in seats or those:
         axis = axis_of(channel)
-        if axis and axis not in axes:
+        together = [measurement.channels[other - 1] for other in axes.values()]
+        if axis and axis not in axes and all(overlap(channel, other) for other in together):
             axes[axis] = number
     if not axes:
         axes = {"z": (seats or those)[0][0]}
@@ -190,9 +206,10 @@ def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, C
         if axis in axes
         for word in ("--channel", f"{axis}={_pick(measurement, axes[axis])}")
     ]
+    clock = _clock(*(measurement.channels[number - 1] for number in axes.values()))
     values = [np.real(measurement.channels[number - 1].values) for number in axes.values()]
     still = all(abs(float(np.nanmean(each))) < 1e-3 * float(np.nanstd(each)) for each in values)
-    arguments = ["comfort", "--input", file, *picks, *_clock(channel), *([] if still else ["--offset", "remove"])]
+    arguments = ["comfort", "--input", file, *picks, *clock, *([] if still else ["--offset", "remove"])]
     which = "the seat" if seats else "the point"
     more = "" if len(those) == len(axes) else f"; {len(those) - len(axes)} more accelerations"
     return _line(*arguments), f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"
