@@ -86,10 +86,17 @@ def trc(frames: Sequence[Frame], version: str = "2.1") -> str:
     return "\n".join([*head, *lines, ""])
 
 
-def mf4(path: Path, frames: Sequence[Frame]) -> None:
-    """Write frames as data loggers of CAN do (ASAM MDF, bus logging)."""
+def mf4(path: Path, frames: Sequence[Frame], *, constant: Sequence[str] = ()) -> None:
+    """Write frames as data loggers of CAN do (ASAM MDF, bus logging).
+
+    Args:
+        path: file to write.
+        frames: frames of the log.
+        constant: fields that hold a count of the frames, and their value in a conversion, as virtual channels do.
+    """
     import asammdf
     from asammdf.blocks import v4_constants as v4c
+    from asammdf.blocks.conversion_utils import from_dict
     from asammdf.blocks.source_utils import Source
 
     width = max(len(one.data) for one in frames)
@@ -102,10 +109,18 @@ def mf4(path: Path, frames: Sequence[Frame]) -> None:
         cells = (one.bus, one.identifier, one.extended, one.way == "Tx", LENGTHS.index(size), size, data)
         for (name, _), value in zip(fields, cells, strict=True):
             row[f"CAN_DataFrame.{name}"] = value
+    constants = []
+    for name in constant:
+        value = float(rows[f"CAN_DataFrame.{name}"][0])
+        conversion = from_dict({"a": 0.0, "b": value})
+        count = np.arange(len(frames), dtype=np.uint16)
+        constants.append(asammdf.Signal(count, np.array([one.time for one in frames]), name=f"CAN_DataFrame.{name}",
+                                        conversion=conversion))  # fmt: skip
+    rows = rows[[name for name in rows.dtype.names or () if name.removeprefix("CAN_DataFrame.") not in constant]].copy()
     bus = Source("CAN", "CAN", "", source_type=v4c.SOURCE_BUS, bus_type=v4c.BUS_TYPE_CAN)
     times = np.array([one.time for one in frames])
     with asammdf.MDF(version="4.10") as file:
-        file.append([asammdf.Signal(rows, times, name="CAN_DataFrame", source=bus)], acq_source=bus)
+        file.append([asammdf.Signal(rows, times, name="CAN_DataFrame", source=bus), *constants], acq_source=bus)
         file.groups[0].channel_group.flags |= v4c.FLAG_CG_BUS_EVENT | v4c.FLAG_CG_PLAIN_BUS_EVENT
         file.save(path, overwrite=True)
 

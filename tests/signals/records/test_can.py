@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.signals.records.can_logs import CONTAINERS, Frame, asc, write_log
+from tests.signals.records.can_logs import CONTAINERS, Frame, asc, mf4, write_log
 from vehicle.commands.comfort import main as comfort
 from vehicle.errors import DataError
 from vehicle.signals.records.can_decoder import load_database, raw_values
@@ -109,6 +109,16 @@ def test_every_container_gives_the_same_channels(tmp_path, name):
         np.testing.assert_allclose(channels["Far"].values, np.arange(40.0))
     assert len(channels) == 3 * len(suffixes) + (not classic)
     assert f"log of a CAN bus: {len(sent)} frames, {len(sent)} decoded by car.dbc" in found.notices
+
+
+def test_fields_of_frames_that_are_constant(tmp_path):
+    """A logger stores a constant bus or direction as a virtual channel: a count of the frames with a conversion."""
+    database, path = tmp_path / "car.dbc", tmp_path / "raw.mf4"
+    database.write_text(DBC)
+    sent = [one for one in frames(True) if (one.bus, one.way) == (1, "Rx")]
+    mf4(path, sent, constant=("BusChannel", "Dir", "IDE"))
+    channels = {one.name: one for one in read_record(path, [database]).channels}
+    assert channels["Z"].values.size == len(sent)
 
 
 def test_raw_numbers_of_any_position_size_and_byte_order(tmp_path):
@@ -230,9 +240,9 @@ def test_lines_without_a_data_frame_are_counted_by_form(tmp_path):
     path.write_text(asc(sent).replace("End TriggerBlock", "\n".join(other)))
     found = read_record(path, [tmp_path / "car.dbc"])
     (notice,) = [text for text in found.notices if "without a data frame" in text]
-    assert notice.startswith("8 lines without a data frame are left out")  # and "Start of measurement"
+    assert notice.startswith("7 lines without a data frame are left out")
     for form in ("error frame", "remote frame", "CAN", "Statistic:", "TxRq", "frame with a symbolic name",
-                 "data frame with too few bytes", "Start"):  # fmt: skip
+                 "data frame with too few bytes"):  # fmt: skip
         assert f"'{form}' 1" in notice
     dump = tmp_path / "bus.log"
     dump.write_text("(1.000000) can0 123#R\n(1.100000) can0 20000080#0000000000000000\n(1.2) can0 1F#00\n")

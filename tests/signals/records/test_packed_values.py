@@ -52,6 +52,10 @@ def test_factor_and_offset_of_a_netcdf_file():
         (PACKED, {**S, "valid_max": 7.0}, [-10, -5, 0, 5, NAN, NAN]),  # of the unpacked type
         (PACKED.astype(float), {"_FillValue": -200.0}, [NAN, -100, 0, 100, 200, 300]),
         (np.array([1.0, 9.969209968386869e36], np.float32), {"fillvalue": 9.969209968386869e36}, [1.0, NAN]),
+        (np.array([-1, 0, -6, -5], np.int16), {"_Unsigned": "true", "_FillValue": np.int16(-1),
+                                               "valid_range": np.array([0, -6], np.int16)}, [NAN, 0, 65530, NAN]),
+        (PACKED, {"scale_factor": -1.0, "valid_range": np.array([250, -150], np.int16)},
+         [NAN, 100, 0, -100, -200, NAN]),
         (PACKED, {"gain": 1.0}, PACKED),
     ],
 )  # fmt: skip

@@ -148,6 +148,8 @@ def _asc_parser(lines: Sequence[str]) -> Parser:
         match = _ASC.match(event["event"]) or _ASC_FD.match(event["event"])
         if match is None:
             words = [word for word in event["event"].split() if not word[0].isdigit()]
+            if "Start" in words[:2]:
+                return ""  # start of the measurement, in the language of the program
             symbolic = re.match(r"(CANFD\s+)?\d+\s+\w+\s+(Rx|Tx)\s+(d|[01])\s", event["event"])
             return _form(line, "frame with a symbolic name" if symbolic else words[0] if words else "numbers")
         try:
@@ -198,11 +200,11 @@ def _trc_1_row(line: str) -> _Row | str:
     """Return the frame of a line of .trc of version 1."""
     if line.lstrip().startswith(";"):
         return ""
+    if "FFFFFFFF" in line:
+        return "bus status"
     match = _TRC_1.fullmatch(line)
     if match is None:
         words = [word for word in line.split() if word[0].isalpha()]
         return _form(line, words[0] if words else "numbers")
-    if match["id"].upper() == "FFFFFFFF":
-        return "bus status"
     bus = f"CAN{match['bus']}" if match["bus"] else ""
     return _row(match, bus, len(match["id"]) == 8, min(int(match["length"]), 8), 1e-3)

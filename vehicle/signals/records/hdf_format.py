@@ -32,6 +32,9 @@ LONG = 10
 LONG_UNITS = {"days": 86400.0, "hours": 3600.0, "minutes": 60.0}
 """Units of netCDF times in s, beside those of `vehicle.signals.records.units`."""
 
+NO_VALUES = "This is a netCDF dimension but not a netCDF variable"
+"""Begin of the attribute NAME of an array that netCDF writes for a dimension alone; its numbers have no meaning."""
+
 AXES = "axes"
 """Name of the group with the uneven axes, under the names of their channels."""
 
@@ -139,7 +142,11 @@ def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
         return []
     if dataset.dtype.names is not None:
         return _fields(name, dataset, notices)
-    if dataset.dtype.kind not in "fiuc" or dataset.ndim not in (1, 2):
+    if (
+        dataset.dtype.kind not in "fiuc"
+        or dataset.ndim not in (1, 2)
+        or _attribute(dataset, "NAME").startswith(NO_VALUES)
+    ):
         return []
     values, fault, messages = unpacked(name, dataset)
     notices.extend(messages)

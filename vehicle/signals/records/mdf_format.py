@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import sys
 import warnings
+from collections import Counter
 from collections.abc import Sequence, Set
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +29,9 @@ BUS_FRAMES = frozenset(
 
 SYNCHRONISATION = {1: "time", 2: "angle", 3: "distance", 4: "index"}
 """Quantity of a master channel by its synchronisation type."""
+
+DIRECTIONS = {"0": "Rx", "1": "Tx", "0.0": "Rx", "1.0": "Tx", "rx": "Rx", "tx": "Tx"}
+"""Direction of a frame by the value of CAN_DataFrame.Dir, in lower case."""
 
 MASTERS = (2, 3)
 """Types of channels with the times of their group."""
@@ -127,9 +131,15 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
     channels: list[Channel] = []
     notices: list[str] = []
     skipped = 0
+    frames: Counter[str] = Counter()
     for number, group in enumerate(file.groups):
         if number in buses:
-            skipped += sum(channel.channel_type not in MASTERS for channel in group.channels) * (not _is_can(group))
+            count = int(getattr(group.channel_group, "cycles_nr", 0))
+            if count and not _is_can(group):
+                kind = next(
+                    name for channel in group.channels if (name := str(channel.name).split(".")[0]) in BUS_FRAMES
+                )
+                frames[kind] += count
             continue
         axes: dict[int, np.ndarray] = {}
         group_name = str(getattr(group.channel_group, "acq_name", "") or "") if len(file.groups) > 1 else ""
@@ -161,6 +171,9 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
                 function = ROAD_PROFILE if heights else master.function
                 over_time = replace(over_time, axis=None, function=function, remark=remark)
             channels.append(over_time)
+    if frames:
+        shown = ", ".join(f"{kind} {count}" for kind, count in frames.items())
+        notices.append(f"frames of other types are left out: {shown}")
     return channels, [*notices, *([f"{skipped} channels without numbers are ignored"] if skipped else [])]
 
 
@@ -210,13 +223,14 @@ def _frames(file: Any, number: int) -> BusLog:
     if not _is_can(group):
         return {}
     index = {str(channel.name).removeprefix("CAN_DataFrame."): n for n, channel in enumerate(group.channels)}
-    options = {"group": number, "raw": True, "ignore_invalidation_bits": True}
-    columns = {
-        name: file.get(index=index[name], **options)
+    columns = {  # values of virtual channels, as a constant bus, are in their conversions
+        name: file.get(group=number, index=index[name], ignore_invalidation_bits=True)
         for name in ("ID", "IDE", "BusChannel", "Dir", "DataLength", "DLC", "DataBytes")
         if name in index
     }
     payload, identifiers = np.asarray(columns["DataBytes"].samples), columns["ID"].samples.astype(np.int64)
+    if not identifiers.size:
+        return {}
     if payload.ndim == 1:
         cells = [bytes(cell) for cell in payload]
         width = max(map(len, cells), default=0)
@@ -230,14 +244,14 @@ def _frames(file: Any, number: int) -> BusLog:
         length = np.full(count, payload.shape[1])
     extended = columns["IDE"].samples.astype(bool) if "IDE" in columns else identifiers >> 31 & 1 > 0
     buses = columns["BusChannel"].samples if "BusChannel" in columns else np.zeros(count, dtype=np.int64)
-    ways = columns["Dir"].samples.astype(bool) if "Dir" in columns else None
+    ways = [str(way) for way in columns["Dir"].samples.astype(str)] if "Dir" in columns else [""] * count
     return grouped(
         np.asarray(columns["ID"].timestamps, dtype=np.float64),
         payload,
         np.minimum(length, payload.shape[1]),
         (
-            [f"CAN{bus}" for bus in buses],
-            [""] * count if ways is None else ["Tx" if sent else "Rx" for sent in ways],
+            [f"CAN{int(bus)}" for bus in buses],
+            [DIRECTIONS.get(way.lower(), way) for way in ways],
             (identifiers & IDENTIFIER_BITS).tolist(),
             extended.tolist(),
         ),

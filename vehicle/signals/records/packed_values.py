@@ -79,22 +79,32 @@ def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> NDArra
     The valid range is in packed values, except if it has the type of wider, unpacked values (NetCDF User Guide).
     """
     attributes = dataset.attrs
-    fills = [np.ravel(attributes[name]) for name in ("_FillValue", "missing_value") if name in attributes]
+
+    def stored(name: str) -> list[Any]:
+        """Return the numbers of an attribute; of the type of packed integers that `_Unsigned` makes unsigned."""
+        numbers = np.ravel(attributes.get(name, []))
+        if packed.dtype.kind == "u" and numbers.dtype.kind == "i" and numbers.dtype.itemsize == packed.dtype.itemsize:
+            numbers = numbers.view(packed.dtype)
+        return numbers.tolist() if numbers.dtype.kind in "fiu" else []
+
+    fills = [*stored("_FillValue"), *stored("missing_value")]
     properties = dataset.id.get_create_plist()
     if properties.fill_value_defined() == SET_BY_USER and dataset.fillvalue != 0:
-        fills.append(np.ravel(dataset.fillvalue))
+        fills += np.ravel(np.asarray(dataset.fillvalue, dtype=dataset.dtype).astype(packed.dtype)).tolist()
     missing = np.zeros(packed.shape, dtype=bool)
-    for fill in np.concatenate(fills).tolist() if fills else ():
-        if packed.dtype.kind == "f" and isinstance(fill, int | float):
+    for fill in fills:
+        if packed.dtype.kind == "f":
             missing |= packed == np.float64(fill).astype(packed.dtype)
-        elif isinstance(fill, int | float):
+        else:
             missing |= (packed == fill) | (values == fill if isinstance(fill, float) else False)
-    low, high = np.ravel(attributes.get("valid_range", (-np.inf, np.inf)))[[0, -1]]
-    low, high = np.ravel(attributes.get("valid_min", low))[0], np.ravel(attributes.get("valid_max", high))[0]
-    scaled = packed.dtype.kind in "iu" and any(np.asarray(limit).dtype.kind == "f" and np.isfinite(limit)
-                                               for limit in (low, high))  # fmt: skip
-    compared = values if scaled else packed
-    missing |= (compared < low) | (compared > high)
+    for limits, valid in (
+        (sorted(stored("valid_range")), lambda data, ends: (data >= ends[0]) & (data <= ends[-1])),
+        (stored("valid_min"), lambda data, ends: data >= ends[0]),
+        (stored("valid_max"), lambda data, ends: data <= ends[0]),
+    ):
+        if limits:
+            scaled = packed.dtype.kind in "iu" and isinstance(limits[0], float)
+            missing |= ~valid(values if scaled else packed, limits)
     return missing
 
 
