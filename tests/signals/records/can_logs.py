@@ -121,7 +121,7 @@ def mf4(path: Path, frames: Sequence[Frame], *, constant: Sequence[str] = ()) ->
     times = np.array([one.time for one in frames])
     with asammdf.MDF(version="4.10") as file:
         file.append([asammdf.Signal(rows, times, name="CAN_DataFrame", source=bus), *constants], acq_source=bus)
-        file.groups[0].channel_group.flags |= v4c.FLAG_CG_BUS_EVENT | v4c.FLAG_CG_PLAIN_BUS_EVENT
+        file.groups[0].channel_group.flags |= v4c.FLAG_CG_BUS_EVENT | v4c.FLAG_CG_PLAIN_BUS_EVENT  # type: ignore[union-attr]
         file.save(path, overwrite=True)
 
 

@@ -12,6 +12,7 @@ from vehicle.commands.inspect import contents
 from vehicle.commands.shaker import main as shaker
 from vehicle.errors import DataError
 from vehicle.signals.excitation.measured_road import read_road
+from vehicle.signals.records import hdf_format, mdf_format
 from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.measured import read_measured
@@ -121,14 +122,10 @@ def test_starts_of_other_formats(tmp_path, form):
         write_uff(path, channels, "test")
     elif form == "mf4":
         pytest.importorskip("asammdf")
-        from vehicle.signals.records.mdf_format import write
-
-        write(path, channels, "test")
+        mdf_format.write(path, channels, "test")
     elif form == "h5":
         pytest.importorskip("h5py")
-        from vehicle.signals.records.hdf_format import write
-
-        write(path, channels, "test")
+        hdf_format.write(path, channels, "test")
     else:
         head = (
             LVM[: LVM.index("X_Value\tExcitation")].replace("3,906250E-5", "1,0E-2").replace("\t6\t6\t", "\t400\t400\t")
@@ -203,10 +200,30 @@ def test_axes_of_tdms_that_are_no_time(tmp_path):
             for unit in ("s", "ms", "Hz", "m", "deg")
         ])  # fmt: skip
     time, milli, lines, road, angle = read_record(path).channels
-    assert (time.rate, milli.rate) == (2.0, pytest.approx(2000.0))
+    assert time.rate == 2.0 and milli.rate == pytest.approx(2000.0)
     assert lines.kind == "frequency" and lines.axis is not None and lines.axis[1] == 0.5
     assert road.axis is None and "in 'm': no times" in road.remark
     assert angle.axis is None and "in 'deg': no times" in angle.remark
+
+
+def test_a_scaling_of_tdms_is_applied_or_takes_the_unit_away(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    path = tmp_path / "raw.tdms"
+    scalings = {
+        "linear": {"Scale_Type": "Linear", "Linear_Slope": 0.05, "Linear_Y_Intercept": 1.0},
+        "reciprocal": {"Scale_Type": "Reciprocal", "Reciprocal_X": 0.05},
+    }
+    with nptdms.TdmsWriter(path) as writer:
+        writer.write_segment([
+            nptdms.ChannelObject("g", name, np.arange(5, dtype=np.int16),
+                                 properties={"wf_increment": 0.01, "unit_string": "m/s^2", "NI_Number_Of_Scales": 1,
+                                             **{f"NI_Scale[0]_{key}": value for key, value in scaling.items()}})
+            for name, scaling in scalings.items()
+        ])  # fmt: skip
+    linear, raw = read_record(path).channels
+    np.testing.assert_allclose(linear.values, 1.0 + 0.05 * np.arange(5))
+    assert (linear.unit, linear.remark, raw.unit) == ("m/s^2", "", "")
+    assert "scaling is not known (Unsupported scale type: Reciprocal): the unit 'm/s^2' is not taken" in raw.remark
 
 
 def test_an_axis_of_lvm_that_is_no_time(tmp_path):

@@ -97,14 +97,12 @@ def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> NDArra
             missing |= packed == np.float64(fill).astype(packed.dtype)
         else:
             missing |= (packed == fill) | (values == fill if isinstance(fill, float) else False)
-    for limits, valid in (
-        (sorted(stored("valid_range")), lambda data, ends: (data >= ends[0]) & (data <= ends[-1])),
-        (stored("valid_min"), lambda data, ends: data >= ends[0]),
-        (stored("valid_max"), lambda data, ends: data <= ends[0]),
-    ):
-        if limits:
-            scaled = packed.dtype.kind in "iu" and isinstance(limits[0], float)
-            missing |= ~valid(values if scaled else packed, limits)
+    span = sorted(stored("valid_range"))
+    for low, high in ((span[:1], span[1:]), (stored("valid_min"), []), ([], stored("valid_max"))):
+        for limits, sign in ((low, 1.0), (high, -1.0)):
+            for limit in limits[:1]:
+                scaled = packed.dtype.kind in "iu" and isinstance(limit, float)
+                missing |= sign * (values if scaled else packed.astype(np.float64)) < sign * limit
     return missing
 
 

@@ -92,7 +92,8 @@ def read(path: Path) -> Measurement:
         earliest = min((date for date in starts if date is not None), default=None)
         start = "" if earliest is None else str(earliest)
         for (group, channel), date in zip(signals, starts, strict=True):
-            values = np.asarray(channel[:])
+            with _remarks() as scaling:  # npTDMS warns of a scaling that it cannot apply, and returns raw values
+                values = np.asarray(channel[:])
             if values.dtype.kind not in "fiuc" or values.ndim != 1 or not values.size:
                 skipped += 1
                 continue
@@ -101,6 +102,9 @@ def read(path: Path) -> Measurement:
             axis = _axis(channel.properties, values.size, later)
             if date is None and earliest is not None and axis.get("axis") is not None:
                 axis["remark"] = "; ".join(filter(None, (axis["remark"], "no start time: taken as the earliest one")))
+            if scaling:
+                remark = f"raw values, their scaling is not known ({scaling[0]}): the unit {str(unit)!r} is not taken"
+                unit, axis["remark"] = "", remark
             channels.append(
                 Channel(
                     name=channel.name,
