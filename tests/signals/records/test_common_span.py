@@ -1,5 +1,6 @@
 """Channels with their own starts, rates and axes: cut or resampled to the common span, never shifted in silence."""
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.signals.records.logger_files import LVM
+from vehicle.__main__ import main
 from vehicle.commands.advice import command_for
 from vehicle.commands.inspect import contents
 from vehicle.commands.shaker import main as shaker
@@ -84,7 +86,8 @@ def test_samples_that_coincide_are_cut_and_said():
 
 
 @pytest.mark.parametrize(("start", "rate"), [(3.0037, 100.0), (3.0, 250.0), (2.5003, 40.0)])
-def test_samples_at_other_times_need_resampling_and_get_it(start, rate):
+def test_samples_at_other_times_need_resampling_and_get_it(tmp_path, start, rate):
+    pytest.importorskip("h5py")
     record = measurement(channel("seat x", 3.0), channel("seat y", start, rate, int(10 * rate)))
     both = Choice(channels={"x": "seat x", "y": "seat y"})
     lowest = min(rate, 100.0)
@@ -95,8 +98,11 @@ def test_samples_at_other_times_need_resampling_and_get_it(start, rate):
     inside = slice(60, -60)  # the anti-alias filter has half a second of its own at the ends
     for values in chosen.values.values():
         np.testing.assert_allclose(values[inside], motion(chosen.time)[inside], atol=2e-3)
-    command, _ = command_for(record, "record.x")
+    path = tmp_path / "record.h5"
+    hdf_format.write(path, record.channels, "test")
+    command, _ = command_for(read_record(path), str(path))
     assert f"--resample {lowest:g}" in command
+    assert main(shlex.split(command)[3:]) == 0
 
 
 def test_channels_of_other_hours_have_no_common_span():
@@ -163,7 +169,8 @@ def test_a_master_of_distance_is_a_road():
     path = FAILING / "master_distance.mf4"
     found = read_record(path)
     assert [(one.name, one.unit, one.rate) for one in found.channels] == [("distance", "m", None), ("height_left", "m", None)]  # noqa: E501  # fmt: skip
-    assert command_for(found, str(path))[0].endswith(f"--road {path} --speed 80")
+    command, _ = command_for(found, str(path))
+    assert command.endswith(f"--road {path} --speed 80")
     road = read_road(path, 1.5)
     assert road.length == pytest.approx(59.995) and np.std(road.left) == pytest.approx(0.001944, rel=1e-3)
     with pytest.raises(DataError, match="'height_left' is a road profile, must be a time history"):

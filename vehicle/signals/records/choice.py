@@ -229,7 +229,7 @@ def _blocks(
     if "time" in choice.channels:
         together["time"] = measurement.channels[pick(measurement, choice.channels["time"])]
     blocks: list[Block] = []
-    if all(channel.axis is not None and channel.axis.size == channel.values.size for channel in together.values()):
+    if all(channel.axis is not None for channel in together.values()):
         blocks, notice = cut(path, blocks_of(together))
         notices += [notice] if notice else []
         together = dict(blocks[0].channels) if len(blocks) == 1 else together
@@ -275,6 +275,11 @@ def _resampled(
 ) -> tuple[Vector, dict[str, Vector]]:
     """Resample all parts to uniform times of their common span."""
     first, last = max(float(time[0]) for time, _ in parts), min(float(time[-1]) for time, _ in parts)
+    if last - first < 2.0 / rate:
+        raise DataError(
+            f"{path}: the common span of the channels, {first:.6g} to {last:.6g} s, has fewer than three samples at "
+            f"{rate:g} Hz; set another excerpt, or choose channels recorded together"
+        )
     values: dict[str, Vector] = {}
     for time, columns in parts:
         new, notice = resampled(
