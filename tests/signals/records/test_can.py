@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.signals.records.can_logs import CONTAINERS, Frame, asc, mf4, write_log
+from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
 from vehicle.errors import DataError
 from vehicle.signals.records.can_decoder import load_database, raw_values
@@ -47,7 +48,10 @@ def weighted(name, database, channels):
 def test_a_value_table_names_raw_values_and_keeps_factor_and_offset():
     with_table = weighted("one_bus.log", "imu_with_val.dbc", SEAT)
     assert with_table == weighted("one_bus.log", "imu.dbc", SEAT)
-    assert with_table["z"] == pytest.approx(0.2696, abs=5e-5)
+    validated(
+        "File readers", "weighted RMS along z of a CAN log whose database has a value table", with_table["z"], 0.2696,
+        abs=5e-5, unit="m/s2", source="second derivation: the record from which the log was made",
+    )  # fmt: skip
 
 
 def test_two_buses_are_two_channels(capsys):
@@ -148,7 +152,11 @@ def test_raw_numbers_of_any_position_size_and_byte_order(tmp_path):
     database = load_database(path)
     found = [int(raw_values(message.signals[0], np.frombuffer(data, np.uint8)[np.newaxis])[0])
              for message, data in zip(database.frames, payloads, strict=True)]  # fmt: skip
-    assert found == expected
+    validated(
+        "File readers", "numbers of 1 to 64 bits in payloads of CAN, Intel and Motorola, 200 random positions",
+        sum(one != other for one, other in zip(found, expected, strict=True)), 0, abs=0.0, unit="errors",
+        source="second derivation: shift of the payload as one integer",
+    )  # fmt: skip
 
 
 def decode(tmp_path, database, sent, name="log.log"):

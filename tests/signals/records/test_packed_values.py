@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.reader import read_record
@@ -32,7 +33,10 @@ def array(tmp_path, values=PACKED, fillvalue=None, **attributes):
 def test_factor_and_offset_of_a_netcdf_file():
     choice = Choice(channels={"z": "seat_z", "time": "time"})
     found = evaluate_comfort(FAILING / "packed.nc", choice=choice)
-    assert found.weighted_rms["z"] == pytest.approx(0.2696, abs=5e-5)
+    validated(
+        "File readers", "weighted RMS along z of a packed netCDF array", found.weighted_rms["z"], 0.2696,
+        abs=5e-5, unit="m/s2", source="second derivation: the record from which the array was packed",
+    )  # fmt: skip
     assert any("unpacked by the factor 0.05 and the offset 0" in text for text in found.notices)
 
 
