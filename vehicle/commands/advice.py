@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.accepted import refusal
 from vehicle.errors import VehicleError
+from vehicle.signals.records.channel import NOT_OVER_TIME, ROAD_PROFILE
 from vehicle.signals.records.channel_words import (
     axis_of,
     map_options,
@@ -52,7 +53,7 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
     histories = [
         (number, channel)
         for number, channel in enumerate(measurement.channels, 1)
-        if channel.kind == "time" and channel.function != "road profile" and channel.axis is not None
+        if channel.kind == "time" and channel.axis is not None
     ]
     by = {
         quantity: [(number, channel) for number, channel in histories if channel.quantity == quantity]
@@ -94,6 +95,8 @@ def command_for(measurement: Measurement, file: str, databases: Sequence[Path] =
         return "", "no channels, nodes only"
     if histories:
         return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
+    if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
+        return "", "the channels are over distance or angle, not over time; export them over time"
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"
 
 
@@ -106,6 +109,7 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
         command: command of `command_for`, whose run it is.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.signals.records.choice import pick
 
     words = shlex.split(command)[3:]
     if words[:1] != ["shaker"] or "--road" in words:
@@ -115,8 +119,9 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
     plates = [name for name in suggested if name.startswith("plate_")]
     if not plates or len(plates) == len(suggested):
         return ""
-    first = next(channel for channel in measurement.channels if channel.quantity == "acceleration")
-    arguments = ["compare", "RUN", "--measured", file, *_clock(first)]
+    mapped_channels = [measurement.channels[pick(measurement, name)] for name in suggested.values()]
+    databases = [word for at, word in enumerate(words) if "--dbc" in words[max(at - 1, 0) : at + 1]]
+    arguments = ["compare", "RUN", "--measured", file, *databases, *_clock(*mapped_channels)]
     mapped = map_options(suggested)
     checked = [*arguments, *shlex.split(mapped), *(("--vehicle", str(car)) if car else ())]
     return "" if _is_checked(measurement) and refusal(checked) else f"{_line(*arguments)} {mapped}"
@@ -160,7 +165,7 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     """Return the command line that drives over a road profile, and a reason if there is none; None for other files."""
     from vehicle.signals.excitation.measured_road import read_road
 
-    profile = measurement.format in ("crg", "erd")
+    profile = any(channel.function == ROAD_PROFILE for channel in measurement.channels)
     if not profile and not any(channel.name.strip().lower() == "distance" for channel in measurement.channels):
         return None
     try:
@@ -173,26 +178,31 @@ def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
 
 
 def _clock(*channels: Channel) -> tuple[str, ...]:
-    """Return the options that make the times of channels usable, in the longest part with values of all."""
+    """Return the options that make the times of channels usable and common, in the longest part with all values."""
     import numpy as np
 
     from vehicle.signals.records.clock import clock_options
+    from vehicle.signals.records.common_span import blocks_of, cut, resampling_rate
 
-    axis = channels[0].axis
-    if axis is None:
+    if any(channel.axis is None for channel in channels):
         return ()
-    valid = np.ones(axis.size, dtype=bool)
-    for channel in channels:
-        if channel.values.size == axis.size:
-            valid &= np.isfinite(channel.values)
+    try:
+        (block, *others), _ = cut("", blocks_of({str(number): channel for number, channel in enumerate(channels)}))
+    except VehicleError:
+        return ()  # the command reports it
+    time = block.time
+    valid = np.all([np.isfinite(channel.values) for channel in block.channels.values()], axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(int))).reshape(-1, 2)
     if valid.all() or not edges.size:
-        return clock_options(axis)
-    begin, end = edges[int(np.argmax(edges[:, 1] - edges[:, 0]))].tolist()
-    options = clock_options(axis[begin:end])
-    return (
-        options if "--from" in options else ("--from", f"{axis[begin]:.9g}", "--to", f"{axis[end - 1]:.9g}", *options)
-    )
+        options = clock_options(time)
+    else:
+        begin, end = edges[int(np.argmax(edges[:, 1] - edges[:, 0]))].tolist()
+        options = clock_options(time[begin:end])
+        if "--from" not in options:
+            options = ("--from", f"{time[begin]:.9g}", "--to", f"{time[end - 1]:.9g}", *options)
+    if others and "--resample" not in options:
+        options = (*options, "--resample", resampling_rate([block, *others]))
+    return options
 
 
 def _plates(
@@ -200,6 +210,7 @@ def _plates(
 ) -> tuple[str, str]:
     """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
+    from vehicle.signals.records.common_span import overlap
 
     plain = {channel.name.strip().rstrip(".").lower() for _, channel in moves}
     if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
@@ -212,7 +223,8 @@ def _plates(
     wheels: dict[str, int] = {}
     for number, channel in moves:
         wheel = wheel_of(channel.name)
-        if wheel and wheel not in wheels:
+        together = [measurement.channels[other - 1] for other in wheels.values()]
+        if wheel and wheel not in wheels and all(overlap(channel, other) for other in together):
             wheels[wheel] = number
     addition = ""
     if not wheels:
@@ -236,11 +248,14 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     """Return the comfort command for the accelerations of one point."""
     import numpy as np
 
+    from vehicle.signals.records.common_span import overlap
+
     seats = [pair for pair in those if {"seat", "sitz"} & set(words_of(pair[1].name + " " + pair[1].place))]
     axes: dict[str, int] = {}
     for number, channel in seats or those:
         axis = axis_of(channel)
-        if axis and axis not in axes:
+        together = [measurement.channels[other - 1] for other in axes.values()]
+        if axis and axis not in axes and all(overlap(channel, other) for other in together):
             axes[axis] = number
     if not axes:
         axes = {"z": (seats or those)[0][0]}

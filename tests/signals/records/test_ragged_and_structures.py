@@ -223,7 +223,7 @@ def test_formulas_without_values(tmp_path, capsys):
     sheet(path, lambda n: f"=B{n + 2}*9.81")
     seat = read_record(path)["Seat z"]
     assert not np.isfinite(seat.values).any() and seat.remark.startswith("formulas without saved values")
-    with pytest.raises(DataError, match=r"channel 2 'Seat z' has no values \(formulas without saved values"):
+    with pytest.raises(DataError, match=r"channel 'Seat z' has no values \(formulas without saved values"):
         choose(read_record(path), Choice(channels={"z": "Seat z"}))
     sheet(path, lambda n: 9.81 * SEAT[n])
     assert comfort(["--input", str(path), "--channel", "z=Seat z", "--json"]) == 0

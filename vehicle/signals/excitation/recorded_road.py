@@ -54,8 +54,8 @@ STANDING = 0.1
 """Speed below which the car counts as standing [m/s]."""
 
 NAMES = {
-    "left": (*TRACKS["left"], "displacement_fl", "plate_fl_displacement", "height left", "height_left"),
-    "right": (*TRACKS["right"], "displacement_fr", "plate_fr_displacement", "height right", "height_right"),
+    "left": (*TRACKS["left"], "displacement_fl", "plate_fl_displacement"),
+    "right": (*TRACKS["right"], "displacement_fr", "plate_fr_displacement"),
     "height": ("height", "profile", "road", "displacement", "elevation"),
 }
 """Default channel names, in lower case."""

@@ -17,6 +17,15 @@ from vehicle.signals.records.units import find_ratio
 
 Values = NDArray[np.float64] | NDArray[np.complex128]
 
+ROAD_PROFILE = "road profile"
+"""Function of heights over the distance, and of the distance itself."""
+
+OVER_DISTANCE, OVER_ANGLE = "function of distance", "function of angle"
+"""Functions of other channels over a distance or an angle."""
+
+NOT_OVER_TIME = frozenset((ROAD_PROFILE, OVER_DISTANCE, OVER_ANGLE))
+"""Functions of channels without times, which are no time histories at any rate."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Channel:
