@@ -107,6 +107,7 @@ def test_a_history_against_an_axis_is_turned_as_a_response(tmp_path):
         )
         measured = read_measured(frf, ["knuckle_fr_acc_z"], Choice(
             channels={"knuckle_fr_acc_z": "1"}, units={"knuckle_fr_acc_z": "(m/s2)/m"}))  # fmt: skip
+        assert measured.frf is not None
         found[sign] = chosen.values["z"], measured.frf.response
     validated(
         "File readers", "time history measured along -Z, over +Z", found[-1][0], -found[1][0], abs=0.0,
@@ -255,4 +256,5 @@ def test_the_column_that_rises_is_the_time(tmp_path):
     table = np.column_stack([stamp, elapsed, np.concatenate([SEAT, SEAT])])
     np.savetxt(path, table, "%.3f,%.3f,%.5f", header="timestamp [unix time],elapsed_time [s],acc [m/s2]", comments="")
     channel = read_record(path)["acc"]
+    assert channel.axis is not None
     assert channel.axis[-1] == pytest.approx(74.99) and (np.diff(channel.axis) > 0.0).all()
