@@ -24,21 +24,21 @@ def refusal(arguments: Sequence[str]) -> str:
     return ""
 
 
-def _comfort(words: Sequence[str]) -> None:
+def _comfort(options_text: Sequence[str]) -> None:
     from vehicle.commands.comfort import evaluated, parser
 
-    options = parser().parse_args(words)
+    options = parser().parse_args(options_text)
     evaluated(argparse.Namespace(**{**vars(options), "input": options.inputs[0]}))
 
 
-def _shaker(words: Sequence[str]) -> None:
+def _shaker(options_text: Sequence[str]) -> None:
     from vehicle.commands.input_options import record_choice
     from vehicle.commands.road import class_or_profile, road_drive
     from vehicle.commands.shaker import parser, plate_signal
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.excitation.evaluation_start import evaluation_start
 
-    options = parser().parse_args(words)
+    options = parser().parse_args(options_text)
     vehicle = load_vehicle(options.vehicle, options.overrides)
     if options.road is not None:
         drive = road_drive(class_or_profile(options.road), options, vehicle)
@@ -48,13 +48,13 @@ def _shaker(words: Sequence[str]) -> None:
     plate_signal(options, wheel, record_choice(options, wheel))
 
 
-def _compare(words: Sequence[str]) -> None:
+def _compare(options_text: Sequence[str]) -> None:
     from vehicle.commands.compare import measured_choice, parser
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.records.measured import read_measured
     from vehicle.signals.records.reader import read_record
 
-    options = parser().parse_args(words)
+    options = parser().parse_args(options_text)
     (name,) = options.measured
     choice = measured_choice(options)
     measurement = read_record(Path(name), choice.databases)

@@ -106,21 +106,21 @@ def comparison_for(measurement: Measurement, file: str, command: str) -> str:
     Args:
         measurement: the file.
         file: name of the file as typed.
-        command: command of `command_for`, whose run it is.
+        command: command from `command_for`; the comparison uses its run.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.records.choice import pick
 
-    words = shlex.split(command)[3:]
-    if words[:1] != ["shaker"] or "--road" in words:
+    run_command = shlex.split(command)[3:]
+    if run_command[:1] != ["shaker"] or "--road" in run_command:
         return ""
-    car = Path(words[words.index("--vehicle") + 1]) if "--vehicle" in words else None
+    car = Path(run_command[run_command.index("--vehicle") + 1]) if "--vehicle" in run_command else None
     suggested = suggested_channels(measurement.channels, load_vehicle(car).channels)
     plates = [name for name in suggested if name.startswith("plate_")]
     if not plates or len(plates) == len(suggested):
         return ""
     mapped_channels = [measurement.channels[pick(measurement, name)] for name in suggested.values()]
-    databases = [word for at, word in enumerate(words) if "--dbc" in words[max(at - 1, 0) : at + 1]]
+    databases = [word for at, word in enumerate(run_command) if "--dbc" in run_command[max(at - 1, 0) : at + 1]]
     arguments = ["compare", "RUN", "--measured", file, *databases, *_clock(*mapped_channels)]
     mapped = map_options(suggested)
     checked = [*arguments, *shlex.split(mapped), *(("--vehicle", str(car)) if car else ())]

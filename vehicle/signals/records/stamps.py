@@ -109,8 +109,8 @@ def _pattern(time: Vector, steps: Vector) -> StampClock | None:
             return None
         rate = period / length
         rate = float(round(rate)) if abs(rate - round(rate)) < 1e-6 * rate else rate
-        words = f"repeat a pattern of {period} samples, with steps of {steps.min():.4g} to {steps.max():.4g} s"
-        return StampClock(rate, rate, rate, words)
+        reason = f"repeat a pattern of {period} samples, with steps of {steps.min():.4g} to {steps.max():.4g} s"
+        return StampClock(rate, rate, rate, reason)
     return None
 
 
@@ -173,8 +173,8 @@ def _batches(time: Vector, steps: Vector) -> StampClock | None:
     if between.max() > longest or away > longest:
         return None
     limit = float(between.max()) / float(time[starts[-1]] - time[0])
-    words = f"come in batches of about {round(time.size / starts.size)}" if share >= BATCHED_SHARE else "are repeated"
-    return _round_clock(rate, rate * (1.0 - limit), rate * (1.0 + limit), words)
+    reason = f"come in batches of about {round(time.size / starts.size)}" if share >= BATCHED_SHARE else "are repeated"
+    return _round_clock(rate, rate * (1.0 - limit), rate * (1.0 + limit), reason)
 
 
 def _round_clock(rate: float, lowest: float, highest: float, reason: str) -> StampClock:

@@ -120,7 +120,7 @@ def read_function(path: Path, data: bytes, block: Block, where: str, units: Unit
 def _points(line: bytes) -> list[str]:
     """Return the cells of function, response point and reference: fixed columns, or words if a name exceeds its ten.
 
-    The format gives a name ten letters and a node ten digits; a longer name moves all columns behind it.
+    The format gives a name ten letters and a node ten digits; a longer name moves all following columns.
 
     Raises:
         ValueError: a longer name, and no nodes and directions behind it.
