@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -150,11 +150,7 @@ def read_measured(
         )
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
-        begins = [
-            file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)].axis
-            for name, wanted in histories.items()
-        ]
-        start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
+        start = _start(file, histories) if selection.rate is None else 0.0
         record = _record(file, replace(selection, channels={**times, **histories}), inverted)
         notices += record.notices
         if frf is None and not histories_only:
@@ -174,6 +170,17 @@ def read_measured(
         start=start,
         estimator=estimator,
     )
+
+
+def _start(file: Measurement, histories: Mapping[str, str]) -> float:
+    """Return the time of the file at which a run of its plates begins: their last start, else the first of all [s]."""
+    begins = {}
+    for name, wanted in histories.items():
+        axis = file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)].axis
+        if axis is not None:
+            begins[name] = float(axis[0])
+    plates = [begin for name, begin in begins.items() if name.startswith("plate_")]
+    return max(plates) if plates else min(begins.values(), default=0.0)
 
 
 def _is_data(channel: object) -> bool:
