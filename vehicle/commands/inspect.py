@@ -42,8 +42,8 @@ def _job(options: argparse.Namespace) -> None:
 
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
-        command, reason = command_for(measurement, name)
-        comparison = comparison_for(measurement, name) or None
+        command, reason = command_for(measurement, name, options.databases)
+        comparison = comparison_for(measurement, name, command) or None
         return {
             **contents(measurement),
             "command": command or None,

@@ -24,8 +24,10 @@ from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, sea
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.dependence import DependentInputsError, common_motions, what_moves
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.local_rational import shortest_record
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.peaks import resonances
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
@@ -54,23 +56,30 @@ LOADS = (
 """Addition to the header of time histories with loads."""
 
 
-def require_plates(signal: Signal) -> None:
-    """Check that no plate repeats the motion of another with a delay; FRFs cannot separate such plates.
+def require_plates(signal: Signal, *, separable: bool = True) -> None:
+    """Check that the FRFs to the plates can be estimated: long enough, and no plate repeats another with a delay.
 
     Args:
         signal: plate displacement.
+        separable: False accepts plates that repeat another with a delay; their run has no FRFs.
 
     Raises:
-        DataError: the message contains the plates and the delay.
+        DataError: the message contains the shortest length, or the plates and the delay.
     """
     moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
-    if len(moving) < 2:
-        return
-    plates = np.array([signal.displacement[wheel] for wheel in moving])
+    plates, band = np.array([signal.displacement[wheel] for wheel in moving]), signal.band(FRF_BAND)
+    names = [f"plate {wheel}" for wheel in moving]
+    motions = [{n: 1.0} for n in range(len(moving))]
     try:
-        common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], signal.band(FRF_BAND))
+        if len(moving) > 1:
+            motions = common_motions(signal.timestep, plates, names, band)
     except DependentInputsError as error:
-        raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
+        if separable:
+            raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
+        return
+    if motions and signal.duration < shortest_record(len(motions), band[1]):
+        plates = plates[[min(group) for group in motions]]
+        whole_record_responses(signal.timestep, plates, plates, band=band)  # accepts a short record if it is periodic
 
 
 def write_run(

@@ -20,6 +20,7 @@ from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.clock import (
     UNIFORM_TOLERANCE,
     check_increasing,
+    check_stamps,
     check_uniform,
     clock_options,
     is_uniform,
@@ -95,6 +96,7 @@ def read_signal(
     time = table.values[:, table.key]
     if time.size < MINIMUM_SAMPLES:
         raise DataError(f"{path}: {time.size} rows, must be at least {MINIMUM_SAMPLES} rows; use a longer record")
+    check_stamps(path, time)
     check_increasing(table, time)
     columns = {}
     for driven, (column, unit) in plates.items():

@@ -13,7 +13,7 @@ import numpy as np
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.channel import NOT_OVER_TIME, Channel, Measurement, uniform_axis
 from vehicle.signals.records.channel_faults import MOTIONS, faults
-from vehicle.signals.records.clock import clock_options, is_uniform, longest_step, without_rounding
+from vehicle.signals.records.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
 from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
 from vehicle.signals.records.resampled import resampled
 from vehicle.signals.records.table import USABLE, Vector
@@ -191,6 +191,9 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
             raise DataError(f"{where} has {fault}; set --unit {role}=UNIT to one of {allowed_units()}")
         if channel.kind != "time" or np.iscomplexobj(channel.values) or channel.function in NOT_OVER_TIME:
             raise DataError(f"{where} is a {channel.function}, must be a time history; choose another channel")
+        if channel.direction.startswith("-"):
+            notices.append(f"{role}: measured along {channel.direction}: sign inverted")
+            channels[role] = channel = replace(channel, values=-channel.values)
         if channel.name != role or channel.unit != channel.si_unit or channel.remark:
             notices.append(
                 f"{role}: channel {index + 1} {channel.name!r} [{channel.unit}]"
@@ -260,6 +263,12 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
     values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
     for role, samples in values.items():
         missing = np.count_nonzero(~np.isfinite(samples))
+        if missing == samples.size:
+            channel = channels[role]
+            raise DataError(
+                f"{path}: {role}: channel {channel.name!r} has no values"
+                f"{f' ({channel.remark})' if channel.remark else ''}; choose another channel"
+            )
         if missing:
             at = time[np.flatnonzero(~np.isfinite(samples))[0]]
             raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; exclude them with "
@@ -317,7 +326,8 @@ def _has_rate(time: Vector, rate: float) -> bool:
 
 
 def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
-    """Return times without the rounding of their stamps; reject pauses and decreasing times."""
+    """Return times without the rounding of their stamps; reject pauses, decreasing times, and unusable stamps."""
+    check_stamps(path, time)
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1

@@ -53,6 +53,10 @@ def resampled(
     Raises:
         DataError: a gap longer than `longest_gap`, or more samples than `LARGEST_GRID`.
     """
+    if time.size <= DEGREE:
+        raise DataError(
+            f"{sample_name(0)}: --resample of {time.size} samples, must be at least {DEGREE + 1}; use a longer record"
+        )
     steps = np.diff(time)
     median = float(np.median(steps))
     limit = longest_gap(median)
@@ -104,8 +108,9 @@ def _taps(ratio: float) -> Vector:
 
 def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: bool) -> str:
     """Describe the resampling of a record: original times, gaps, filter, accuracy."""
-    clock = "uniform times"
+    clock, longest = "uniform times", median
     if not uniform:
+        longest = float(steps.max())  # the spline follows frequencies as far as its widest steps do
         missing = int(np.count_nonzero(steps > 1.5 * median))
         jitter = np.abs(steps[steps <= 1.5 * median] / median - 1.0)
         clock = f"jittered times (steps up to {100.0 * float(jitter.max()):.2g} % off the median)"
@@ -115,8 +120,8 @@ def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: boo
     filtering = f" and a linear-phase anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
     return (
         f"resampled from {clock} at {1.0 / median:.6g} Hz to {rate:g} Hz by a spline of degree {DEGREE} through the "
-        f"samples at their true times{filtering}; amplitudes hold within 0.1 % up to {0.3 / median:.3g} Hz, 4 % up "
-        f"to {KEPT / median:.3g} Hz"
+        f"samples at their true times{filtering}; amplitudes hold within 0.1 % up to {0.3 / longest:.3g} Hz, 4 % up "
+        f"to {KEPT / longest:.3g} Hz"
     )
 
 
