@@ -37,7 +37,6 @@ def _shaker(words: Sequence[str]) -> None:
     from vehicle.commands.shaker import parser, plate_signal
     from vehicle.model.parameters.vehicle import load_vehicle
     from vehicle.signals.excitation.evaluation_start import evaluation_start
-    from vehicle.signals.excitation.input_files import find_input
 
     options = parser().parse_args(words)
     vehicle = load_vehicle(options.vehicle, options.overrides)
@@ -46,7 +45,7 @@ def _shaker(words: Sequence[str]) -> None:
         evaluation_start({options.road: drive.signal().duration}, None, drive.skip)
         return
     wheel = CORNERS[options.wheel] if options.wheel else vehicle.shaker_wheel
-    plate_signal(options, find_input(options.input), wheel, record_choice(options, wheel))
+    plate_signal(options, wheel, record_choice(options, wheel))
 
 
 def _compare(words: Sequence[str]) -> None:

@@ -166,7 +166,7 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, overrides)
     wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
     choice = record_choice(options, wheel) if drive is None else None
-    signal = drive.signal() if drive is not None else plate_signal(options, source, wheel, choice)
+    signal = drive.signal() if drive is not None else plate_signal(options, wheel, choice)
     _check_signal(options, signal)
     skip = evaluation_start({stem: signal.duration}, options.skip, 0.0 if drive is None else drive.skip)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
@@ -223,20 +223,20 @@ def _job(options: argparse.Namespace) -> None:
         print(summary_text(summary, output))
 
 
-def plate_signal(options: argparse.Namespace, file: Path, wheel: str, choice: Choice | None) -> Signal:
+def plate_signal(options: argparse.Namespace, wheel: str, choice: Choice | None) -> Signal:
     """Return the plate signals of --input; reject plates whose FRFs cannot be estimated.
 
     Args:
         options: parsed options of the command.
-        file: measurement file.
         wheel: wheel of a displacement that names none.
         choice: channels and preprocessing of the options.
     """
     from vehicle.runs.output.run_files import require_plates
+    from vehicle.signals.excitation.input_files import find_input
     from vehicle.signals.excitation.signal_file import read_signal
 
     signal = read_signal(
-        file,
+        find_input(options.input),
         wheel=wheel,
         interpolate=options.interpolate,
         remove_mean=options.remove_mean,

@@ -37,7 +37,9 @@ def structure_channels(label: str, record: Mapping[str, Any]) -> list[Channel]:
     """
     if "signals" in record:
         time = numbers(record.get("time"))
-        signals = ((name, columns, "", time) for name, columns in _simulink(f"{label}.signals", record["signals"]))
+        signals: Iterator[tuple[str, Vector, str, Vector | None]] = (
+            (name, columns, "", time) for name, columns in _simulink(f"{label}.signals", record["signals"])
+        )
     else:
         signals = _dspace(label, record)
     channels = []
@@ -71,7 +73,7 @@ def _simulink(label: str, signals: Any) -> Iterator[tuple[str, Vector]]:
             continue
         own = label if elements.size == 1 else f"{label}({number})"
         columns = columns_of(f"{own}.values", values.astype(np.float64))
-        text = _word(element["label"]) if "label" in elements.dtype.names else ""
+        text = _word(element["label"]) if "label" in (elements.dtype.names or ()) else ""
         names = [part.strip(" <>") for part in text.split(",")]
         if len(names) != len(columns):
             names = [f"{text}({n})" if text else name for n, (name, _) in enumerate(columns, 1)]

@@ -41,9 +41,10 @@ def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTab
         for n in range(start, len(lines)):
             if lines[n].strip():
                 filled[n] = filled[n].rstrip() + (names - width) * delimiter
-    remarks: tuple[Kind, ...] = ("text",) * (names - width)
-    notices = [] if remarks else [f"remarks beyond the last column are ignored, the first in line {wide[0] + 1}"]
-    return filled, TextTable(start=start, delimiter=delimiter, kinds=(*table.kinds, *remarks)), notices
+    remark: Kind = "text"
+    notices = [] if names > width else [f"remarks beyond the last column are ignored, the first in line {wide[0] + 1}"]
+    kinds = (*table.kinds, *[remark] * (names - width))
+    return filled, TextTable(start=start, delimiter=delimiter, kinds=kinds), notices
 
 
 def _is_row(line: str, delimiter: str, columns: Sequence[Kind]) -> bool:
