@@ -255,4 +255,5 @@ def test_the_column_that_rises_is_the_time(tmp_path):
     table = np.column_stack([stamp, elapsed, np.concatenate([SEAT, SEAT])])
     np.savetxt(path, table, "%.3f,%.3f,%.5f", header="timestamp [unix time],elapsed_time [s],acc [m/s2]", comments="")
     channel = read_record(path)["acc"]
+    assert channel.axis is not None
     assert channel.axis[-1] == pytest.approx(74.99) and (np.diff(channel.axis) > 0.0).all()
