@@ -107,6 +107,7 @@ def test_a_history_against_an_axis_is_turned_as_a_response(tmp_path):
         )
         measured = read_measured(frf, ["knuckle_fr_acc_z"], Choice(
             channels={"knuckle_fr_acc_z": "1"}, units={"knuckle_fr_acc_z": "(m/s2)/m"}))  # fmt: skip
+        assert measured.frf is not None
         found[sign] = chosen.values["z"], measured.frf.response
     validated(
         "File readers", "time history measured along -Z, over +Z", found[-1][0], -found[1][0], abs=0.0,
