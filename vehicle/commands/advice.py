@@ -218,7 +218,8 @@ def _plates(
         arguments = ["shaker", "--vehicle", "focus_road", "--road", *files, "--speed", f"channel:{speed}"]
         heights = [channel for _, channel in moves if channel.name.strip().rstrip(".").lower() in
                    {name for names in NAMES.values() for name in names}]  # fmt: skip
-        command, why = _first(measurement, [[*arguments, *_clock(*heights, speeds[0][1])]])
+        same = [channel for _, channel in speeds if channel.axis is heights[0].axis]  # others are interpolated
+        command, why = _first(measurement, [[*arguments, *_clock(*heights, *same)]])
         return command, "drives over the recorded road at the recorded speed" if command else f"a road, but: {why}"
     wheels: dict[str, int] = {}
     for number, channel in moves:

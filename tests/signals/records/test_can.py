@@ -29,7 +29,7 @@ BO_ 256 IMU: 8 ECU
  SG_ Y : 39|12@0- (0.01,0) [0|0] "m/s2" ECU
 BO_ 2147484160 Wide: 24 ECU
  SG_ Far : 160|16@1+ (0.5,0) [0|0] "mm" ECU
-VAL_ 256 Z 32767 "SNA" 0 "standstill" -20001 "Overrun" ;
+VAL_ 256 Z 32767 "SNA" 7 "NoError" 0 "standstill" -20001 "Overrun" ;
 VAL_ 256 State 0 "off" 1 "error" ;
 """
 

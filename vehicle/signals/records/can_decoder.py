@@ -47,8 +47,8 @@ HIGHEST_VALID = {
 """Highest valid raw value of a J1939 signal by size [bit]; higher ones are error codes (SAE J1939-71, table 1)."""
 
 NO_VALUE = re.compile(
-    r"\bsna\b|\bsnv\b|\bn/?a\b|not ?avail|not ?valid|unavail|invalid|undefined|error|fault|no ?(data|signal|value)"
-    r"|fehler|ung(ue|ü)ltig|nicht ?verf"
+    r"\bsna\b|\bsnv\b|\bn/?a\b|not ?avail|not ?valid|unavail|invalid|undefined"
+    r"|(?<!no )(error|fault)|no ?(data|signal|value)|(?<!kein )fehler|ung(ue|ü)ltig|nicht ?verf"
 )
 """Names in value tables that state that there is no measured value."""
 

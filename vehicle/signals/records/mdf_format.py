@@ -145,10 +145,10 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
         group_name = str(getattr(group.channel_group, "acq_name", "") or "") if len(file.groups) > 1 else ""
         place = group_name or (f"group {number + 1}" if len(file.groups) > 1 else "")
         master, seconds, remark = _axis(file, number)
-        if remark:
-            notices.append(f"{place or 'the group'}: {remark}")
         if master is not None:
             channels.append(replace(master, place=place))
+        elif remark:
+            notices.append(f"{place or 'the group'}: {remark}")
         for index, channel in enumerate(group.channels):
             if channel.channel_type in MASTERS and str(getattr(file, "version", "4")) >= "4":
                 continue
