@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 from scenarios.evidence import status_of
-from scenarios.inertia import led_by, loss_angle, main, moment_about_cog, roll_claims, roll_mode, roll_peak
+from scenarios.inertia import (
+    led_by,
+    loss_angle,
+    main,
+    moment_about_cog,
+    roll_claims,
+    roll_mode,
+    roll_peak,
+    torsion_claim,
+)
 from vehicle.runs.car import Car
 
 
@@ -28,6 +37,7 @@ def test_modes_are_judged_and_roll_peaks_need_a_long_record(results):
         "hydromount, loss angle at 7 Hz [deg]": ("predicted", True),
         "engine modes": ("fitted", True),
         "flexible modes of the trimmed body": ("fitted", True),
+        "torsion mode of the body couples with the vertical wheel mode, low level": ("fitted", True),
     }
     left = list(content["not_judged"])
     assert len(left) == 3 and all(name.startswith("roll peak of the seat rail FRF") for name in left)
@@ -52,6 +62,10 @@ def test_modes_belong_to_the_part_with_most_energy(car):
     for part in ("body", "engine"):
         assert len(led_by(modes, part)) == 6
         assert all(mode.energy[part] == max(mode.energy.values()) for mode in led_by(modes, part))
+
+
+def test_a_torsion_mode_far_above_the_wheel_mode_does_not_couple():
+    assert torsion_claim(Car.load(overrides=["body.frequency_scale=4"])).within is False
 
 
 def test_roll_rows_follow_the_peaks():
