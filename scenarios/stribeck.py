@@ -63,7 +63,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     force_figure(folder / "force_velocity.png", results)
     return Findings(
         title="Coulomb and Stribeck friction over the 7.5 mm bump (Bommer 2006, section 3.4)",
-        claims=peak_claims(results, phases, counts),
+        claims=[*peak_claims(results, phases, counts), *axis_claims(results)],
         tyres=runs.car().vehicle.driving.words,
         notes=[peak_table(phases, record.start), *setting(runs, results["Coulomb"], options.quick)],
         data={
@@ -163,7 +163,6 @@ def peak_claims(
                 picture="relative_acceleration.png",
             )
         )
-    claims += axis_claims(runs)
     errors = {name: force_error(run) for name, run in runs.items()}
     claims.append(
         OWN_CHECK.statement(
