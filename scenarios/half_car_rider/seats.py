@@ -76,6 +76,6 @@ def _text(name: str, tried: Sequence[Mapping[str, Claim]], measured: Mapping[str
         f"{MASSES[0]:g} to {MASSES[-1]:g} kg"
     )
     if not seats_that_hold and not measures:
-        return f"a contradiction of the source: its equations and parameters turn it with none of {grid}{other}"
+        return f"a contradiction of the source: with its equations and parameters it holds for none of {grid}{other}"
     holding = [f"{seats_that_hold} of {grid}", *(f"the {measure}" for measure in measures)]
-    return f"it holds with {' and with '.join(holding)}: it depends on what is not printed"
+    return f"it holds for {' and with '.join(holding)}: it depends on what is not printed"

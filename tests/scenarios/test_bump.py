@@ -18,6 +18,7 @@ from scenarios.bump.runs import SIZES, relative_acceleration, ring_down_time, sl
 from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
+from tests.scenarios.kept_table import contradictions
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
 from vehicle.signals.excitation.bump import bump
 
@@ -207,3 +208,7 @@ def test_the_film_shows_both_bumps_in_step(car, tmp_path):
     clock = (slice(70, 94), slice(0, 130))
     assert np.std(left[clock]) > 20.0
     assert np.mean(np.abs(left[clock] - right[clock])) < 2.5
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("bump", results) == []

@@ -12,6 +12,7 @@ from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.other_vehicles import region_verdicts
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
+from tests.scenarios.kept_table import contradictions
 from vehicle.engines.lumped.road_holding import quarter_car_model, tyre_load_ratio
 from vehicle.model.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -159,3 +160,7 @@ def test_complete_car_quarter_carries_its_share():
     assert car.wheel.suspension_stiffness == pytest.approx(2.5e4 * cosine**2, rel=1e-9)
     assert car.wheel.suspension_damping == pytest.approx(2250.0 * cosine**2, rel=1e-9)
     assert 30.0 < car.wheel.unsprung_mass < 60.0
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("damper_choice", results) == []

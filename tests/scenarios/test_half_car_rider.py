@@ -11,6 +11,7 @@ from scenarios.half_car_rider.__main__ import main
 from scenarios.half_car_rider.claims import relative_changes
 from scenarios.half_car_rider.runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive, varied
 from scenarios.half_car_rider.seats import MEASURES, STIFFNESS, seats, with_experiment
+from tests.scenarios.kept_table import contradictions
 from vehicle.engines.lumped.bump_response import bump_passage, bump_response
 from vehicle.engines.lumped.half_car_rider_model import half_car_rider, output_points
 from vehicle.model.parameters.half_car_rider_parameters import PUBLISHED, half_car_rider_parameters
@@ -63,9 +64,11 @@ def test_a_disagreement_says_whether_a_seat_or_a_measure_turns_it():
         [made("VDV a", False), made("seat b", False), made("VDV c", False), made("d", True)], CAR, rows_of
     )
     count = len(seats(CAR))
-    assert "it holds with 0 of" in rows[0].why and "with the RMS" in rows[0].why
-    assert f"it holds with {count // len(STIFFNESS)} of {count} seats of 5000 to 150000 N/m" in rows[1].why
-    assert f"a contradiction of the source: its equations and parameters turn it with none of {count}" in rows[2].why
+    assert "it holds for 0 of" in rows[0].why and "with the RMS" in rows[0].why
+    assert f"it holds for {count // len(STIFFNESS)} of {count} seats of 5000 to 150000 N/m" in rows[1].why
+    assert f"a contradiction of the source: with its equations and parameters it holds for none of {count} seats" in (
+        rows[2].why
+    )
     assert rows[2].why.endswith("and with RMS and peak in place of the dose value") and rows[3].why == "why"
 
 
@@ -162,3 +165,7 @@ def test_study_holds_the_base_case_in_its_middle():
 
 def test_relative_change():
     np.testing.assert_allclose(relative_changes([[0.8, 1.0, 1.2], [2.0, 2.0, 2.0]]), [0.4, 0.0])
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("half_car_rider", results) == []

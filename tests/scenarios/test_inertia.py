@@ -18,6 +18,7 @@ from scenarios.inertia import (
     roll_peak,
     torsion_claim,
 )
+from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
 
 
@@ -104,3 +105,7 @@ def test_the_peak_nearest_to_the_mode_is_taken(car):
     # One line without an estimate, 0.2 Hz below the top, must not hide it.
     response.response[0, np.argmin(np.abs(response.frequency - roll.frequency + 0.2))] = np.nan
     assert roll_peak(response, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("inertia", results) == []

@@ -17,6 +17,7 @@ from scenarios.levels import (
     order_claims,
 )
 from scenarios.slip_shares import OTHER_VELOCITIES, PUBLISHED_SLIP, slip_claims
+from tests.scenarios.kept_table import contradictions
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.peaks import phase_resonance
 
@@ -155,3 +156,7 @@ def test_rows_disagree_where_the_numbers_do():
         "high": level((0.17, 0.04), 30.0, 1.0, 0.9),
     }
     assert not any(claim.within for claim in (*slip_rows(bad), *frequency_claims(bad), *order_claims(bad)))
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("levels", results) == []

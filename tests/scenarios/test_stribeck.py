@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.stribeck import force_error, law_force, main, peak_claims
+from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.slip import extra_peaks, most_prominent, slip_phases
 from vehicle.signals.excitation.bump import bump
@@ -103,3 +104,7 @@ def test_force_error_sees_another_law(car):
     rows = peak_claims({"Stribeck": bent, "Coulomb": bent}, phases, {"Stribeck": [0, 2], "Coulomb": [1, 0]})
     assert [row.within for row in rows] == [True, True, False]
     assert str(rows[0].ours).startswith("present with 1 of 3 seeds of the noise; pictured run: 0,")
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("stribeck", results) == []
