@@ -245,11 +245,11 @@ def headline(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def interval_counts(rows: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Return one text with both counts of the rows that are compared with an interval; empty without such rows."""
-    known = [row for row in rows if row["inside"] is not None and row["status"] not in UNCOUNTED]
-    inside, allowed = (sum(row[name] is True for row in known) for name in ("inside", "within"))
-    text = f"of {len(known)} rows with a printed interval our value is inside in {inside}, not contradicted at "
-    return [f"{text}{100.0 * AGREES_ABOVE:g} % in {allowed}"] if known else []
+    """Return a text with both counts of the rows with a printed interval; an empty list without these rows."""
+    compared = [row for row in rows if row["inside"] is not None and row["status"] not in UNCOUNTED]
+    inside, allowed = (sum(row[name] is True for row in compared) for name in ("inside", "within"))
+    text = f"of {len(compared)} rows with a printed interval our value is inside in {inside}, not contradicted at "
+    return [f"{text}{100.0 * AGREES_ABOVE:g} % in {allowed}"] if compared else []
 
 
 UNCOUNTED = ("duplicate", "not testable")
@@ -261,7 +261,7 @@ def _agree(verdicts: Sequence[Verdict]) -> str:
 
 
 def _undecided(verdicts: Sequence[Verdict]) -> str:
-    count = sum(one is None for one in verdicts)
+    count = list(verdicts).count(None)
     return f", {count} undecided" if count else ""
 
 

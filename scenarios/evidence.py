@@ -37,8 +37,8 @@ class Evidence:
         weight: weight in the sum of log-likelihoods; 1 / k for each of k rows from one curve or run.
         before: status of the row in both halves: the body was fitted to it, or an earlier choice had it in view; None
             if neither did.
-        same: key of the row of another figure with the same half second of the same road, which is counted instead of
-            this one; empty without.
+        same: key of the row that counts in place of this row: another figure with the same half second of the same
+            road; empty by default.
     """
 
     key: str

@@ -1,7 +1,7 @@
 """Share of the time in slip at the three levels, over records of the shaker input (table 3.2 of Bommer 2006).
 
-The thesis prints neither the velocity that counts as slip nor the record. The rows take the slip velocity of the car
-and show the shares at other velocities beside it.
+The velocity that counts as slip and the record are not printed. The rows use the slip velocity of the car; their
+reasons contain the shares at other velocities.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ RECORDS = 8
 """Records of the input, seeds 0 to 7; the record of the thesis is unknown."""
 
 LENGTH = 60.0
-"""Length of a record, as of the shipped inputs [s]."""
+"""Duration of a record [s], equal to that of the shipped inputs."""
 
 OTHER_VELOCITIES = (1e-4, SATURATED_VELOCITY, 0.012)
-"""Other velocities that may count as slip [m/s]: 0.1 mm/s is that of the quarter car (10 / eps), 1 mm/s saturates the
+"""Further definitions of slip, velocities [m/s]: 0.1 mm/s is that of the quarter car (10 / eps), 1 mm/s saturates the
 friction, 12 mm/s is that of a car chosen earlier."""
 
 
@@ -46,7 +46,7 @@ def slip_shares(runs: CarRuns, *, quick: bool) -> Shares:
     """Return the slip shares at all levels; runs of the reduced engine, two short records with quick."""
     car, wheel = runs.car(), runs.wheel
     velocities = (*OTHER_VELOCITIES, car.vehicle.damper.slip_velocity)
-    channels = [f"damper_{one}_velocity" for one in (wheel, across(wheel))]
+    channels = [f"damper_{side}_velocity" for side in (wheel, across(wheel))]
     duration = QUICK_DURATION if quick else LENGTH
     shares: dict[str, dict[float, Vector]] = {}
     for level, rms in LEVELS.items():
@@ -63,7 +63,7 @@ def slip_shares(runs: CarRuns, *, quick: bool) -> Shares:
         ]
         records = [car.run(signal, engine="reduced", channels=channels) for signal in signals]
         shares[level] = {
-            velocity: np.array([[run.slip_share(one, velocity) for one in (wheel, across(wheel))] for run in records])
+            velocity: np.array([[run.slip_share(side, velocity) for side in (wheel, across(wheel))] for run in records])
             for velocity in velocities
         }
     return shares

@@ -26,6 +26,6 @@ def verdict(holds: Callable[[float], object], value: float, error: float = 0.0) 
 
 
 def common(verdicts: Iterable[object]) -> Verdict:
-    """Return the verdict that all seeds, windows or readings of one statement share, or None (undecided)."""
-    found = {bool(one) for one in verdicts}
-    return found.pop() if len(found) == 1 else None
+    """Return the common verdict of all seeds, windows or readings of a statement; None (undecided) if they differ."""
+    distinct = {bool(verdict_of_seed) for verdict_of_seed in verdicts}
+    return distinct.pop() if len(distinct) == 1 else None

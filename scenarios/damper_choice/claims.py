@@ -133,7 +133,7 @@ def half_response_claims(
         parameters: parameters of the half car.
         lines: frequencies [Hz], (m,).
         responses: damping [N s/m] to |response| of front wheel, rear wheel, heave and pitch, (4, m).
-        other: vehicle fitted to these rows as well, the experiment beside a row that disagrees.
+        other: vehicle fitted to these rows as well, the experiment for a row that disagrees.
     """
     stack = np.array([responses[c] for c in HALF_DAMPING])  # (damping, coordinate, line)
     rows = []

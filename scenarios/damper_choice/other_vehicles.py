@@ -1,7 +1,7 @@
 """Rows on the wheels of the half car with another vehicle: the source prints none, so it is fitted to these rows too.
 
-A row that the repeated fit meets depends on the vehicle, which is not printed. A row that it cannot meet beside the
-other printed numbers is a contradiction of the source.
+The repeated fit separates rows that depend on the unprinted vehicle from contradictions of the source: rows that the
+fit misses together with the remaining printed numbers.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Refit:
 
     Attributes:
         holds: (end, row of `region_verdicts`) to the verdict with this vehicle.
-        before, after: sum of squared residuals of the other printed numbers, shipped vehicle and this one [-].
+        before, after: sum of squared residuals of the remaining printed numbers, shipped and fitted vehicle [-].
         vehicle: text on the vehicle.
     """
 

@@ -1,7 +1,7 @@
 """Rows that disagree, with other seats and other measures: the source prints no seat.
 
-A row that no plausible seat and no usual measure turns is a contradiction of the source: its own equations and
-parameters do not give its figure.
+A row that disagrees for all plausible seats and usual measures is a contradiction of the source: the printed equations
+and parameters do not give the printed figure.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ def seats(car: HalfCarRiderParameters) -> list[HalfCarRiderParameters]:
 
 
 def with_experiment(rows: Sequence[Claim], car: HalfCarRiderParameters, rows_of: Rows) -> list[Claim]:
-    """Return the rows; a predicted row that disagrees says which seats and measures turn it.
+    """Return the rows; the reason of a disagreement contains the seats and measures for which the row holds.
 
     Args:
         rows: rows of the study.
         car: car of the source with the assumed seat.
         rows_of: function of a car, and of a measure in place of the dose value, that returns the rows again.
     """
-    tried = [{row.name: row for row in rows_of(one)} for one in seats(car)]
+    tried = [{row.name: row for row in rows_of(seated_car)} for seated_car in seats(car)]
     measured = {name: {row.name: row for row in rows_of(car, measure=measure)} for name, measure in MEASURES.items()}
     return [
         replace(row, why=f"{row.why}; {_text(row.name, tried, measured)}")

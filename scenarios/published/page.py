@@ -65,7 +65,7 @@ ROW_CELLS = ("name", "published", "ours", "inside", "within", "beside", "status"
 
 
 SPARSE = ("inside", "beside")
-"""Cells whose column is left out of a table that has none of them."""
+"""Columns that a table without a value in them leaves out."""
 
 
 def page(
@@ -112,8 +112,8 @@ def _index(rows: Sequence[Row]) -> Iterator[str]:
     for source in SOURCES:
         links = []
         for _, location, group in _places(source, rows):
-            found = {text: sum(cell(row, "within") == text for row in group) for text in ("NO", "undecided")}
-            verdicts = ", ".join(f"{count} {text}" for text, count in found.items() if count)
+            counted = {text: sum(cell(row, "within") == text for row in group) for text in ("NO", "undecided")}
+            verdicts = ", ".join(f"{count} {text}" for text, count in counted.items() if count)
             links.append(
                 f"[{_heading(location)}](#{_anchor(source, location)})" + (f" ({verdicts})" if verdicts else "")
             )

@@ -19,7 +19,7 @@ def collect(
 
     Args:
         results: study to the content of its `results.json`.
-        beside: the same of some studies with the car of `sources.BESIDE`; a row has its values as `beside`, or None.
+        beside: results of studies with the car of `sources.BESIDE`; their values are the member `beside` of a row.
     """
     others = {
         (study, row["name"]): {name: row[name] for name in ("ours", "within", "inside")}
@@ -41,7 +41,7 @@ def collect(
 def beside_counts(rows: Sequence[Row]) -> str:
     """Return how many predicted rows of both cars agree with each, or "" without rows of the other car."""
     both = [row for row in rows if row["beside"] is not None and row["status"] == "predicted"]
-    first, second = (sum(one["within"] is True for one in part) for part in (both, [row["beside"] for row in both]))
+    first, second = (sum(row["within"] is True for row in part) for part in (both, [row["beside"] for row in both]))
     text = f"Of {len(both)} predicted rows computed with both cars, {first} agree with the printed {PRINTED_IXX} and "
     return f"{text}{second} with {BESIDE_NAME}." if both else ""
 

@@ -1,7 +1,7 @@
 """Labels of the axes of figures 2.12, 2.13, 2.17 and 2.18, which are all that is left of their curves.
 
-An axis that was scaled automatically ends at the tick beyond the data: with readable neighbours the extreme lies in the
-last interval, with one readable label between that label and 0. An axis holds all curves of its panel.
+An axis that was scaled automatically ends at the tick beyond the data: the extreme is in the last interval if both
+labels are readable, otherwise between the readable label and 0. An axis contains all curves of its panel.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ def first(pattern: str, digits: int) -> list[str]:
 N = r"(-?[\d.]+)"
 
 QUOTES: dict[str, Callable[[], list[str]]] = {
-    rf"{N} of {N} predicted rows agree, {N} are undecided": predicted,
+    rf"{N} of {N} predicted rows agree, {N} undecided": predicted,
     rf"of {N} rows with a printed interval our value is inside in {N}, not contradicted at 5 % in {N}": intervals,
     rf"in addition {N} rows are fitted": lambda: number_of("fitted"),
     rf"rows are fitted, {N} chosen": lambda: number_of("chosen"),
