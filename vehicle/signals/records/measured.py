@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.channel_words import map_options, suggested_channels
 from vehicle.signals.records.choice import Choice, choose, pick
+from vehicle.signals.records.delays import channel_delays, responses_without_delays, without_delays
 from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.integration import displacement, filtered
 from vehicle.signals.records.measured_frf import is_response, measured_frfs
@@ -42,6 +43,7 @@ class Measured:
         notices: messages on channels and processing steps.
         estimator: estimator of the frequency responses; empty if the file contains the responses.
         start: first time of the file [s]; `record` may be an excerpt that begins later.
+        delays: channel to delay that was taken out [s].
     """
 
     file: Measurement
@@ -50,6 +52,7 @@ class Measured:
     notices: tuple[str, ...]
     estimator: str = ""
     start: float = 0.0
+    delays: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_measured(
@@ -118,6 +121,7 @@ def read_measured(
         if not histories_only
         and is_response(file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)])
     }
+    delays = channel_delays(tuple(roles), selection.delays)
     frf: FrfData | None = None
     record: Record | None = None
     notices: list[str] = []
@@ -130,6 +134,7 @@ def read_measured(
                 "have frequency responses"
             )
         frf, notices = measured_frfs(file, spectra, selection, inverted)
+        frf = responses_without_delays(frf, delays)
     histories = {name: wanted for name, wanted in roles.items() if name not in spectra}
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
@@ -138,7 +143,7 @@ def read_measured(
             for name, wanted in histories.items()
         ]
         start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
-        record = _record(file, replace(selection, channels={**times, **histories}), inverted)
+        record = _record(file, replace(selection, channels={**times, **histories}), inverted, delays)
         notices += record.notices
         if frf is None and not histories_only:
             estimated = estimated_frf(record, window)
@@ -156,6 +161,7 @@ def read_measured(
         notices=tuple(dict.fromkeys([*file.notices, *notices])),
         start=start,
         estimator=estimator,
+        delays=delays,
     )
 
 
@@ -185,10 +191,11 @@ def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequenc
     return numbers
 
 
-def _record(file: Measurement, choice: Choice, inverted: Collection[str]) -> Record:
-    """Return the selected time histories in SI units at uniform times; invert signs."""
+def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays: Mapping[str, float]) -> Record:
+    """Return the selected time histories in SI units at uniform times; take delays out, and invert signs."""
     chosen = choose(file, choice)
     chosen.require_uniform(file.path)
+    chosen = without_delays(chosen, {name: delay for name, delay in delays.items() if name in chosen.values})
     units = channel_units(chosen.values)
     plates = {name: values for name, values in chosen.values.items() if units[name] == "m"}
     others = {name: values for name, values in chosen.values.items() if name not in plates}
