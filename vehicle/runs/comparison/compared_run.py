@@ -82,17 +82,18 @@ def compare(
     else:
         simulated = of_run(run) if isinstance(run, Run) else of_folder(Path(run))
     if isinstance(measured, Run):
-        if channels or choice is not None or inverted or delays:
+        if channels or choice is not None or inverted:
             raise ConfigurationError(
-                "channels, choice, inverted, delays of groups: for a measurement file; a run has the channels of the "
-                "model, so leave them out"
+                "channels, choice, inverted: for a measurement file; a run has the channels of the model, so leave "
+                "them out"
             )
         if isinstance(run, Run):
             simulated = replace(simulated, name=run_words(run))
         measured = reference_of(measured, window)
     if isinstance(measured, Measured) and delays:
         raise ConfigurationError(
-            f"delay {delays}: the measurement has been read; give the file, or read_measured the Choice(delays=...)"
+            f"delay {delays}: delays of groups are taken out of a file as it is read; give the file, or "
+            "Choice(delays=...) to read_measured"
         )
     if not isinstance(measured, Measured):
         asked = choice or Choice()

@@ -120,8 +120,8 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
             against the run.
     """
     groups: dict[str, list[ChannelLag]] = {}
-    for lag in lags:
-        groups.setdefault(group_of(lag.channel), []).append(lag)
+    for each in lags:
+        groups.setdefault(group_of(each.channel), []).append(each)
     if not groups:
         return ()
     first = reference or (PLATES if PLATES in groups else next(iter(groups)))
