@@ -238,12 +238,16 @@ def test_two_plates_are_told_apart(shaker, tmp_path):
     table = np.genfromtxt(folder / "frf.csv", delimiter=",", skip_header=3)
     heads = (folder / "frf.csv").read_text().splitlines()[2].split(",")
     band = (table[:, 0] >= 8.0) & (table[:, 0] <= 45.0)
-    for wheel, head in (("fr", "knuckle_fr_acc_z"), ("fl", "knuckle_fr_acc_z_to_fl"), ("fl", "knuckle_fl_acc_z_to_fl")):
-        channel, column = head.removesuffix("_to_fl"), heads.index(f"{head}_magnitude")
+    assert [one["columns"] for one in summary["frf"]["to"]] == ["<channel>/plate_fr", "<channel>/plate_fl"]
+    for wheel, channel in (("fr", "knuckle_fr_acc_z"), ("fl", "knuckle_fr_acc_z"), ("fl", "knuckle_fl_acc_z")):
+        head = f"{channel}/plate_{wheel}"
+        column = heads.index(f"{head}_magnitude")
         exact = np.abs(Car.load().matrix_frf([channel], table[band, 0], wheel=wheel)[0])
         # A single-input estimate would miss the other plate's share altogether.
         error = np.sqrt(np.mean((table[band, column] - exact) ** 2) / np.mean(exact**2))
         assert error < 0.03, head
+    for wheel in ("fr", "fl"):
+        assert f"resonances  knuckle_{wheel}_acc_z/plate_{wheel}: " in outcome.out
     outcome = shaker("--input", "both.csv", "--wheel", "front_left", "--force")
     assert outcome.code == 2 and "names the wheels of its columns" in outcome.err
 

@@ -129,8 +129,8 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         default=[],
         metavar="CHANNEL=NAME",
         help='channel of the model and its measured channel, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
-        "pattern with *, or place and direction; for mode shapes PLACE=NODE; by default equal names, and for modes "
-        "nodes at the places of the car; may be repeated",
+        "pattern with *, or place and direction; a response may name its plate, as knuckle_fr_acc_z/plate_fl=3; for "
+        "mode shapes PLACE=NODE; by default equal names, and for modes nodes at the places of the car; may be repeated",
     )
     parser.add_argument(
         "--turn",
@@ -203,11 +203,13 @@ def _overview(results: list[dict[str, Any]]) -> str:
             continue
         summary = result["summary"]
         keys = (("responses", "frac", ""), ("records", "rms_ratio", "correlation"))
+        several = len({response.get("plate") for response in summary.get("responses", ())}) > 1
         for section, first, second in keys:
             for channel in summary.get(section, ()):
                 values = [channel.get(key) if key else None for key in (first, second)]
                 cells = ["-" if value is None else f"{value:.4g}" for value in values]
-                rows.append((result["input"], channel["channel"], section[:-1], *cells))
+                plate = f"/{channel['plate']}" if several and channel.get("plate") else ""
+                rows.append((result["input"], channel["channel"] + plate, section[:-1], *cells))
     return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), rows)
 
 

@@ -122,12 +122,10 @@ def responses(
         raise DataError(
             f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
         )
-    plates = {wheel_name: f"plate_{wheel_name}_displacement" for wheel_name in moving}
     return motion_responses(
         recording.timestep,
-        {wheel_name: recording[plate] for wheel_name, plate in plates.items()},
+        {wheel_name: recording[f"plate_{wheel_name}_displacement"] for wheel_name in moving},
         [recording[name] for name in names],
-        labels=plates,
         names=names,
         band=band,
         rounding={wheel_name: rounding_step(signal.displacement[wheel_name]) for wheel_name in moving},

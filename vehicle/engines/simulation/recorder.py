@@ -362,7 +362,7 @@ class Recorder:
             time=time,
             channels=self.channels,
             units=channel_units(self.channels),
-            excited=tuple(wheel for wheel in self.wheels if np.ptp(signal.displacement.get(wheel, np.zeros(1))) > 0.0),
+            excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
             pose_time=time[self.pose_index],
             poses=self.poses,
             statistics=statistics,

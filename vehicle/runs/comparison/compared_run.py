@@ -11,7 +11,13 @@ import numpy as np
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Run
 from vehicle.runs.comparison.comparison import Comparison
-from vehicle.runs.comparison.frf_comparison import BANDS, FrfComparison, checked_edges, compare_responses
+from vehicle.runs.comparison.frf_comparison import (
+    BANDS,
+    FrfComparison,
+    checked_edges,
+    compare_responses,
+    other_plates,
+)
 from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
 from vehicle.signals.analysis.phase_delay import phase_delay
@@ -165,12 +171,14 @@ def comparison_of(
     responses: tuple[FrfComparison, ...] = ()
     signatures, notices = None, list(measured.notices)
     if measured.frf is not None:
-        names = [name for name in measured.frf.channels if name in simulated.record.channels]
+        outputs = set(measured.frf.channels)
+        names = [name for name in simulated.record.channels if name in outputs]
         other = simulated.responses(names, window) if names else None
         if other is None:
             notices.append("the run has no responses to compare with")
         else:
             responses, signatures = compare_responses(measured.frf, other, edges or BANDS)
+            notices += other_plates(measured.frf, other)
     records: tuple[RecordComparison, ...] = ()
     judged: set[str] = set()
     lags, step, reference = list[ChannelLag](), 0.0, ""

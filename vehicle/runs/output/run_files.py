@@ -31,6 +31,7 @@ from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
 from vehicle.signals.records.frf_file import write_frf
 from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_frf import CHANNEL
 from vehicle.signals.records.run_summary import (
     SUMMARY_FILE,
     FrfSummary,
@@ -126,15 +127,11 @@ def write_run(
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
     write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
     if responses:
-        first, *others = responses
-        further = {other.first: other.response for other in others}
+        by_input = {response.input: response.response for response in responses}
         motions = what_moves([response.motion for response in responses])
-        write_whole(
-            folder / "frf.csv",
-            lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=motions),
-        )
+        write_whole(folder / "frf.csv", lambda path: write_frf(path, by_input, channels, FRAME, motions))
         if figures:
-            caption = _caption(run, first.response)
+            caption = _caption(run, responses[0].response)
             write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
     for file_format in dict.fromkeys(formats):
         if file_format != time_format:
@@ -248,7 +245,7 @@ def summarise(
     """
     statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
     energies, wheels = statistics.energies, vehicle.wheels
-    response, channels = (responses[0].response if responses else None), vehicle.acceleration_channels
+    channels = vehicle.acceleration_channels
     motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
     body = rigid_body(vehicle.body)
     return {
@@ -279,7 +276,7 @@ def summarise(
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "saturated_velocity": SATURATED_VELOCITY,
-        "peaks": _peaks(response, channels),
+        "peaks": _peaks(responses[0].response if responses else None, channels),
         "comfort": comfort_values(run),
         "seat_value": seat_values(run),
         "obstacle": obstacle_values(run),
@@ -304,7 +301,7 @@ def summarise(
             "stored_j": energies.stored if energies else None,
             "engine_reason": engine_reason,
         },
-        "frf": None if response is None else _frf_summary(responses, channels),
+        "frf": _frf_summary(responses, channels) if responses else None,
         "notices": [
             *([body.report] if body.repaired else []),
             *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
@@ -333,10 +330,13 @@ def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -
     response = responses[0].response
     averages = response.averages[np.isfinite(response.averages)]
     motions: list[MotionSummary] = []
-    for number, independent in enumerate(responses):
-        motion: MotionSummary = {"plates": dict(independent.motion), "columns": "<channel>"}
-        if number:
-            motion |= {"columns": f"<channel>_to_{independent.first}", "peaks": _peaks(independent.response, channels)}
+    for independent in responses:
+        motion: MotionSummary = {
+            "plates": dict(independent.motion),
+            "input": independent.input,
+            "columns": f"{CHANNEL}/{independent.input}" if len(responses) > 1 else CHANNEL,
+            "peaks": _peaks(independent.response, channels),
+        }
         motions.append(motion)
     return {
         "estimator": response.estimator,

@@ -43,10 +43,12 @@ def tiles(run: FinishedRun) -> Markup:
         (f"{100 * share:.2g} %", f"of the time in slip, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
-    peaks = summary["peaks"].get(f"knuckle_{run.wheel}_acc_z")
-    if peaks:
-        top = max(peaks, key=lambda peak: peak["magnitude"])
-        values.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
+    for wheel, plate, resonances in run.peaks[:1]:
+        if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
+            top = max(peaks, key=lambda peak: peak["magnitude"])
+            to_plate = f", FRF to the {plate}" if plate else ""
+            words = f"highest resonance of the vertical motion of the knuckle{to_plate}"
+            values.append((f"{top['frequency_hz']:.1f} Hz", words))
     plate = side_of(run.wheel, run.car.vehicle.wheels)
     values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
     boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]
@@ -175,9 +177,13 @@ def tables(run: FinishedRun) -> Markup:
         numbers = (float(np.sqrt(np.mean(values**2))), float(values.min()), float(values.max()))
         levels.append((name, recording.units[name], *(number(value, 4) for value in numbers)))
     peaks = [
-        (channel, ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in resonances))
-        for channel, resonances in summary["peaks"].items()
-        if resonances
+        (
+            channel + (f" to the {plate}" if plate else ""),
+            ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in peaks),
+        )
+        for _, plate, resonances in run.peaks
+        for channel, peaks in resonances.items()
+        if peaks
     ]
     static = summary["static"]
     wheels = run.car.vehicle.wheels

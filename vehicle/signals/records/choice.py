@@ -143,17 +143,10 @@ def pick(
     Raises:
         DataError: no match or several; the message lists the channels.
     """
-    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
-    matches = [index for index, one in channels if one.name == wanted]
-    if not matches and wanted.isdecimal() and int(wanted) - 1 in dict(channels):
-        return int(wanted) - 1
-    if not matches:
-        matches = [index for index, one in channels if fnmatch.fnmatchcase(one.name.lower(), wanted.lower())]
-    if not matches:
-        point = "".join(wanted.lower().removeprefix("dof").split())
-        matches = [index for index, one in channels if one.direction and (one.place + one.direction).lower() == point]
+    matches = matching(measurement, wanted, allowed)
     if len(matches) == 1:
         return matches[0]
+    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
     hit_text = (
         f"matches {len(matches)} channels ({', '.join(str(n + 1) for n in matches[:8])})"
         if matches
@@ -165,6 +158,20 @@ def pick(
         f"{measurement.path}: {option} {wanted!r} {hit_text}; set a number, an exact name, or a pattern with * that "
         f"matches one of: {listed}{more}"
     )
+
+
+def matching(measurement: Measurement, wanted: str, allowed: Callable[[Channel], bool]) -> list[int]:
+    """Return the indices of all channels that match the value of an option; arguments: see `pick`."""
+    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
+    matches = [index for index, one in channels if one.name == wanted]
+    if not matches and wanted.isdecimal() and int(wanted) - 1 in dict(channels):
+        return [int(wanted) - 1]
+    if not matches:
+        matches = [index for index, one in channels if fnmatch.fnmatchcase(one.name.lower(), wanted.lower())]
+    if not matches:
+        point = "".join(wanted.lower().removeprefix("dof").split())
+        matches = [index for index, one in channels if one.direction and (one.place + one.direction).lower() == point]
+    return matches
 
 
 def choose(measurement: Measurement, choice: Choice) -> Chosen:

@@ -14,6 +14,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.phase_delay import PhaseDelay
+from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.frf_file import FrfData
 from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags
@@ -264,7 +265,9 @@ def level_target(
     ranges = [factor * rms[chosen] for chosen in members]
     name = reference.removesuffix("_displacement")
     names = tuple(
-        f"{channel}, {name} {each.min():.3g} to {each.max():.3g} {unit} RMS" for channel in fitted for each in ranges
+        ResponseName(f"{channel}, {name} {each.min():.3g} to {each.max():.3g} {unit} RMS", ((name, 1.0),))
+        for channel in fitted
+        for each in ranges
     )
     target = LevelTarget(
         histories=histories,
@@ -275,7 +278,7 @@ def level_target(
         lines=lines,
         data=FrfData(
             frequency=lines / window,
-            channels=names,
+            names=names,
             response=response,
             coherence=coherence,
             random_error=error,

@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
@@ -24,7 +25,7 @@ from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
 from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
-from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.record_target import KEPT, RecordTarget, signal_until
 from vehicle.studies.tuning.response_delays import response_delays
@@ -117,12 +118,16 @@ def measured_responses(
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
     plate_signal = None if stuck else _signal(signal, car, path, measured, asked, inverted)
-    wheel = car.vehicle.shaker_wheel if plate_signal is None else plate_signal.wheels[0]
+    if plate_signal is not None:
+        data = to_driven_plates(data, motions_of(plate_signal), str(path))
+    else:
+        shaker = plates_of({car.vehicle.shaker_wheel: 1.0})
+        data = data.renamed([name if name.motion else ResponseName(name.output, shaker) for name in data.names])
     sample = 0.0 if not measured.estimator or measured.record is None else measured.record.step
+    delays = response_delays(measured, tuple(dict.fromkeys(data.channels)), asked.delays, contained=signal is None)
     target = FrfTarget(
-        name=path.stem, data=data, signal=plate_signal, window=window, wheel=wheel, averages=averages,
-        delays=response_delays(measured, data.channels, asked.delays, contained=signal is None), sample=sample,
-    )  # fmt: skip
+        name=path.stem, data=data, signal=plate_signal, window=window, averages=averages, delays=delays, sample=sample
+    )
     return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
 
 

@@ -14,6 +14,7 @@ from vehicle.model.parameters.paths import overrides_of, unit_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
+from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -34,7 +35,9 @@ class Agreement:
 
     Attributes:
         measurement: name of the measurement.
-        channel: channel.
+        channel: channel; of an FRF its output.
+        plate: input of an FRF, as "plate_fr"; empty for a time history.
+        label: channel, with its plate if the measurement has FRFs to several.
         measure: quantity: "magnitude", "phase" or "history".
         unit: dB, deg, or % of the RMS of the measured history.
         before, after: RMS of the error over the fitted frequencies or times.
@@ -42,6 +45,8 @@ class Agreement:
 
     measurement: str
     channel: str
+    plate: str
+    label: str
     measure: str
     unit: str
     before: float
@@ -82,7 +87,7 @@ class TunedCar:
         names = [
             (f"{channel} in {each.target.name}", error)
             for each, (_, after) in zip(self.measurements, self._errors, strict=True)
-            for channel, error in zip(_channels(each.target), after[:, -1].tolist(), strict=True)
+            for channel, error in zip(_labels(each.target), after[:, -1].tolist(), strict=True)
         ]
         return refusal(self.result, names)
 
@@ -102,15 +107,19 @@ class TunedCar:
             target = measurement.target
             if not isinstance(target, RecordTarget):
                 measures: tuple[tuple[str, str], ...] = (("magnitude", "dB"), ("phase", "deg"))
+                names: Sequence[ResponseName] = target.data.names
             else:
                 measures = (("history", "% of RMS"),)
-            for row, channel in enumerate(_channels(target)):
+                names = [ResponseName(channel) for channel in target.record.channels]
+            for row, (name, label) in enumerate(zip(names, _labels(target), strict=True)):
                 for column, (measure, unit) in enumerate(measures):
                     before, after = (float(table[row, column]) for table in errors)
                     rows.append(
                         Agreement(
                             measurement=target.name,
-                            channel=channel,
+                            channel=name.output,
+                            plate=name.input,
+                            label=label,
                             measure=measure,
                             unit=unit,
                             before=before,
@@ -162,6 +171,7 @@ class TunedCar:
                 {
                     "measurement": row.measurement,
                     "channel": row.channel,
+                    "plate": row.plate or None,
                     "measure": row.measure,
                     "unit": row.unit,
                     "before": row.before,
@@ -230,9 +240,9 @@ def tuned_car(
     )
 
 
-def _channels(target: FrfTarget | LevelTarget | RecordTarget) -> tuple[str, ...]:
+def _labels(target: FrfTarget | LevelTarget | RecordTarget) -> tuple[str, ...]:
     """Return the names of the compared channels."""
-    return tuple(target.record.channels) if isinstance(target, RecordTarget) else target.data.channels
+    return tuple(target.record.channels) if isinstance(target, RecordTarget) else target.data.labels
 
 
 def _model_errors(target: FrfTarget | LevelTarget | RecordTarget, car: Car) -> Vector:

@@ -97,7 +97,7 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
     texts = [
         *([f"The fit is not to be used: {tuned.refusal}."] if tuned.refusal else []),
         f"The measurement asks for {', '.join(changes)}.",
-        f"The largest error against the measurement ({channel_words(row.channel)}, {row.measure}) "
+        f"The largest error against the measurement ({channel_words(row.label)}, {row.measure}) "
         f"{word} from {number(row.before)} to {number(row.after)} {row.unit}; the data "
         + (f"leave open: {left_open[0]}." if left_open else "determine every parameter."),
     ]
@@ -160,7 +160,7 @@ def _left_open(tuned: TunedCar) -> Markup:
 
 def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> Markup:
     rows = [
-        (row.measurement, channel_words(row.channel), row.measure, row.unit, number(row.before), number(row.after))
+        (row.measurement, channel_words(row.label), row.measure, row.unit, number(row.before), number(row.after))
         for row in tuned.agreement
     ]
     heads = ("measurement", "channel", "error of", "unit", "before", "after")

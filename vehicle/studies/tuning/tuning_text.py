@@ -87,7 +87,7 @@ def source_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
 
 def agreement_lines(agreement: Sequence[Agreement]) -> list[str]:
     """Return the table of the errors against the measurements before and after the fit."""
-    names = [f"{row.measurement}, {row.channel}, {row.measure} [{row.unit}]" for row in agreement]
+    names = [f"{row.measurement}, {row.label}, {row.measure} [{row.unit}]" for row in agreement]
     width = max(48, *map(len, names)) if names else 48
     lines = [f"{'error against the measurement':<{width}} {'before':>9} {'after':>9}"]
     lines += [
