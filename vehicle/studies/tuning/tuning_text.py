@@ -58,12 +58,12 @@ def delay_lines(tuned: TunedCar) -> list[str]:
     for delay in result.delays:
         value, error = 1e3 * result.solution[delay.path], 1e3 * result.standard_errors[delay.path]
         target = tuned.measurements[delay.target].target
-        spread = f" +- {error:.2g}" if math.isfinite(error) else ""
+        digits = max(1 - math.floor(math.log10(error)), 0) if 0.0 < error < math.inf else 3
+        spread = f"{abs(value):.{digits}f}" + (f" +- {error:.{digits}f}" if math.isfinite(error) else "") + " ms"
         large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
         lines.append(
-            f"the {delay.group} of {target.name} {'lead' if value < 0.0 else 'lag'} the input by {abs(value):.4g}"
-            f"{spread} ms, fitted with the parameters"
-            + (f": a sensor delay? {delay.option(1e-3 * value)} holds it" if large else "")
+            f"the {delay.group} of {target.name} {'lead' if value < 0.0 else 'lag'} the input by {spread}, fitted "
+            "with the parameters" + (f": a sensor delay? {delay.option(1e-3 * value)} holds it" if large else "")
         )
     return lines
 
