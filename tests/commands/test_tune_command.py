@@ -88,7 +88,8 @@ def test_the_fitted_file_runs_and_the_report_is_whole(fitted, tmp_path):
     words = ["--vehicle", str(fitted / "vehicle.toml"), "--input", "low.csv", "--engine", "reduced", "--quiet"]
     assert shake([*words, "--output", str(tmp_path / "run")]) == 0
     page = (fitted / "report.html").read_text(encoding="utf-8")
-    for text in ("focus fitted to bench", "What the data leave open", content["set"], "<svg", "last steps with mujoco"):
+    settings = " ".join(f"--set {text}" for text in content["set"])
+    for text in ("focus fitted to bench", "What the data leave open", settings, "<svg", "last steps with mujoco"):
         assert text in page
     answer = page.partition('<p class="answer">')[2].partition("</p>")[0]
     first, error = content["parameters"][0], max(content["agreement"], key=lambda row: row["before"])

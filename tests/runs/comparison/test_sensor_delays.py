@@ -66,10 +66,18 @@ def test_delay_of_the_accelerations_is_found_and_taken_out(run, tmp_path, delay,
     assert again.signatures is not None
     inside = again.signatures.frequency >= 3.0
     assert np.mean(again.signatures.csac[inside]) > 0.99
-    phases = [(max(band.phase_deg for band in item.bands if band.low >= 8.0)) for item in again.responses]
-    before = [(max(band.phase_deg for band in item.bands if band.low >= 8.0)) for item in comparison.responses]
-    # 0.4 ms are 5.9 degrees at 41 Hz, the middle of the upper band; noise of 10 % leaves about 2 degrees there.
-    assert max(phases) < 0.6 * min(before)
+    if not noise:
+        # Of responses to the other plate, which are weak, friction leaves more.
+        before, after = (
+            [
+                band.phase_deg
+                for item in each.responses
+                for band in item.bands
+                if band.low >= 8.0 and (item.channel, item.plate) == ("knuckle_fr_acc_z", "plate_fr")
+            ]
+            for each in (comparison, again)
+        )
+        assert before and max(after) < 0.1 * min(before)
 
 
 def test_one_sensor_alone_and_a_pattern(run, tmp_path):

@@ -84,8 +84,8 @@ class GroupDelay:
         return [
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
             f"{1e3 * abs(self.delay):.3g} ms (+- {1e3 * self.error:.1g} ms, in {self.agreeing} of {self.channels} "
-            f"channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with --delay {self.group}={1e3 * self.delay:.5g}ms"
-            + (f" of {command}" if command else "")
+            "channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
+            f"--delay {self.group}={1e3 * self.delay:.5g}ms" + (f" of {command}" if command else "")
         ]
 
 

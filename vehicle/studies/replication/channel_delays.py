@@ -8,7 +8,8 @@ the part outside the column space of H is
 with Z the response of the car to its best drive, for which the P S Z of a linear car is zero. The delays minimise the
 sum of |r|^2 over the lines: a search channel by channel, then Gauss-Newton. A delay of all channels alike only moves
 the drive: delays are those against the (lower) median of all channels. The estimate is honest
-as far as the FRFs of the car are; its standard error is that of the remaining r.
+as far as the FRFs of the car are: friction, of which H has the mean damping of the last run, moves it, and a second run
+with the delay taken out is nearer. Its standard error is that of stretches of lines as observations.
 
 Source: Golub and Pereyra, SIAM J. Numerical Analysis 10(2), 1973, 413-432 (separable least squares: the drive is
 projected out).
@@ -29,6 +30,9 @@ LARGEST_DELAY = 0.1
 
 PER_PERIOD = 12.0
 """Values of the search per period of the highest line."""
+
+STRETCHES = 20
+"""Number of stretches of lines as observations of the standard error; the misfit of a model varies over many lines."""
 
 SEARCHES, ROUNDS = 3, 20
 """Number of searches of each channel, and maximum number of Gauss-Newton steps."""
@@ -121,9 +125,12 @@ def delays_between(target: Vector, response: Vector, frf: Complex, lines: Lines)
         delays[1:] += change
         if np.max(np.abs(change)) < 1e-9:
             break
-    freedom = max(2 * omega.size * (count - plates) - count + 1, 1)
+    stretches = np.array_split(np.arange(omega.size), min(STRETCHES, omega.size))
+    products = (np.conj(jacobian) * residual[:, None]).real.reshape(omega.size, count, -1).sum(axis=1)
+    scores = np.array([products[stretch].sum(axis=0) for stretch in stretches])
+    inverse = np.linalg.pinv(real.T @ real)
     covariance = np.zeros((count, count))
-    covariance[1:, 1:] = np.linalg.pinv(real.T @ real) * float(wanted @ wanted) / freedom
+    covariance[1:, 1:] = inverse @ (scores.T @ scores) @ inverse * len(scores) / max(len(scores) - 1, 1)
     # Errors of the differences to the mean of all channels.
     centred = np.eye(count) - 1.0 / count
     return against_median(delays), np.sqrt(np.diag(centred @ covariance @ centred.T))

@@ -42,8 +42,9 @@ def tuning_text(tuned: TunedCar) -> str:
     """
     result = tuned.result
     settings = " ".join(f"--set {text}" for text in tuned.settings)
-    lines = [*value_lines(result, tuned.start.vehicle), *delay_lines(tuned)]
-    lines += [settings or f"no --set line to copy: {tuned.refusal}", *source_lines(result, tuned.start.vehicle)]
+    lines = value_lines(result, tuned.start.vehicle)
+    lines += [settings or f"no --set line to copy: {tuned.refusal}"]
+    lines += [*delay_lines(tuned), *source_lines(result, tuned.start.vehicle)]
     left_open = what_data_leave_open(result)
     lines += [f"not determined: {text}" for text in left_open] or [
         "the data determine every parameter: no pair with a correlation of 0.9, no standard error above 10 %"
