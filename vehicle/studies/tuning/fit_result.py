@@ -65,7 +65,7 @@ class TuningResult:
         standard_errors: path to standard error from noise alone, in the unit of the value: random residuals with the
             correlation of neighbours; NaN for an unknown held or at a bound.
         misfit_errors: path of a free unknown to its standard error with stretches of data as observations, which holds
-            noise and the varying part of the misfit of the model; see `error_sources`.
+            noise and the varying part of the misfit of the model, at least that of noise alone; see `error_sources`.
         lag_shifts: path of a free unknown to its largest shift if one channel, or all, lag by half a sample; NaN for
             an unknown sampling interval.
         free: paths that were fitted and are not at a bound: rows of `correlation`.

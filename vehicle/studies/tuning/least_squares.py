@@ -333,7 +333,7 @@ class _Problem:
         slopes = np.array([self.unknowns[index].slope(values[self.unknowns[index].path]) for index in inner])
         errors.update(dict(zip(free, (deviations * slopes).tolist(), strict=True)))
         widths = np.array([self.unknowns[index].half_width for index in inner])
-        misfit = misfit_errors(jacobian, weighted, self._shapes(), inverse) * slopes
+        misfit = np.maximum(misfit_errors(jacobian, weighted, self._shapes(), inverse), deviations) * slopes
         lag = lag_shifts(self._lagged(values, raw), -inverse @ jacobian.T) * slopes
         return TuningResult(
             unknowns=self.unknowns,

@@ -268,7 +268,6 @@ def _histories(
             f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
             "its plate. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the plate"
         )
-    delays = response_delays(measured, tuple(names), asked.delays, contained=contained)
     road: RoadCar | None = None
     settled = 0.0
     if isinstance(signal, Road):
@@ -284,6 +283,7 @@ def _histories(
         names = [channel for channel in names if channel in (*fitted, keep)]
         if not names:
             raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {there}")
+    delays = response_delays(measured, tuple(names), asked.delays, contained=contained)
     step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
     times = run_times(held, begin, drift, float(held.time[0]) if contained else measured.start)
