@@ -41,7 +41,8 @@ def hidden_run() -> Run:
 def measured_by(run: Run, path: Path, seed: int) -> Path:
     """Write the record of late sensors with noise."""
     delays = {**dict.fromkeys(PLATES, 0.0), **dict.fromkeys(ACCELERATIONS, DELAY)}
-    return write_record(path, run, delays, noise=NOISE, seed=seed)
+    write_record(path, run, delays, noise=NOISE, seed=seed)
+    return path
 
 
 def fitted(path: Path, delay: Mapping[str, float] | None = None) -> TuningResult:

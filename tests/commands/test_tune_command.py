@@ -105,7 +105,8 @@ def test_console_says_the_values_first(record, tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("damper.viscous ") and "start 2250, bounds 800 to 4000" in lines[0]
     assert lines[2].startswith("--set damper.viscous=2250 --set suspension_mount.stiffness.z=")
-    assert lines[3].startswith("not determined: damper.viscous: the data do not identify this parameter")
+    (text,) = [line for line in lines if line.startswith("not determined: damper.viscous")]
+    assert "the data do not identify this parameter" in text
 
 
 def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):

@@ -1,5 +1,7 @@
 """Delays between the channels of a target that no drive explains: closed form, and a car with a late sensor."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -39,7 +41,7 @@ def test_a_late_sensor_is_named_and_taken_out(tmp_path):
     car = Car.load()
     run = car.run(shaken(("fl",), 8.0), engine="reduced", channels=[*NAMES, "plate_fl_displacement"])
     file = write_record(tmp_path / "target.csv", run, dict(zip(NAMES, (0.0, 12.3e-3, 0.0), strict=True)))
-    options = {"engine": "reduced", "iterations": 6, "band": (2.0, 45.0)}
+    options: dict[str, Any] = {"engine": "reduced", "iterations": 6, "band": (2.0, 45.0)}
     first = replicate_drive(car, file, NAMES, **options)
     delay = first.delays[1]
     texts = [text for each in first.delays for text in each.advice(1.0 / RATE)]
