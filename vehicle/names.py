@@ -71,8 +71,8 @@ def channel_words(channel: str) -> str:
     """
     output, _, plate = channel.partition("/")
     point, _, axis = output.rpartition("_acc_")
-    words = f"{point_words(point)} {axis}" if point else output
-    return f"{words} to {plate}" if plate else words
+    output = f"{point_words(point)} {axis}" if point else output
+    return f"{output} to {plate}" if plate else output
 
 
 def axle_and_side(wheel: str) -> tuple[str, str]:

@@ -42,14 +42,14 @@ def summary_text(summary: RunSummary, output: Path) -> str:
         f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
         f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
     ]
-    for wheel, end, peaks in _peaks(summary):
+    for wheel, plate, peaks in _peaks(summary):
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
             if channel not in peaks:
                 continue
             strongest = sorted(peaks[channel], key=lambda peak: -peak["magnitude"])[:4]
             by_frequency = sorted(strongest, key=lambda peak: peak["frequency_hz"])
             text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in by_frequency)
-            lines.append(f"resonances  {channel}{end}: {text + ' Hz' if text else 'none found'}")
+            lines.append(f"resonances  {channel}{plate}: {text + ' Hz' if text else 'none found'}")
     lines += _comfort(summary) + _obstacle(summary)
     lines += [
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",

@@ -84,7 +84,8 @@ def measurement_options(parser: Parser) -> None:
         "--signal",
         action=_OfMeasurement,
         metavar="FILE",
-        help="plate displacement of the files of the preceding --frf or --record; the plate in each file by default",
+        help="plate displacement of the files of the preceding --frf or --record, in any format of `inspect`; --map "
+        "plate_fl_displacement=NAME names its channels too; the plate in each file by default",
     )
     files.add_argument(
         "--stuck",

@@ -70,8 +70,10 @@ class RunResponse(FrequencyResponse):
         return plain(axes)
 
     def to_dataframe(self) -> Any:
-        """Return a pandas table; see `response_frame`."""
-        return response_frame(self, self.names)
+        """Return a pandas table; see `response_frame`. `attrs["input"]` contains the input."""
+        frame = response_frame(self, self.names)
+        frame.attrs["input"] = self.plate
+        return frame
 
 
 def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> RunResponse:

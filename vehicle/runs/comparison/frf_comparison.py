@@ -108,13 +108,13 @@ def paired(measured: FrfData, simulated: FrfData) -> list[tuple[int, float] | No
 def other_plates(measured: FrfData, simulated: FrfData) -> list[str]:
     """Return a notice for inputs that only the measurement or only the simulation has."""
     pairs = paired(measured, simulated)
-    alone = [name.input for name, pair in zip(measured.names, pairs, strict=True) if pair is None and name.motion]
+    unpaired = [name.input for name, pair in zip(measured.names, pairs, strict=True) if pair is None and name.motion]
     compared = {pair[0] for pair in pairs if pair is not None}
     driven = [name.input for row, name in enumerate(simulated.names) if name.motion and row not in compared]
     notices = []
-    if alone := list(dict.fromkeys(alone)):
+    if left_out := list(dict.fromkeys(unpaired)):
         notices.append(
-            f"measured responses to {', '.join(alone)} are left out: the run has "
+            f"measured responses to {', '.join(left_out)} are left out: the run has "
             f"{', '.join(simulated.inputs) or 'none'}; drive the same plates"
         )
     if driven := [plate for plate in dict.fromkeys(driven) if plate not in measured.inputs]:

@@ -334,9 +334,13 @@ def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -
         motion: MotionSummary = {
             "plates": dict(independent.motion),
             "input": independent.input,
-            "columns": f"{CHANNEL}/{independent.input}" if len(responses) > 1 else CHANNEL,
-            "peaks": _peaks(independent.response, channels),
+            "columns": CHANNEL,
         }
+        if len(responses) > 1:
+            motion |= {
+                "columns": f"{CHANNEL}/{independent.input}",
+                "peaks": _peaks(independent.response, channels),
+            }
         motions.append(motion)
     return {
         "estimator": response.estimator,

@@ -46,8 +46,8 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
         for wheel, plate, resonances in run.peaks
         for channel, point in main_points(run, wheel).items()
     ]
-    for plate, point, found in main:
-        peaks = sorted(found, key=lambda peak: -peak["magnitude"])[:STRONGEST]
+    for plate, point, all_peaks in main:
+        peaks = sorted(all_peaks, key=lambda peak: -peak["magnitude"])[:STRONGEST]
         rows = []
         for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
             state, mode = nearest_mode(run, peak["frequency_hz"], modes)

@@ -47,8 +47,8 @@ def tiles(run: FinishedRun) -> Markup:
         if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
             top = max(peaks, key=lambda peak: peak["magnitude"])
             to_plate = f", FRF to the {plate}" if plate else ""
-            words = f"highest resonance of the vertical motion of the knuckle{to_plate}"
-            values.append((f"{top['frequency_hz']:.1f} Hz", words))
+            label = f"highest resonance of the vertical motion of the knuckle{to_plate}"
+            values.append((f"{top['frequency_hz']:.1f} Hz", label))
     plate = side_of(run.wheel, run.car.vehicle.wheels)
     values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
     boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]

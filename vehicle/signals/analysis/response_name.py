@@ -65,7 +65,7 @@ def parsed_name(text: str) -> ResponseName:
     return ResponseName(match["output"], plates_of({wheel: math.nan if n else 1.0 for n, wheel in enumerate(wheels)}))
 
 
-def row_of(name: ResponseName, names: Sequence[ResponseName], option: str = "--map") -> tuple[int, float] | None:
+def row_of(name: ResponseName, names: Sequence[ResponseName]) -> tuple[int, float] | None:
     """Return the row of the same FRF in another set, and the factor of its values; None if it has none.
 
     The FRF of an input to its plate p is H / a_p. An FRF to one plate is also that of an input which moves further
@@ -74,7 +74,6 @@ def row_of(name: ResponseName, names: Sequence[ResponseName], option: str = "--m
     Args:
         name: name of an FRF.
         names: names of the FRFs of the set.
-        option: option that names the plate, for the message.
 
     Raises:
         DataError: the input is unknown, and the set has several.
@@ -86,7 +85,7 @@ def row_of(name: ResponseName, names: Sequence[ResponseName], option: str = "--m
         inputs = list(dict.fromkeys(names[row].input for row in rows))
         if len(rows) > 1:
             raise DataError(
-                f"{name.output}: the FRF names no plate, and there are {len(inputs)}; name it by {option} "
+                f"{name.output}: the FRF names no plate, and there are {len(inputs)}; name it by --map "
                 f"{name.output}/{inputs[0]}=NAME (plates: {', '.join(inputs)})"
             )
         return rows[0], 1.0

@@ -158,6 +158,7 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
     try:
         table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
         columns = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}
+        notices = tuple(f"{path.name}: {text}" for text in table.notices)
     except DataError as error:
         try:
             columns, notices = _named_tracks(path)

@@ -41,6 +41,10 @@ _OF_ROAD = re.compile(r"(?:road|slope)_(\w+)")
 _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
 
 
+class ForeignTableError(DataError):
+    """A text table without a column of the time or of a plate in its first line, as an export with a head above it."""
+
+
 def read_signal(
     path: str | Path,
     *,
@@ -86,7 +90,16 @@ def read_signal(
         remedy="repair the cell, or set --interpolate",
     )
     is_plain_table = (choice is None or choice == Choice(resample=resample)) and is_table(path)
-    table, band_rate = (read_table(path, wanted), math.inf) if is_plain_table else chosen_plates(path, choice, wheel)
+    try:
+        table, band_rate = (
+            (read_table(path, wanted), math.inf) if is_plain_table else chosen_plates(path, choice, wheel)
+        )
+    except ForeignTableError as error:
+        try:
+            table, band_rate = chosen_plates(path, choice, None)
+        except DataError:
+            raise error from None
+        is_plain_table = False
     plates = plate_columns(table.header, wheel)
     del plates["time"]
     units = {driven: unit for driven, (_, unit) in plates.items()}
@@ -148,6 +161,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         "time" and the wheels, in the order of written files, to index and unit of their columns.
 
     Raises:
+        ForeignTableError: no known column.
         DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity, a
             plain `displacement` column without `wheel`.
     """
@@ -191,7 +205,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         else:
             columns[key] = index, _checked_unit(where, key, unit)
     if unknown:
-        raise DataError(
+        raise (DataError if columns else ForeignTableError)(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
             f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect "
             "FILE prints the command)"

@@ -69,7 +69,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         DataError: no database, no frames, or no identifier of the log in the databases.
         MissingPartError: asammdf is not installed.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     log_format = can_log_type(text.body[:4096])
     frames = list(_frames(log_format, text.lines))
     if not frames:

@@ -146,13 +146,13 @@ def pick(
     matches = matching(measurement, wanted, allowed)
     if len(matches) == 1:
         return matches[0]
-    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
+    channels = [(index, channel) for index, channel in enumerate(measurement.channels) if allowed(channel)]
     hit_text = (
         f"matches {len(matches)} channels ({', '.join(str(n + 1) for n in matches[:8])})"
         if matches
         else "matches no channel"
     )
-    listed = ", ".join(f"{index + 1} {one.name!r} [{one.unit}]" for index, one in channels[:40])
+    listed = ", ".join(f"{index + 1} {channel.name!r} [{channel.unit}]" for index, channel in channels[:40])
     more = f" and {len(channels) - 40} more" if len(channels) > 40 else ""
     raise DataError(
         f"{measurement.path}: {option} {wanted!r} {hit_text}; set a number, an exact name, or a pattern with * that "
@@ -162,15 +162,19 @@ def pick(
 
 def matching(measurement: Measurement, wanted: str, allowed: Callable[[Channel], bool]) -> list[int]:
     """Return the indices of all channels that match the value of an option; arguments: see `pick`."""
-    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
-    matches = [index for index, one in channels if one.name == wanted]
+    channels = [(index, channel) for index, channel in enumerate(measurement.channels) if allowed(channel)]
+    matches = [index for index, channel in channels if channel.name == wanted]
     if not matches and wanted.isdecimal() and int(wanted) - 1 in dict(channels):
         return [int(wanted) - 1]
     if not matches:
-        matches = [index for index, one in channels if fnmatch.fnmatchcase(one.name.lower(), wanted.lower())]
+        matches = [index for index, channel in channels if fnmatch.fnmatchcase(channel.name.lower(), wanted.lower())]
     if not matches:
         point = "".join(wanted.lower().removeprefix("dof").split())
-        matches = [index for index, one in channels if one.direction and (one.place + one.direction).lower() == point]
+        matches = [
+            index
+            for index, channel in channels
+            if channel.direction and (channel.place + channel.direction).lower() == point
+        ]
     return matches
 
 

@@ -35,7 +35,7 @@ def read(path: Path) -> Measurement:
 
     Source: UMTRI, The ERD File Specification; headers of LTPP profiles.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     lines = text.lines
     end = next((n for n, line in enumerate(lines[:400]) if line.strip().upper() == "END"), None)
     if end is None or end < 2:

@@ -78,8 +78,8 @@ class FrfData:
         Raises:
             DataError: a channel is missing, or too few frequencies remain.
         """
-        words = [(name.output, str(name)) for name in self.names]
-        missing = next((name for name in channels if not any(name in pair for pair in words)), None)
+        accepted = [(name.output, str(name)) for name in self.names]
+        missing = next((name for name in channels if not any(name in pair for pair in accepted)), None)
         if missing is not None:
             raise DataError(f"FRF: no channel {missing}; the file has {', '.join(str(name) for name in self.names)}")
         selected: list[int] = []
@@ -91,7 +91,7 @@ class FrfData:
                 f"FRF: {len(selected)} frequencies between {band[0]:g} and {band[1]:g} Hz with a spacing of "
                 f"{spacing:g} Hz, must be at least {LEAST_LINES}; widen the band or reduce the spacing"
             )
-        rows = list(dict.fromkeys(row for name in channels for row, pair in enumerate(words) if name in pair))
+        rows = list(dict.fromkeys(row for name in channels for row, pair in enumerate(accepted) if name in pair))
         return FrfData(
             frequency=self.frequency[selected],
             names=tuple(self.names[row] for row in rows),

@@ -46,7 +46,7 @@ def read(path: Path) -> Measurement:
         ConfigurationError: the file does not exist.
         DataError: no numeric columns, a row of another length, a non-numeric cell, or an ambiguous comma.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     if any(line.startswith(FREQUENCY) and SUFFIXES[0] in line for line in text.lines[:20]):
         return _responses(path, text.sha256)
     return read_lines(path, text, "csv")

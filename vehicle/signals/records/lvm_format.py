@@ -59,7 +59,7 @@ def read(path: Path) -> Measurement:
         ConfigurationError: the file does not exist.
         DataError: not according to the specification, damaged, or segments that overlap in time.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     lines = text.lines
     head, first = _file_header(path, lines)
     separator = {"comma": ",", "tab": "\t"}.get(head.get("Separator", "Tab").lower())

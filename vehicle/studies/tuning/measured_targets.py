@@ -10,13 +10,10 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.names import CORNERS
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
-from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records.channel import uniform_axis
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
@@ -27,6 +24,7 @@ from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
+from vehicle.studies.tuning.plate_signal import plate_choices, plate_signal
 from vehicle.studies.tuning.record_target import KEPT, RecordTarget, signal_until
 from vehicle.studies.tuning.response_delays import response_delays
 from vehicle.studies.tuning.road_car import RoadCar
@@ -106,7 +104,7 @@ def measured_responses(
         DataError: bad data, no FRF, or too few frequencies.
     """
     path = Path(file)
-    asked = _asked(choice, channels, delay)
+    asked, plates = plate_choices(_asked(choice, channels, delay), path, signal)
     measured = _read(car, path, asked, inverted, window)
     frf = measured.frf
     if frf is None:
@@ -117,18 +115,18 @@ def measured_responses(
     data = frf.select(tuple(fitted) or frf.channels, band=band, spacing=spacing)
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
-    plate_signal = None if stuck else _signal(signal, car, path, measured, asked, inverted)
-    if plate_signal is not None:
-        data = to_driven_plates(data, motions_of(plate_signal), str(path))
+    driving = None if stuck else plate_signal(signal, car, path, measured, asked, inverted, plates)
+    if driving is not None:
+        data = to_driven_plates(data, motions_of(driving), str(path))
     else:
         shaker = plates_of({car.vehicle.shaker_wheel: 1.0})
         data = data.renamed([name if name.motion else ResponseName(name.output, shaker) for name in data.names])
     sample = 0.0 if not measured.estimator or measured.record is None else measured.record.step
     delays = response_delays(measured, tuple(dict.fromkeys(data.channels)), asked.delays, contained=signal is None)
     target = FrfTarget(
-        name=path.stem, data=data, signal=plate_signal, window=window, averages=averages, delays=delays, sample=sample
+        name=path.stem, data=data, signal=driving, window=window, averages=averages, delays=delays, sample=sample
     )
-    return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
+    return MeasuredTarget(target=target, signal=driving, notices=_notices(path, measured, []))
 
 
 def measured_histories(
@@ -257,7 +255,7 @@ def _histories(
     """
     path, contained = Path(file), signal is None
     begin, groups = split_delay(delay)
-    asked = _asked(choice, channels, groups)
+    asked, plates = plate_choices(_asked(choice, channels, groups), path, signal)
     measured = _read(car, path, asked, inverted, None, histories_only=True)
     held = measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
@@ -275,7 +273,7 @@ def _histories(
         road, settled = RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
         signal = drive.signal()
     else:
-        signal = _signal(signal, car, path, measured, asked, inverted)
+        signal = plate_signal(signal, car, path, measured, asked, inverted, plates)
         if contained and any("half-cosine ramp" in text for text in signal.notices):
             settled = SETTLED
     if fitted:
@@ -356,41 +354,6 @@ def _read(
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
     asked = replace(asked, delays={})  # the model is delayed in place of the measurement
     return read_measured(file, model_channels, asked, inverted=inverted, window=window, histories_only=histories_only)
-
-
-def _signal(
-    source: Signal | Path | str | None,
-    car: Car,
-    path: Path,
-    measured: Measured,
-    asked: Choice,
-    inverted: Collection[str],
-) -> Signal:
-    """Return the plate signal: a signal, a file, the name of a shipped file, or None for the plate in the measurement.
-
-    A file with one plate is read for the shaker wheel.
-    """
-    if isinstance(source, Signal):
-        return source
-    if source is not None:
-        return read_signal(
-            find_input(source if "." in str(source) else f"{source}.csv"), wheel=car.vehicle.shaker_wheel
-        )
-    plates = {} if measured.record is None else measured.record.channels
-    names = {wheel: f"plate_{wheel}_displacement" for wheel in CORNERS.values()}
-    names = {wheel: name for wheel, name in names.items() if name in plates and np.ptp(plates[name]) > 0.0}
-    if not names:
-        raise DataError(
-            f"{path}: contains no input: no moving plate is among its channels. Set --map plate_fl_displacement=NAME "
-            "for the channel of the plate, or --signal FILE after it for the plate displacement of another file"
-        )
-    units = {wheel: asked.units[name] for wheel, name in names.items() if name in asked.units}
-    units |= {role: unit for role, unit in asked.units.items() if role in ("", "time")}
-    roles = {wheel: asked.channels.get(name, name) for wheel, name in names.items()}
-    roles |= {role: name for role, name in asked.channels.items() if role == "time"}
-    signal = read_signal(path, choice=replace(asked, channels=roles, units=units, delays={}))
-    turned = {wheel: -values if names[wheel] in inverted else values for wheel, values in signal.displacement.items()}
-    return replace(signal, displacement=turned)
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:
