@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.names import point_words
 from vehicle.runs.car.axle_data import AxleData
-from vehicle.runs.car.car_data import STATES, CarData
+from vehicle.runs.car.car_data import CarData
+from vehicle.runs.car.motion_figures import MINIMUM_SHARE, MotionFigure
 
 DEGREES = math.pi / 180.0
 """One degree [rad]."""
@@ -84,17 +85,23 @@ SUPPORT_NOTE = (
 )
 
 
+FIGURES_NOTE = (
+    "figure: sprung mass or wheels on their rates in this motion alone, dampers at 0.1 m/s; modes with it: modes of "
+    f"the whole car with at least {100.0 * MINIMUM_SHARE:.0f} % of their kinetic energy in this motion"
+)
+
+
 def _milli(value: float | None) -> float | None:
     return None if value is None else 1e-3 * value
 
 
 def car_tables(data: CarData) -> list[TextTable]:
-    """Return the tables of a car: the whole car, its axles, its modes.
+    """Return the tables of a car: the whole car, its axles, its headline figures.
 
     Args:
         data: the car.
     """
-    return [_whole_car(data), _axles(data), _modes(data)]
+    return [_whole_car(data), _axles(data), figures_table(data.figures)]
 
 
 def car_text(data: CarData) -> str:
@@ -156,20 +163,30 @@ def _axles(data: CarData) -> TextTable:
     return TextTable(title="Axles", heads=heads, rows=tuple(rows), notes=notes)
 
 
-def _modes(data: CarData) -> TextTable:
-    motions = list(dict.fromkeys(mode.motion for mode in data.modes))
-    by_state = {(mode.motion, mode.dampers): mode for mode in data.modes}
+def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
+    """Return the table of headline figures, with the modes that share their motions.
+
+    Args:
+        figures: figures for one or several states of the dampers.
+    """
+    by_state = {(figure.motion, figure.dampers): figure for figure in figures}
+    motions, states = (tuple(dict.fromkeys(key)) for key in zip(*by_state, strict=True))
     rows = []
     for motion in motions:
         cells = []
-        for state in STATES:
-            mode = by_state[motion, state]
-            ratio = None if mode.damping_ratio is None else 100.0 * mode.damping_ratio
-            cells += [number(mode.frequency_hz, 2), number(ratio, 1), number(100.0 * mode.share)]
+        for state in states:
+            figure = by_state[motion, state]
+            ratio = None if figure.damping_ratio is None else 100.0 * figure.damping_ratio
+            modes = [f"{number(mode.frequency_hz, 2)} ({number(100.0 * mode.share)} %)" for mode in figure.modes]
+            cells += [number(figure.frequency_hz, 2), number(ratio, 1), ", ".join(modes) or "-"]
         rows.append((motion, *cells))
-    heads = ("mode", *(f"{word}" for state in STATES for word in (f"{state} [Hz]", "damping [%]", "share [%]")))
-    note = "share: of this motion in the kinetic energy of the mode; python -m vehicle modes lists all modes"
-    return TextTable(title="Modes, dampers stuck and sliding", heads=heads, rows=tuple(rows), notes=(note,))
+    heads = (f"{state} [Hz]" for state in states)
+    return TextTable(
+        title=f"Headline figures, dampers {' and '.join(states)}",
+        heads=("figure", *(word for head in heads for word in (head, "damping [%]", "modes with it [Hz] (share)"))),
+        rows=tuple(rows),
+        notes=(FIGURES_NOTE,),
+    )
 
 
 def parameter_table(parameters: Sequence[Parameter], *, shortened: bool = True) -> TextTable:
