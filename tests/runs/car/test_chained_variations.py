@@ -122,11 +122,11 @@ def test_the_line_that_a_fit_prints_makes_the_fitted_car():
     start = Car.load("sedan", ["body.inertia.iyy=2500"])
     result = SimpleNamespace(values={"body.mass": 1500.0})
     tuned = TunedCar(start=start, result=cast(TuningResult, result), measurements=(), engine="reduced", final=None)
-    printed = [*start.overrides, *tuned.settings.replace("--set ", "").split()]
+    printed = [*start.overrides, *tuned.settings]
     assert Car.load("sedan", printed).vehicle == tuned.fitted.vehicle
     assert tuned.fitted.vehicle.body.inertia.iyy == pytest.approx(2500.0 * 1500.0 / start.vehicle.body.mass, rel=1e-14)
     # Without a value of the body before, it is the fitted value alone.
     plain = TunedCar(
         start=Car.load("sedan"), result=cast(TuningResult, result), measurements=(), engine="reduced", final=None
     )
-    assert plain.settings == "--set body.mass=1500"
+    assert plain.settings == ("body.mass=1500",)

@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
 from vehicle.signals.records.counterpart import PARTS
+from vehicle.signals.records.group_delays import GroupDelay
 
 SHOWN = 12
 """Maximum number of rows of a table on the console."""
@@ -36,6 +37,7 @@ class Comparison:
         responses: comparisons of frequency responses.
         signatures: agreement of all responses together.
         records: comparisons of time histories.
+        delays: delay of each group of channels; the first is the reference of the others.
         notices: notices on the measurement.
         tyres: state of the tyres in the run, "standing" or "rolling at ..."; empty if unknown.
     """
@@ -45,6 +47,7 @@ class Comparison:
     responses: tuple[FrfComparison, ...] = ()
     signatures: Signatures | None = None
     records: tuple[RecordComparison, ...] = ()
+    delays: tuple[GroupDelay, ...] = ()
     notices: tuple[str, ...] = ()
     tyres: str = ""
 
@@ -181,6 +184,7 @@ class Comparison:
                 }
                 for item in self.records
             ],
+            "delays": [each.summary() for each in self.delays],
             "table": [{name: _plain(value) for name, value in row.items()} for row in self.rows()],
             "notices": list(self.notices),
         }
@@ -243,6 +247,13 @@ class Comparison:
                 + ", ".join(f"{count} window{'s' if count > 1 else ''} of {length:.4g} s" for length, count in windows)
                 + " at the full rate, weighted by their RMS"
             )
+        told = [
+            f"{each.group} {1e3 * each.delay:.3f} +- {1e3 * each.error:.1g} ms after the {each.against}"
+            + (f" ({1e3 * each.taken_out:.5g} ms taken out)" if each.taken_out else "")
+            for each in self.delays
+            if math.isfinite(each.delay)
+        ]
+        lines += [f"delays: {'; '.join(told)}"] if told else []
         return "\n".join([*lines, *(f"notice: {text}" for text in self.notices)])
 
 

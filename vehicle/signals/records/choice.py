@@ -34,6 +34,8 @@ class Choice:
         highpass: corner frequency [Hz]; required to integrate velocities and accelerations.
         databases: DBC files that decode the log of a CAN bus.
         resample: new sampling rate [Hz]; resampling comes before trend removal and integration.
+        delays: channel of the model, pattern or group, as "accelerations", to delay in the file, which is taken out
+            [s]; see `vehicle.signals.records.delays`.
     """
 
     channels: Mapping[str, str] = field(default_factory=dict)
@@ -45,6 +47,7 @@ class Choice:
     highpass: float | None = None
     databases: tuple[Path, ...] = ()
     resample: float | None = None
+    delays: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, value in (("--rate", self.rate), ("--highpass", self.highpass), ("--resample", self.resample)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from vehicle.signals.analysis.response_name import ResponseName, parsed_name
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.channel_words import map_options, suggested_channels
 from vehicle.signals.records.choice import Choice, choose, matching, pick
+from vehicle.signals.records.delays import channel_delays, responses_without_delays, without_delays
 from vehicle.signals.records.frf_file import FrfData, frf_data
 from vehicle.signals.records.integration import displacement, filtered
 from vehicle.signals.records.measured_frf import input_of, is_response, measured_frfs
@@ -45,6 +46,7 @@ class Measured:
         notices: messages on channels and processing steps.
         estimator: estimator of the frequency responses; empty if the file contains the responses.
         start: first time of the file [s]; `record` may be an excerpt that begins later.
+        delays: channel to delay that was taken out [s].
     """
 
     file: Measurement
@@ -53,6 +55,7 @@ class Measured:
     notices: tuple[str, ...]
     estimator: str = ""
     start: float = 0.0
+    delays: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_measured(
@@ -129,6 +132,7 @@ def read_measured(
             or is_response(file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)])
         )
     }
+    delays = channel_delays(tuple(dict.fromkeys(output_of.values())), selection.delays)
     frf: FrfData | None = None
     record: Record | None = None
     notices: list[str] = []
@@ -141,6 +145,7 @@ def read_measured(
                 "have frequency responses"
             )
         frf, notices = measured_frfs(file, spectra, selection, inverted)
+        frf = responses_without_delays(frf, delays)
     histories = {name: wanted for name, wanted in roles.items() if name not in spectra}
     named = next((name for name in histories if output_of[name] != name), None)
     if named is not None:
@@ -151,7 +156,7 @@ def read_measured(
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
         start = _start(file, histories) if selection.rate is None else 0.0
-        record = _record(file, replace(selection, channels={**times, **histories}), inverted)
+        record = _record(file, replace(selection, channels={**times, **histories}), inverted, delays)
         notices += record.notices
         if frf is None and not histories_only:
             estimated = estimated_frf(record, window)
@@ -169,6 +174,7 @@ def read_measured(
         notices=tuple(dict.fromkeys([*file.notices, *notices])),
         start=start,
         estimator=estimator,
+        delays=delays,
     )
 
 
@@ -211,10 +217,11 @@ def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequenc
     return numbers
 
 
-def _record(file: Measurement, choice: Choice, inverted: Collection[str]) -> Record:
-    """Return the selected time histories in SI units at uniform times; invert signs."""
+def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays: Mapping[str, float]) -> Record:
+    """Return the selected time histories in SI units at uniform times; take delays out, and invert signs."""
     chosen = choose(file, choice)
     chosen.require_uniform(file.path)
+    chosen = without_delays(chosen, {name: delay for name, delay in delays.items() if name in chosen.values})
     units = channel_units(chosen.values)
     plates = {name: values for name, values in chosen.values.items() if units[name] == "m"}
     others = {name: values for name, values in chosen.values.items() if name not in plates}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +14,12 @@ from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.motion_response import motion_responses
+from vehicle.signals.analysis.phase_delay import PhaseDelay, phase_delay
 from vehicle.signals.analysis.response_name import PLATE, ResponseName, plates_of, row_of
 from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.records.counterpart import SAME_MOTION
 from vehicle.signals.records.frf_file import FrfData, frf_data
+from vehicle.studies.tuning.response_delays import ResponseDelays
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -46,6 +50,8 @@ class FrfTarget:
         averages: number of independent averages of data without a random error; 1 if unknown.
         window: length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record.
             FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
+        delays: delays of the channels against the plate: the FRF of the model is turned by exp(-2 pi i f d).
+        sample: sampling interval of the measurement [s]; 0 if unknown.
         motions: independent motions of the plates of the signal, see `motions_of`; empty without a signal.
     """
 
@@ -54,6 +60,8 @@ class FrfTarget:
     signal: Signal | None
     averages: float = 1.0
     window: float | None = None
+    delays: ResponseDelays = ResponseDelays()
+    sample: float = 0.0
     motions: tuple[dict[str, float], ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -93,8 +101,17 @@ class FrfTarget:
         deviation = np.where(np.isfinite(from_random_error) & np.isfinite(deviation), from_random_error, deviation)
         return np.where(np.isfinite(self.data.response), deviation, np.nan)
 
+    @property
+    def half_sample(self) -> float:
+        """Return half the sampling interval of the measurement [s]; 0 if unknown."""
+        return 0.5 * self.sample
+
     def model_response(self, model: Car | Run) -> Complex:
-        """Return FRFs at the frequencies of the data, (channels, m).
+        """Return FRFs at the frequencies of the data, with the known delays, (channels, m)."""
+        return late(self.response(model), self.data.frequency, self.delays.of(self.data.channels, {}, {}))
+
+    def response(self, model: Car | Run) -> Complex:
+        """Return FRFs at the frequencies of the data without delays, (channels, m).
 
         Args:
             model: a run of the signal; or a car, evaluated by its matrices (no signal) or by the reduced engine.
@@ -150,13 +167,58 @@ class FrfTarget:
         pairs = [pair for name in self.data.names if (pair := row_of(name, model.names)) is not None]
         return np.array([factor * np.interp(frequency, model.frequency, model.response[row]) for row, factor in pairs])
 
-    def residuals(self, model: Car | Run) -> Vector:
-        """Return Re and Im of ln(H / Hm) over its standard deviation, (2 channels, frequencies); 0 where undefined."""
-        logarithm = log_ratio(self.data.response, self.model_response(model))
+    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+        """Return Re and Im of ln(H exp(-2 pi i f d) / Hm) over its standard deviation; 0 where undefined.
+
+        Args:
+            response: result of `response`, H.
+            groups: group to delay d [s].
+            lags: channel to a further delay [s].
+
+        Returns:
+            Residuals, (2 channels, frequencies).
+        """
+        delays = self.delays.of(self.data.channels, groups, lags or {})
+        logarithm = log_ratio(self.data.response, late(response, self.data.frequency, delays))
         included = np.isfinite(logarithm) & np.isfinite(self.deviation) & (self.deviation > 0.0)
         scaled = np.divide(logarithm, self.deviation, out=np.full(included.shape, np.nan + 0j), where=included)
         rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
         return np.where(np.isfinite(rows), rows, 0.0)
+
+    def settled(self, groups: Mapping[str, float]) -> Self:
+        """Return the target with known delays of all groups [s]."""
+        return replace(self, delays=self.delays.settled(groups))
+
+    def residuals(self, model: Car | Run) -> Vector:
+        """Return `misfit` of a model with the known delays, (2 channels, frequencies)."""
+        return self.misfit(self.response(model), {})
+
+    def lags(self, model: Car) -> dict[str, PhaseDelay]:
+        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
+        return response_lags(self.data, self.response(model), self.deviation)
+
+
+def response_lags(data: FrfData, response: Complex, deviation: Vector) -> dict[str, PhaseDelay]:
+    """Return the lags of measured FRFs against those of a model whose phases agree with them after the lag.
+
+    Args:
+        data: measured FRFs.
+        response: FRFs of the model, (k, m).
+        deviation: standard deviation of ln H, (k, m); NaN where a point is excluded.
+    """
+    weight = np.nan_to_num(1.0 / deviation**2, nan=0.0)
+    found: dict[str, PhaseDelay] = {}
+    for channel, measured, model, trust in zip(data.channels, data.response, response, weight, strict=True):
+        lag = phase_delay(data.frequency, model, measured, trust)
+        if lag is not None and lag.agreement >= SAME_MOTION:
+            best = found.get(channel)
+            found[channel] = lag if best is None or lag.error < best.error else best
+    return found
+
+
+def late(response: Complex, frequency: Vector, delays: Vector) -> Complex:
+    """Return FRFs H exp(-2 pi i f d) of responses with delays d [s], (k,)."""
+    return np.asarray(response * np.exp(-2j * np.pi * delays[:, None] * frequency)) if delays.any() else response
 
 
 def motions_of(signal: Signal) -> tuple[dict[str, float], ...]:
