@@ -18,6 +18,7 @@ from vehicle.signals.records.channel_words import (
     wheel_of,
     words_of,
 )
+from vehicle.signals.records.text import LARGEST
 
 if TYPE_CHECKING:
     from vehicle.signals.records.channel import Channel, Measurement
@@ -272,7 +273,8 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
         for word in ("--channel", f"{axis}={_pick(measurement, axes[axis])}")
     ]
     values = [np.real(channel.values) for channel in chosen]
-    still = all(abs(float(np.nanmean(each))) < 1e-3 * float(np.nanstd(each)) for each in values)
+    values = [each[np.abs(each) <= LARGEST] for each in values]  # False for NaN; the squares of larger ones overflow
+    still = all(each.size and abs(float(np.mean(each))) < 1e-3 * float(np.std(each)) for each in values)
     arguments = ["comfort", "--input", *files, *picks, *_clock(*chosen)]
     removed = [*arguments, "--offset", "remove"]
     command, why = _first(measurement, [arguments, removed] if still else [removed])

@@ -17,6 +17,7 @@ from vehicle.signals.records.clock import check_stamps, clock_options, is_unifor
 from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
 from vehicle.signals.records.resampled import resampled
 from vehicle.signals.records.table import USABLE, Vector
+from vehicle.signals.records.text import LARGEST
 from vehicle.signals.records.units import allowed_units, find_ratio, find_unit
 
 
@@ -276,6 +277,10 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
         notices.append(f"excerpt from {time[0]:.6g} to {time[-1]:.6g} s")
     values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
     for role, samples in values.items():
+        absurd = np.flatnonzero(np.abs(samples) > LARGEST)
+        if absurd.size:
+            raise DataError(f"{path}: {role}: {samples[absurd[0]]:.4g} at {time[absurd[0]]:.6g} s is no measured value "
+                            f"(limit {LARGEST:g}); exclude it with --from and --to, or repair the file")  # fmt: skip
         missing = np.count_nonzero(~np.isfinite(samples))
         if missing == samples.size:
             channel = channels[role]
