@@ -21,6 +21,7 @@ from vehicle.runs.car import FRF_BAND, SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, seat_values
+from vehicle.runs.output.run_densities import write_densities
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.dependence import DependentInputsError, common_motions, what_moves
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -28,7 +29,6 @@ from vehicle.signals.analysis.local_rational import shortest_record
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.peaks import resonances
 from vehicle.signals.analysis.periodic_record import whole_record_responses
-from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
 from vehicle.signals.records.frf_file import write_frf
@@ -44,10 +44,6 @@ from vehicle.signals.records.run_summary import (
     RunSummary,
 )
 from vehicle.signals.records.table import Record
-from vehicle.signals.records.text_format import write_table
-
-PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
-"""Length of a window [s] and highest frequency [Hz] of the densities of a run on a road."""
 
 FRAME = "x to the rear, y to the driver's right, z up; SI units"
 LOADS = (
@@ -127,7 +123,7 @@ def write_run(
             files["frf_plot"] = "frf.png"
     if run.road is not None:
         files["psd"] = "psd.csv"
-        write_whole(folder / "psd.csv", lambda path: _write_psd(path, run))
+        write_whole(folder / "psd.csv", lambda path: write_densities(path, run, f"frame: {FRAME}"))
     if figures:
         files["time_plot"] = "time.png"
     header = f"parameters of this run, as used\nframe: {FRAME}"
@@ -176,26 +172,6 @@ def write_run(
         name, make = report
         write_whole(folder / name if name.parent == Path() else name, make)
     return summary
-
-
-def _write_psd(path: Path, run: Run) -> None:
-    """Write one-sided power spectral densities of all channels up to `PSD_HIGHEST`, by Welch's method."""
-    window, recording = min(PSD_WINDOW, run.signal.duration - run.skip), run.recording
-    each = [
-        power_spectral_density(recording.timestep, values[run.evaluated], window_s=window)
-        for values in recording.channels.values()
-    ]
-    first = each[0]
-    inside = first.frequency <= PSD_HIGHEST
-    cells = ["frequency [Hz]", *(f"{name} [({recording.units[name]})^2/Hz]" for name in recording.channels)]
-    method = f"one-sided power spectral density: Hann windows of {window:g} s, {first.averages:.3g} averages"
-    method += f"; from {run.skip:g} s on"
-    write_table(
-        path,
-        cells,
-        [first.frequency[inside], *(values.density[0, inside] for values in each)],
-        [method, f"frame: {FRAME}"],
-    )
 
 
 def _frfs(run: Run, accepted: type[DataError]) -> tuple[Sequence[MotionResponse], list[str]]:
