@@ -17,7 +17,7 @@ from vehicle.engines.simulation.axle_ride import axle_ride
 from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Road
-from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
+from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
 from vehicle.studies.design.stated_numbers import stated_numbers
 
 SEDAN = {

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,9 @@ from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.threads import one_blas_thread
+
+if TYPE_CHECKING:
+    from vehicle.runs.car.figures import Figure
 
 STATES = ("stuck", "sliding")
 """States of the dampers."""
@@ -112,7 +115,20 @@ class CarData:
             entry["roll"] |= {"suspension": axle.roll.suspension, "total": axle.roll.total}
             percent = self.support_percent(axle) or (None, None)
             entry |= {"brake_support_percent": percent[0], "drive_support_percent": percent[1]}
-        return {**plain, "front_share": _plain(self.front_share), "roll_share": self.roll_share}
+        figures = [{**dataclasses.asdict(figure), "unusual": figure.unusual} for figure in self.figures]
+        return {
+            **plain,
+            "front_share": _plain(self.front_share),
+            "roll_share": self.roll_share,
+            "figures": _plain(figures),
+        }
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """Figures of the car and of its axles with their usual ranges."""
+        from vehicle.runs.car.figures import figures_of
+
+        return figures_of(self)
 
     @property
     def front_share(self) -> float:

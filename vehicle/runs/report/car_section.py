@@ -18,12 +18,13 @@ def car_section(car: Car) -> Markup:
     """Return drawing and tables of a car, as of `python -m vehicle show`; all parameters are folded."""
     data = car.show()
     wire = car_wireframe(car.model)
-    whole, axles, modes = car_tables(data)
+    whole, figures, axles, modes = car_tables(data)
     parameters = parameter_table(data.parameters, shortened=False)
     return joined(
         [
             drawing(lambda path: plot_car(path, wire, data, SIZE), f"Drawing of {data.name} with dimensions"),
             _table(whole),
+            _table(figures),
             _halves(axles),
             _table(modes),
             *(tag("p", note) for note in data.notes),
