@@ -6,14 +6,18 @@ import argparse
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import output_file_of
 from vehicle.commands.options import FORCE_HELP, command_parser, film_name, message_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from vehicle.runs.car.motion_figures import MotionFigure
 
 
 def parser() -> Parser:
@@ -56,6 +60,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     _check_film_options(options)
     from vehicle.runs.car import Car
+    from vehicle.runs.car.motion_figures import motion_figures
 
     if options.uff is not None and options.uff.exists():
         written_here = options.uff.is_file() and b"vehicle-on-shaker" in options.uff.read_bytes()[:500]
@@ -64,7 +69,8 @@ def _job(options: argparse.Namespace) -> None:
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
-    table = modes_table(car, options.damper)
+    figures = motion_figures(car, [options.damper])
+    table = modes_table(car, options.damper, figures)
     if options.uff is not None:
         from vehicle.runs.output.folder import write_whole
         from vehicle.runs.output.mode_file import write_modes
@@ -72,7 +78,7 @@ def _job(options: argparse.Namespace) -> None:
         write_whole(options.uff, lambda path: write_modes(path, car, options.damper))
     if options.animate is not None:
         table["film"] = _film(options, car)
-    print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table))
+    print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table, figures))
 
 
 def _check_film_options(options: argparse.Namespace) -> None:
@@ -123,8 +129,8 @@ def _film(options: argparse.Namespace, car: Any) -> dict[str, Any]:
     return {"file": str(path), "asked_hz": options.animate, "frequency_hz": mode.frequency}
 
 
-def modes_table(car: Any, damper: str) -> dict[str, Any]:
-    """Return the modes of the car and of its free body as plain numbers and texts."""
+def modes_table(car: Any, damper: str, figures: Sequence[MotionFigure]) -> dict[str, Any]:
+    """Return headline figures and modes of the car and the modes of its free body as plain numbers and texts."""
     from vehicle.model.parameters.body_notices import body_notices
 
     body = car.model.superelement
@@ -135,6 +141,7 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
         "tyre": car.vehicle.driving.words,
         "inertia_about": car.vehicle.body.inertia.about,
         "notices": body_notices(car.vehicle, car.overrides),
+        "figures": [asdict(figure) for figure in figures],
         "modes": [
             {
                 "frequency_hz": mode.frequency,
@@ -154,12 +161,15 @@ def modes_table(car: Any, damper: str) -> dict[str, Any]:
     }
 
 
-def report(table: dict[str, Any]) -> str:
+def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
     """Return the modes as the printed table: frequency, damping ratio, motion, share of the kinetic energy.
 
     Args:
         table: content of `--json`: modes of the car, unstable modes, notices, modes of the free body.
+        figures: headline figures of the car, printed below its modes.
     """
+    from vehicle.runs.car.car_text import figures_table
+
     width = max((len(mode["description"]) for mode in table["modes"]), default=0)
     lines = [
         f"assembled car, dampers {table['damper']}, tyres {table['tyre']}",
@@ -174,7 +184,7 @@ def report(table: dict[str, Any]) -> str:
     if table["growing"]:
         fault = "does not stand" if table["tyre"] == "standing" else "does not keep its course"
         lines.append(f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping above)")
-    lines += [f"note     {text}" for text in table["notices"]]
+    lines += [str(figures_table(figures)), *(f"note     {text}" for text in table["notices"])]
     free = table["free_body"]
     if free["frequency_hz"]:
         lines.append("free trimmed body")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +17,7 @@ from vehicle.model.parameters.quantity import field_quantity
 from vehicle.model.parameters.shipped import CARS
 
 if TYPE_CHECKING:
+    from vehicle.runs.car.motion_figures import MotionFigure
     from vehicle.studies.design.new_car import NewCar
 
 GROUPS = {
@@ -85,6 +88,7 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.model.parameters.quantity import NAME_PATTERN
     from vehicle.model.parameters.shipped import vehicle_file
+    from vehicle.runs.car.motion_figures import motion_figures
     from vehicle.runs.output.folder import output_folder, write_whole
     from vehicle.runs.output.free_names import named
     from vehicle.studies.design.chrono_car import PREFIX, new_chrono_car
@@ -121,29 +125,37 @@ def _job(options: argparse.Namespace) -> None:
             content = file.read_bytes()
             write_whole(temporary / file.name, lambda path, content=content: path.write_bytes(content))  # type: ignore[misc]
     file = folder / "vehicle.toml"
-    print(json.dumps(_checks(result, file), indent=2) if options.json else _report(result, file))
+    figures = motion_figures(result.car)
+    print(json.dumps(_checks(result, file, figures), indent=2) if options.json else _report(result, file, figures))
 
 
-def _report(result: NewCar, file: Path) -> str:
-    """Return the checks as text: each number, its stated value and the value of the car."""
+def _report(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> str:
+    """Return the checks as text: each number, its stated value and the value of the car; then its headline figures."""
+    from vehicle.runs.car.car_text import figures_table
+
     lines = [f"{file}: {result.car.vehicle.name}", f"{'':<34}{'stated':>10}{'car':>12}{'deviation':>12}"]
     for check in result.checks:
         unit = f" [{check.unit}]" if check.unit != "-" else ""
         stated = "-" if check.stated is None else f"{check.stated:.6g}"
         deviation = "" if check.stated is None else f"{100.0 * check.deviation:z.3f} %"
         lines.append(f"{check.name.replace('_', ' ') + unit:<34}{stated:>10}{check.value:>12.6g}{deviation:>12}")
-    lines += [f"note: {text}" for text in result.notes]
+    lines += ["", str(figures_table(figures)), "", *(f"note: {text}" for text in result.notes)]
     lines.append(f"run it: python -m vehicle shaker --vehicle {file} --road B --speed 80")
     return "\n".join(lines)
 
 
-def _checks(result: NewCar, file: Path) -> dict[str, Any]:
-    """Return the checks for JSON."""
+def _checks(result: NewCar, file: Path, figures: Sequence[MotionFigure]) -> dict[str, Any]:
+    """Return checks and headline figures for JSON."""
     rows = {
         check.name: {"unit": check.unit, "stated": check.stated, "value": check.value, "deviation": check.deviation}
         for check in result.checks
     }
-    return {"file": str(file), "checks": rows, "notes": list(result.notes)}
+    return {
+        "file": str(file),
+        "checks": rows,
+        "figures": [asdict(figure) for figure in figures],
+        "notes": list(result.notes),
+    }
 
 
 main = command(parser, _job)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import json
 import math
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -257,20 +256,6 @@ def test_an_axle_that_ideal_joints_lock_is_shown_on_its_bushings(tmp_path):
     assert math.isfinite(data.axles[1].geometry.roll_centre_height_m) and data.axles[1].roll.bars == 0.0
 
 
-def test_modes_have_the_largest_share_of_their_motion(cars, shown):
-    for mode in shown["sedan"].modes:
-        if mode.motion in ("heave", "pitch", "roll"):
-            name = {"heave": "body heave (z)", "pitch": "body pitch (Ry)", "roll": "body roll (Rx)"}[mode.motion]
-            shares = {one.frequency: one.motions.get(name, 0.0) for one in cars["sedan"].modes(mode.dampers)}
-            assert mode.frequency_hz == max(shares, key=lambda f: shares[f]) and mode.share == max(shares.values())
-        else:
-            assert mode.motion.split()[0] in mode.description and "hop" in mode.description
-    # The ride frequency of a quarter of the car lies near heave and pitch with sliding dampers.
-    sliding = {mode.motion: mode.frequency_hz for mode in shown["sedan"].modes if mode.dampers == "sliding"}
-    low, high = sliding["heave"] or 0.0, sliding["pitch"] or 0.0
-    assert all(0.8 * low < (axle.ride_frequency_hz or 0.0) < 1.2 * high for axle in shown["sedan"].axles)
-
-
 def test_summary_is_json_and_lines_are_short(shown, cars):
     for data in shown.values():
         summary = json.loads(json.dumps(data.summary(), allow_nan=False))
@@ -284,8 +269,9 @@ def test_summary_is_json_and_lines_are_short(shown, cars):
 def test_a_rolling_car_is_shown_at_its_speed(shown):
     moving = Car.load("sedan", {"driving.speed": 20.0}).show()
     assert moving.tyres == "rolling at 72 km/h" and moving.axles[0].geometry == shown["sedan"].axles[0].geometry
-    still: Any = shown["sedan"].modes
-    assert [mode.frequency_hz for mode in moving.modes] != [mode.frequency_hz for mode in still]
+    for figure, still in zip(moving.figures, shown["sedan"].figures, strict=True):
+        # The figures are those of the car at rest, the modes beside them those at its speed.
+        assert figure.frequency_hz == still.frequency_hz and figure.modes != still.modes
 
 
 def test_a_parameter_of_a_car_by_its_path():

@@ -11,6 +11,8 @@ import numpy as np
 
 from vehicle.engines.simulation.axle_statics import AxlePosition, AxleStatics, Vector, WheelPose
 from vehicle.engines.simulation.wheel_geometry import WheelGeometry, WheelMotion, wheel_geometry
+from vehicle.errors import SimulationError
+from vehicle.model.parameters.composition import PlacedWheel
 
 SMALL = 1e-3
 """Travel [m] to both sides for the central differences of the slopes in the design position."""
@@ -109,6 +111,30 @@ def geometry_curve(
             rolling, bouncing = (wheel_motions(axle, both, opposite=way, loads=loads) for way in (True, False))
             geometry[z] = wheel_geometry(rolling, bouncing, towards)
     return [geometry[z] for z in travels]
+
+
+def design_axle(
+    model: mujoco.MjModel, preload: Vector, wheels: Sequence[PlacedWheel], towards: float
+) -> tuple[AxleStatics, WheelGeometry]:
+    """Compute the geometry of an axle in the design position, with ideal joints where they let the wheels move.
+
+    Args:
+        model, preload, wheels: see `AxleStatics`.
+        towards: see `geometry_curve`.
+
+    Returns:
+        The axle, with the bushings of the car (`AxleStatics.ideal` is False) if ideal joints would lock it; the
+        geometry of its right wheel.
+
+    Raises:
+        SimulationError: see `AxleStatics.solve`.
+    """
+    axle = AxleStatics(model, preload, wheels=wheels, ideal=True)
+    try:
+        return axle, geometry_curve(axle, [0.0], towards=towards)[0]
+    except SimulationError:
+        axle = AxleStatics(model, preload, wheels=wheels)
+        return axle, geometry_curve(axle, [0.0], towards=towards)[0]
 
 
 def wheel_motions(

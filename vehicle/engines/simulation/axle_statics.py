@@ -17,7 +17,7 @@ independent of forces.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -95,6 +95,7 @@ class AxleStatics:
         wheels: Sequence[PlacedWheel],
         ideal: bool = False,
         standing: bool = False,
+        locked: bool = False,
     ) -> None:
         """Find the parts of the axle.
 
@@ -105,9 +106,13 @@ class AxleStatics:
             ideal: True to replace every connection by an ideal ball joint.
             standing: True for tyres as on plates, with the horizontal force and the torque of the tyres at rest; False
                 for freely rolling contact points.
+            locked: True to hold every damper at its length in the design position.
         """
         self.model, self.data, self.ideal = model, mujoco.MjData(model), ideal
         self.parts = axle_parts(model, np.asarray(preload), [wheel.part for wheel in wheels], ideal=ideal)
+        if locked:
+            held = [model.jnt_dofadr[strut.joint] for strut in self.parts.struts]
+            self.parts = replace(self.parts, struts=(), columns=np.setdiff1d(self.parts.columns, held))
         self.wheels, self.columns = self.parts.wheels, self.parts.columns
         self.standing = standing
         self.ground = self.parts.standing if standing else np.zeros_like(self.parts.standing)

@@ -10,16 +10,17 @@ from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.parameters.load_mass import Load
 
 
-def car_masses(car: CarModel, *, body: bool = True) -> MassProperties:
-    """Return mass, centre of gravity and inertia of a car without its loads.
+def car_masses(car: CarModel, *, body: bool = True, loads: bool = False) -> MassProperties:
+    """Return mass, centre of gravity and inertia of a car.
 
     Args:
-        car: compiled car, with a rigid body.
+        car: compiled car.
         body: False to leave out the body.
+        loads: True to include the loads of the vehicle file.
     """
     model, data = car.model, mujoco.MjData(car.model)
     mujoco.mj_forward(model, data)
-    skipped = {part.name for part in car.vehicle.composition.parts if isinstance(part.numbers, Load)}
+    skipped = {part.name for part in car.vehicle.composition.parts if isinstance(part.numbers, Load) and not loads}
     if not body:
         skipped.add("body")
     bodies = [

@@ -12,11 +12,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle.engines.simulation.axle_curves import design_slopes, geometry_curve, position_rate
+from vehicle.engines.simulation.axle_curves import design_axle, design_slopes, position_rate
 from vehicle.engines.simulation.axle_ride import axle_ride
 from vehicle.engines.simulation.wheel_geometry import WheelGeometry
-from vehicle.errors import SimulationError
-from vehicle.runs.car.axle import axle_statics, direction_to_middle
+from vehicle.runs.car.axle import direction_to_middle
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -127,12 +126,7 @@ def axle_data(car: Any, name: str) -> AxleData:
     ride = axle_ride(car.model, name)
     track = abs(wheels[0].patch[1] - wheels[1].patch[1])
     towards = direction_to_middle(car, name)
-    ideal, moving = True, axle_statics(car, name, ideal=True)
-    try:
-        geometry = geometry_curve(moving, [0.0], towards=towards)[0]
-    except SimulationError:
-        ideal, moving = False, axle_statics(car, name, ideal=False)
-        geometry = geometry_curve(moving, [0.0], towards=towards)[0]
+    moving, geometry = design_axle(car.model.model, car.model.static.preload, wheels, towards)
     motion = position_rate(moving, [0.0, 0.0], opposite=False)
     springs = [
         (spring.pull(0.0)[1], -float(ratio))
@@ -158,7 +152,7 @@ def axle_data(car: Any, name: str) -> AxleData:
         load_n=loads,
         unsprung_kg=len(wheels) * ride.unsprung_mass,
         sprung_kg=len(wheels) * ride.sprung_mass,
-        wheel_rate_n_per_m=ride.wheel_rate,
+        wheel_rate_n_per_m=ride.wheel.stiffness,
         spring_n_per_m=sum(stiffness for stiffness, _ in springs) if springs else None,
         spring_ratio=springs[0][1] if springs else None,
         spring_at_wheel_n_per_m=sum(stiffness * ratio**2 for stiffness, ratio in springs) if springs else None,
@@ -167,11 +161,11 @@ def axle_data(car: Any, name: str) -> AxleData:
         if own_damper is None
         else float(car.matrices.viscous[vehicle.composition.dampers.index(own_damper)]),
         curved_damper=own_damper is not None and own_damper.law.viscous_law != "linear",
-        tyre_n_per_m=ride.tyre_stiffness,
-        ride_rate_n_per_m=ride.ride_rate,
+        tyre_n_per_m=ride.tyre.stiffness,
+        ride_rate_n_per_m=ride.ride.stiffness,
         ride_frequency_hz=None if math.isnan(ride.ride_frequency) else ride.ride_frequency,
         bump_steer_deg_per_m=design_slopes(moving)["toe_deg_per_m"] or 0.0,
-        roll=RollStiffness(springs=ride.roll_springs, bars=ride.roll_bars, tyres=0.5 * ride.tyre_stiffness * track**2),
+        roll=RollStiffness(springs=ride.roll_springs, bars=ride.roll_bars, tyres=ride.tyre_roll.stiffness),
         geometry=geometry,
-        ideal=ideal,
+        ideal=moving.ideal,
     )

@@ -12,46 +12,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.parameter_list import Parameter, parameter_list
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
+from vehicle.runs.car.motion_figures import MotionFigure, motion_figures
 from vehicle.threads import one_blas_thread
 
 if TYPE_CHECKING:
-    from vehicle.runs.car.figures import Figure
-
-STATES = ("stuck", "sliding")
-"""States of the dampers."""
-
-BODY_MOTIONS = {"heave": "body heave (z)", "pitch": "body pitch (Ry)", "roll": "body roll (Rx)"}
-"""Motions of the body to their names in `Mode.motions`."""
-
-MINIMUM_SHARE = 0.2
-"""Minimum share of a motion in the kinetic energy of the mode that is shown for it."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class MotionMode:
-    """Mode with the largest share of a motion.
-
-    Attributes:
-        motion: "heave", "pitch", "roll" of the body, or "front wheel hop".
-        dampers: "stuck" or "sliding".
-        frequency_hz: natural frequency; None if no mode has at least `MINIMUM_SHARE` of the motion.
-        damping_ratio: damping ratio [-].
-        share: share of the motion in the kinetic energy of the mode [-].
-        description: name of the mode, see `Mode`.
-    """
-
-    motion: str
-    dampers: str
-    frequency_hz: float | None
-    damping_ratio: float | None
-    share: float
-    description: str
+    from vehicle.runs.car.usual_figures import UsualFigure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,7 +43,7 @@ class CarData:
         wheelbase_m: distance of two axles; None for a car with another number of axles on wheels.
         support_n: static load of each contact with the ground other than a tyre [N].
         axles: axles with wheels.
-        modes: modes of body and wheels, see `MotionMode`.
+        figures: headline figures: heave, pitch, roll, wheel hop; see `MotionFigure`.
         notes: quantities that are not defined for this car, and why.
         parameters: all parameters.
     """
@@ -93,7 +63,7 @@ class CarData:
     wheelbase_m: float | None
     support_n: Mapping[str, float]
     axles: tuple[AxleData, ...]
-    modes: tuple[MotionMode, ...]
+    figures: tuple[MotionFigure, ...]
     notes: tuple[str, ...]
     parameters: tuple[Parameter, ...]
 
@@ -115,20 +85,20 @@ class CarData:
             entry["roll"] |= {"suspension": axle.roll.suspension, "total": axle.roll.total}
             percent = self.support_percent(axle) or (None, None)
             entry |= {"brake_support_percent": percent[0], "drive_support_percent": percent[1]}
-        figures = [{**dataclasses.asdict(figure), "unusual": figure.unusual} for figure in self.figures]
+        usual = [{**dataclasses.asdict(figure), "unusual": figure.unusual} for figure in self.usual]
         return {
             **plain,
             "front_share": _plain(self.front_share),
             "roll_share": self.roll_share,
-            "figures": _plain(figures),
+            "usual": _plain(usual),
         }
 
     @property
-    def figures(self) -> tuple[Figure, ...]:
+    def usual(self) -> tuple[UsualFigure, ...]:
         """Figures of the car and of its axles with their usual ranges."""
-        from vehicle.runs.car.figures import figures_of
+        from vehicle.runs.car.usual_figures import usual_figures
 
-        return figures_of(self)
+        return usual_figures(self)
 
     @property
     def front_share(self) -> float:
@@ -179,7 +149,7 @@ def car_data(car: Any) -> CarData:
     """Compute the data of a car.
 
     Args:
-        car: the car; on rolling tyres the modes are those at its speed, all else that of the car at rest.
+        car: the car; on rolling tyres the modes beside the figures are those at its speed, all else that at rest.
 
     Raises:
         ConfigurationError: the car cannot be built.
@@ -209,7 +179,7 @@ def car_data(car: Any) -> CarData:
         wheelbase_m=abs(axles[1].x_m - axles[0].x_m) if len(axles) == 2 else None,
         support_n={name: float(load) for name, load in still.static.support_load.items()},
         axles=axles,
-        modes=tuple(_modes(car, [axle.name for axle in axles])),
+        figures=motion_figures(car),
         notes=tuple(_notes(still, axles)),
         parameters=car_parameters(car),
     )
@@ -229,35 +199,6 @@ def _inertia(car: Any, cog: npt.NDArray[np.float64]) -> tuple[float, float, floa
         r, matrix = centre - cog, car.matrices.body_masses[body]
         total += matrix[3:, 3:] + matrix[0, 0] * ((r @ r) * np.eye(3) - np.outer(r, r))
     return float(total[0, 0]), float(total[1, 1]), float(total[2, 2]), float(-total[2, 0])
-
-
-def _modes(car: Any, axles: Sequence[str]) -> Iterator[MotionMode]:
-    """Yield the mode with the largest share of each motion, for both states of the dampers."""
-    for state in STATES:
-        modes = [mode for mode in car.modes(state) if not mode.grows]
-        for motion, name in BODY_MOTIONS.items():
-            yield _largest(modes, [mode.motions.get(name, 0.0) for mode in modes], motion, state)
-        for axle in axles:
-            yield _largest(modes, [_hop_share(mode, axle) for mode in modes], f"{axle} wheel hop", state)
-
-
-def _hop_share(mode: Mode, axle: str) -> float:
-    """Return the share of vertical motion of the wheels of an axle on their tyres in a mode."""
-    return sum(share for name, share in mode.motions.items() if " wheel hop" in name and axle in name.split())
-
-
-def _largest(modes: Sequence[Mode], shares: Sequence[float], motion: str, state: str) -> MotionMode:
-    """Return the mode with the largest share of a motion."""
-    index = int(np.argmax(shares)) if modes else -1
-    mode = modes[index] if modes and shares[index] >= MINIMUM_SHARE else None
-    return MotionMode(
-        motion=motion,
-        dampers=state,
-        frequency_hz=None if mode is None else mode.frequency,
-        damping_ratio=None if mode is None else mode.damping_ratio,
-        share=shares[index] if modes else 0.0,
-        description="" if mode is None else mode.description,
-    )
 
 
 def _notes(car: Any, axles: Sequence[AxleData]) -> Iterator[str]:

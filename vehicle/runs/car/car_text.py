@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.names import point_words
-from vehicle.runs.car.car_data import STATES, CarData
-from vehicle.runs.car.figures import axle_figures, car_figures, figures_of
+from vehicle.runs.car.car_data import CarData
+from vehicle.runs.car.motion_figures import MINIMUM_SHARE, MotionFigure
+from vehicle.runs.car.usual_figures import axle_figures, car_figures, motion_figure, usual_figures, usual_range
 
 SOURCE_WIDTH = 60
 """Maximum number of letters of a source in the table of parameters."""
@@ -49,13 +50,20 @@ SUPPORT_NOTE = (
 )
 
 
+FIGURES_NOTE = (
+    "figure: sprung mass or wheels on their rates in this motion alone, dampers at 0.1 m/s; modes with it: modes of "
+    f"the whole car with at least {100.0 * MINIMUM_SHARE:.0f} % of their kinetic energy in this motion"
+)
+
+
 def car_tables(data: CarData) -> list[TextTable]:
-    """Return the tables of a car: the whole car, its figures with their usual ranges, its axles, its modes.
+    """Return the tables of a car: the whole car, its figures with their usual ranges, its axles, its headline
+    figures.
 
     Args:
         data: the car.
     """
-    return [_whole_car(data), _figures(data), _axles(data), _modes(data)]
+    return [_whole_car(data), _usual(data), _axles(data), figures_table(data.figures)]
 
 
 def car_text(data: CarData) -> str:
@@ -92,10 +100,10 @@ def _whole_car(data: CarData) -> TextTable:
     return TextTable(title="Car", heads=(), rows=tuple(rows))
 
 
-def _figures(data: CarData) -> TextTable:
+def _usual(data: CarData) -> TextTable:
     """Return the figures of the whole car; below them a note on each figure of car or axle outside its usual range."""
     rows = tuple((figure.name, figure.value_text, figure.range_text) for figure in car_figures(data))
-    notes = tuple(f"! {figure}" for figure in figures_of(data) if figure.unusual)
+    notes = tuple(f"! {figure}" for figure in usual_figures(data) if figure.unusual)
     return TextTable(title="Figures", heads=("whole car", "value", "usual"), rows=rows, notes=notes)
 
 
@@ -113,20 +121,34 @@ def _axles(data: CarData) -> TextTable:
     return TextTable(title="Axles", heads=heads, rows=tuple(rows), notes=notes)
 
 
-def _modes(data: CarData) -> TextTable:
-    motions = list(dict.fromkeys(mode.motion for mode in data.modes))
-    by_state = {(mode.motion, mode.dampers): mode for mode in data.modes}
+def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
+    """Return the table of headline figures, with the modes that share their motions.
+
+    Args:
+        figures: figures for one or several states of the dampers.
+    """
+    by_state = {(figure.motion, figure.dampers): figure for figure in figures}
+    motions, states = (tuple(dict.fromkeys(key)) for key in zip(*by_state, strict=True))
     rows = []
     for motion in motions:
         cells = []
-        for state in STATES:
-            mode = by_state[motion, state]
-            ratio = None if mode.damping_ratio is None else 100.0 * mode.damping_ratio
-            cells += [number(mode.frequency_hz, 2), number(ratio, 1), number(100.0 * mode.share)]
-        rows.append((motion, *cells))
-    heads = ("mode", *(f"{word}" for state in STATES for word in (f"{state} [Hz]", "damping [%]", "share [%]")))
-    note = "share: of this motion in the kinetic energy of the mode; python -m vehicle modes lists all modes"
-    return TextTable(title="Modes, dampers stuck and sliding", heads=heads, rows=tuple(rows), notes=(note,))
+        for state in states:
+            figure = by_state[motion, state]
+            frequency, ratio = motion_figure(figure)
+            modes = [f"{number(mode.frequency_hz, 2)} ({number(100.0 * mode.share)} %)" for mode in figure.modes]
+            cells += [frequency.value_text, ratio.value_text, ", ".join(modes) or "-"]
+        rows.append((motion, *cells, usual_range(motion)))
+    heads = (f"{state} [Hz]" for state in states)
+    return TextTable(
+        title=f"Headline figures, dampers {' and '.join(states)}",
+        heads=(
+            "figure",
+            *(word for head in heads for word in (head, "damping [%]", "modes with it [Hz] (share)")),
+            "usual, sliding [Hz]; [%]",
+        ),
+        rows=tuple(rows),
+        notes=(FIGURES_NOTE,),
+    )
 
 
 def parameter_table(parameters: Sequence[Parameter], *, shortened: bool = True) -> TextTable:

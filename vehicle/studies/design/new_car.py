@@ -182,7 +182,7 @@ def checks_of(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[C
         "track_rear": rear[0].center[1] - rear[1].center[1],
         "tyre_radius": front[0].center[2] - front[0].patch[2],
         **{f"{axis}_inertia": float(whole.inertia[i, i]) for i, axis in enumerate(("roll", "pitch", "yaw"))},
-        **quantities(car, template, modes=True),
+        **quantities(car, template),
     }
     return tuple(
         Check(

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.ride_modes import RideModes
-from vehicle.engines.simulation.axle_ride import axle_ride
+from vehicle.engines.simulation.axle_ride import axle_rides
+from vehicle.engines.simulation.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.vehicle import vehicle_of
@@ -40,8 +40,6 @@ LARGEST_STEP = 4.0
 LEAST = 1e-3
 """Factor on a parameter of the template below which the target requires a negative value."""
 
-MODES = ("pitch_frequency", "wheel_hop_front", "wheel_hop_rear")
-"""Quantities that need the modes of the car."""
 SPRING_FORCES = ("stiffness", "table.force")
 """Parameters of a spring that are proportional to its force."""
 DAMPER_FORCES = ("viscous", "degressive_viscous", "force")
@@ -65,25 +63,22 @@ class Target:
     paths: tuple[str, ...]
 
 
-def quantities(car: Car, template: TemplateCar, *, modes: bool) -> dict[str, float]:
+def quantities(car: Car, template: TemplateCar) -> dict[str, float]:
     """Return the quantities of a car by the names of `StatedNumbers`.
 
     Args:
         car: car with the axles of the template.
         template: the template car.
-        modes: True to add the frequencies of pitch and wheel hop.
     """
-    values: dict[str, float] = {}
+    rides = axle_rides(car.model)
+    figures = ride_figures(car.model, rides)
+    values = {"pitch_frequency": figures["pitch"].frequency_hz}
     for word in AXLES:
-        ride = axle_ride(car.model, template.axle(word))
+        ride = rides[template.axle(word)]
         values[f"ride_frequency_{word}"] = ride.ride_frequency
         values[f"damping_ratio_{word}"] = ride.damping_ratio
-        values[f"roll_stiffness_{word}"] = ride.roll_stiffness * math.pi / 180.0
-    if modes:
-        ride_modes = RideModes(car.matrices)
-        values["pitch_frequency"] = ride_modes.pitch_frequency()
-        for word, wheels in template.wheels.items():
-            values[f"wheel_hop_{word}"] = ride_modes.hop_frequency([wheel.name for wheel in wheels])
+        values[f"roll_stiffness_{word}"] = ride.roll.stiffness * math.pi / 180.0
+        values[f"wheel_hop_{word}"] = figures[f"{template.axle(word)} wheel hop"].frequency_hz
     return values
 
 
@@ -98,7 +93,7 @@ def targets_of(template: TemplateCar, stated: StatedNumbers) -> list[Target]:
     Raises:
         ConfigurationError: the template lacks the part that a target needs, or has a controlled damper.
     """
-    template_values = quantities(new_car_of(template.table, template), template, modes=False)
+    template_values = quantities(new_car_of(template.table, template), template)
     targets = []
     for word in AXLES:
         for name, paths in _parameters(template, word).items():
@@ -155,13 +150,12 @@ def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Ta
         ConfigurationError: a target requires a negative parameter, or the springs cannot support the car.
         SimulationError: the iteration does not converge.
     """
-    modes = any(target.name in MODES for target in targets)
 
     def deviation(factors: Vector) -> Vector:
         changed = scaled(table, targets, factors)
         _require_inertia(changed, targets)
         try:
-            values = quantities(new_car_of(changed, template), template, modes=modes)
+            values = quantities(new_car_of(changed, template), template)
         except ConfigurationError as error:
             values_text = ", ".join(f"{option(target.name)} {target.value:.4g}" for target in targets)
             raise ConfigurationError(f"with {values_text}: {error}") from None

@@ -66,13 +66,13 @@ class StatedNumbers:
     ride_frequency_front: float | None = quantity("Hz", "ride frequency of the front axle", default=None, **BODY)
     ride_frequency_rear: float | None = quantity("Hz", "ride frequency of the rear axle", default=None, **BODY)
     pitch_frequency: float | None = quantity(
-        "Hz", "pitch mode of the car, dampers sliding; gives the pitch inertia", default=None, **BODY
+        "Hz", "pitch of the sprung mass on its ride rates; gives the pitch inertia", default=None, **BODY
     )
     wheel_hop_front: float | None = quantity(
-        "Hz", "hop mode of the front wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **HOP
+        "Hz", "hop of the front wheels on suspension and tyres; gives the tyre stiffness", default=None, **HOP
     )
     wheel_hop_rear: float | None = quantity(
-        "Hz", "hop mode of the rear wheels in phase, dampers sliding; gives the tyre stiffness", default=None, **HOP
+        "Hz", "hop of the rear wheels on suspension and tyres; gives the tyre stiffness", default=None, **HOP
     )
     damping_ratio_front: float | None = quantity(
         "-", "damping ratio of the front axle, dampers at 0.1 m/s", above=0.0, at_most=3.0, default=None

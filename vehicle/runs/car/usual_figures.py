@@ -5,6 +5,7 @@ Ranges and their sources are data: `usual_ranges.toml`, and the survey of measur
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 from collections.abc import Callable, Mapping
@@ -17,6 +18,7 @@ import numpy as np
 from vehicle.model.parameters.toml_file import read_table
 from vehicle.runs.car.axle_data import AxleData
 from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
+from vehicle.runs.car.motion_figures import MotionFigure
 
 if TYPE_CHECKING:
     from vehicle.runs.car.car_data import CarData
@@ -26,7 +28,7 @@ DEGREES = math.pi / 180.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Figure:
+class UsualFigure:
     """Figure of a car or of an axle in its printed unit.
 
     Attributes:
@@ -110,7 +112,7 @@ def usual_ranges() -> Mapping[str, Mapping[str, Any]]:
     return read_table(Path(__file__).parent / "usual_ranges.toml")
 
 
-def car_figures(data: CarData) -> tuple[Figure, ...]:
+def car_figures(data: CarData) -> tuple[UsualFigure, ...]:
     """Return the figures of the whole car.
 
     Args:
@@ -134,12 +136,12 @@ def car_figures(data: CarData) -> tuple[Figure, ...]:
         SURVEY.items(), geometry.indices(data.mass_kg, data.inertia_kg_m2[:3]), strict=True
     ):
         source = "73 measured cars, NHTSA's inertial parameter database, SAE 1999-01-1336"
-        figures.append(Figure(name=name, axle="", value=value, decimals=3, low=index.least, high=index.most,
+        figures.append(UsualFigure(name=name, axle="", value=value, decimals=3, low=index.least, high=index.most,
                               source=source))  # fmt: skip
     return tuple(figures)
 
 
-def axle_figures(data: CarData) -> tuple[tuple[Figure, ...], ...]:
+def axle_figures(data: CarData) -> tuple[tuple[UsualFigure, ...], ...]:
     """Return the figures of all axles: for each name one figure an axle; names that the car does not define are absent.
 
     Args:
@@ -175,28 +177,56 @@ def _of_the_car(data: CarData, name: str) -> list[float] | None:
     return [(data.support_percent(axle) or (math.nan, math.nan))[index - 2] for axle in data.axles]
 
 
-def figures_of(data: CarData) -> tuple[Figure, ...]:
-    """Return all figures of a car, first those of the whole car.
+def motion_figure(figure: MotionFigure) -> tuple[UsualFigure, UsualFigure]:
+    """Return frequency and damping ratio of a headline figure; they have usual ranges if the dampers slide.
+
+    Args:
+        figure: the headline figure.
+    """
+    axle, hop, _ = figure.motion.rpartition(" wheel hop")
+    words = "wheel hop" if hop else figure.motion
+    damping = None if figure.damping_ratio is None else 100.0 * figure.damping_ratio
+    pair = _ranged(f"{words} [Hz]", axle, figure.frequency_hz, 2), _ranged(f"{words}, damping [%]", axle, damping, 1)
+    if figure.dampers == "sliding":
+        return pair
+    frequency, ratio = (dataclasses.replace(value, low=math.nan, high=math.nan) for value in pair)
+    return frequency, ratio
+
+
+def usual_range(motion: str) -> str:
+    """Return the usual ranges of a headline figure as text; see `motion_figure`."""
+    pair = motion_figure(
+        MotionFigure(motion=motion, dampers="sliding", frequency_hz=None, damping_ratio=None, modes=())
+    )
+    return "; ".join(figure.range_text for figure in pair)
+
+
+def usual_figures(data: CarData) -> tuple[UsualFigure, ...]:
+    """Return all figures of a car: those of the whole car, of its axles, and the headline figures.
 
     Args:
         data: the car.
     """
-    return (*car_figures(data), *(figure for row in axle_figures(data) for figure in row))
+    rows = (*axle_figures(data), *(motion_figure(figure) for figure in data.figures if figure.dampers == "sliding"))
+    return (*car_figures(data), *(figure for row in rows for figure in row))
 
 
-def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int) -> Figure:
-    """Return a figure with its usual range, scaled by the load of the axle where the table says so."""
+def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int) -> UsualFigure:
+    """Return a figure with its usual range, in proportion to the load of the axle where the table says so."""
     entry = usual_ranges().get(name, {})
-    of_axle = isinstance(axle, AxleData)
-    low, high = entry.get("all") or entry.get("front" if of_axle and axle.front else "rear") or (math.nan, math.nan)
-    scale = sum(axle.load_n.values()) / GRAVITY if of_axle and entry.get("per") == "axle load" else 1.0
-    return Figure(
+    low, high = entry.get("all", (math.nan, math.nan))
+    if isinstance(axle, AxleData):
+        low, high = entry.get("front" if axle.front else "rear", (low, high))
+        if entry.get("per") == "axle load":
+            mass = sum(axle.load_n.values()) / GRAVITY
+            low, high = low * mass, high * mass
+    return UsualFigure(
         name=name.strip(),
-        axle=axle.name if of_axle else "",
+        axle=axle.name if isinstance(axle, AxleData) else axle,
         value=math.nan if value is None else float(value),
         decimals=decimals,
-        low=scale * low,
-        high=scale * high,
+        low=low,
+        high=high,
         source=entry.get("source", ""),
     )
 

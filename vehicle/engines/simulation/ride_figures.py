@@ -1,0 +1,159 @@
+"""Headline figures of a car: heave, pitch and roll of the sprung mass, and the hop of its wheels, each on its rates.
+
+Each figure is the natural frequency and the damping ratio of one motion alone, by its mass m, rate k and damping c:
+
+    f = sqrt(k / m) / 2 pi,    zeta = c / (2 sqrt(k m))
+
+    heave   m_s,               k = sum of k_i
+    pitch   I_yy,              k = sum of k_i (x_i - x_s)^2
+    roll    I_xx + m_s h^2,    k = sum of K_phi,i - m_s g h
+    hop     m_u,               k = K_w + K_t (both wheels of an axle in phase, the body at rest)
+
+The sprung mass m_s is the whole car without the unsprung masses m_u, which count as points in the wheel centres: body,
+engine, seats, occupants and loads as one rigid part, with the centre of gravity (x_s, z_s) and the inertia I about it.
+It stands on the stations i: each axle with 2 K_r and K_phi,i of its suspension in series with its tyres (see
+`vehicle.engines.simulation.axle_ride`), and each other contact with the ground, a rubber block, with k_i and k_i y_i^2.
+C of dampers at 0.1 m/s, tyres and blocks in the same way. Stuck dampers keep their length.
+
+It rolls about the line through the roll centres z_c,i of the stations (a block: its place), at h below its centre of
+gravity: h = z_s - sum of m_i z_c,i / sum of m_i with the load g m_i on the springs of a station, which is the line
+between the two roll centres of a car with two axles.
+
+The motions of one car share its modes, so that a figure is no mode: coupling by the pitch rate sum of k_i (x_i - x_s),
+the engine on its mounts and the tyres across change the modes, and not the figures.
+
+Source: Gillespie, Fundamentals of Vehicle Dynamics, chapter 5 (bounce and pitch of the sprung mass on the ride rates,
+here without their coupling; wheel hop); Abe, Vehicle Handling Dynamics, chapter 6 (roll about the roll axis).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.axle_curves import design_axle
+from vehicle.engines.simulation.axle_ride import AxleRide, Support
+from vehicle.engines.simulation.car_masses import car_masses
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.model.flexbody.mass_properties import MassProperties
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RideFigure:
+    """Natural frequency of a motion of the sprung mass or of the wheels of an axle on its rates.
+
+    Attributes:
+        frequency_hz: undamped [Hz]; nan if its stiffness or its mass is not positive or not defined.
+        damping_ratio: [-]; nan likewise.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Station:
+    """Where the sprung mass stands: an axle, or a contact of the body with the ground.
+
+    Attributes:
+        x: position along the car [m].
+        mass: load on its springs over gravity [kg]; nan without gravity.
+        vertical: rate and damping, vertical.
+        roll: roll stiffness and roll damping.
+        roll_centre: height of the roll centre in the frame of the hardpoints [m].
+    """
+
+    x: float
+    mass: float
+    vertical: Support
+    roll: Support
+    roll_centre: float
+
+
+def ride_figures(car: CarModel, axles: Mapping[str, AxleRide]) -> dict[str, RideFigure]:
+    """Compute the headline figures of a car at rest.
+
+    Args:
+        car: car in static equilibrium, with standing tyres.
+        axles: its axles, with their dampers stuck or sliding; see `axle_rides`.
+
+    Returns:
+        Figures by motion: "heave", "pitch", "roll", then "front wheel hop" and so on by axle.
+
+    Raises:
+        SimulationError: an axle has no equilibrium near its design position.
+    """
+    sprung = _sprung(car, axles)
+    stations = [*(_axle_station(car, axle, ride) for axle, ride in axles.items()), *_blocks(car, sprung.cog[1])]
+    masses = np.array([station.mass for station in stations])
+    h = float(sprung.cog[2] - masses @ [station.roll_centre for station in stations] / masses.sum())
+    about_axis = float(sprung.inertia[0, 0]) + sprung.mass * h**2
+    roll = _sum([station.roll for station in stations])
+    gravity = Support(stiffness=-sprung.mass * car.vehicle.gravity * h, damping=0.0)
+    pitch = _sum([station.vertical.times((station.x - sprung.cog[0]) ** 2) for station in stations])
+    figures = {
+        "heave": _figure(_sum([station.vertical for station in stations]), sprung.mass),
+        "pitch": _figure(pitch, float(sprung.inertia[1, 1])),
+        "roll": _figure(_sum([roll, gravity]), about_axis),
+    }
+    return figures | {
+        f"{axle} wheel hop": _figure(_sum([ride.wheel, ride.tyre]), ride.unsprung_mass) for axle, ride in axles.items()
+    }
+
+
+def _figure(support: Support, mass: float) -> RideFigure:
+    return RideFigure(frequency_hz=support.frequency(mass), damping_ratio=support.damping_ratio(mass))
+
+
+def _sum(supports: list[Support]) -> Support:
+    """Return supports in parallel."""
+    return Support(
+        stiffness=math.fsum(each.stiffness for each in supports), damping=math.fsum(each.damping for each in supports)
+    )
+
+
+def _sprung(car: CarModel, axles: Mapping[str, AxleRide]) -> MassProperties:
+    """Return the sprung mass: the car without the unsprung masses, which are points in the wheel centres."""
+    whole = car_masses(car, loads=True)
+    wheels = car.vehicle.composition.wheels
+    unsprung = MassProperties.of_points(
+        np.array([axles[wheel.axle].unsprung_mass for wheel in wheels]), np.array([wheel.center for wheel in wheels])
+    )
+    return whole.without(unsprung)
+
+
+def _axle_station(car: CarModel, axle: str, ride: AxleRide) -> Station:
+    """Return an axle as a station."""
+    wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == axle]
+    # The roll centre does not depend on the direction to the middle of the car.
+    _, geometry = design_axle(car.model, car.static.preload, wheels, towards=1.0)
+    return Station(
+        x=ride.center[0],
+        mass=len(wheels) * ride.sprung_mass,
+        vertical=ride.ride.times(len(wheels)),
+        roll=ride.roll.in_series(ride.tyre_roll),
+        roll_centre=wheels[0].patch[2] + geometry.roll_centre_height_m,
+    )
+
+
+def _blocks(car: CarModel, middle: float) -> Iterator[Station]:
+    """Yield the contacts of the car with the ground other than its tyres; `middle`: y of the centre of gravity [m]."""
+    plates = {wheel.plate for wheel in car.vehicle.composition.wheels}
+    for link in car.vehicle.composition.connections:
+        if not link.ground or link.carrier in plates or link.law is None:
+            continue
+        vertical = Support(stiffness=link.law.stiffness[2], damping=link.law.damping[2])
+        load = car.static.support_load[link.name]
+        yield Station(
+            x=link.at[0],
+            mass=load / car.vehicle.gravity if car.vehicle.gravity else math.nan,
+            vertical=vertical,
+            roll=vertical.times((link.at[1] - middle) ** 2),
+            roll_centre=link.at[2],
+        )

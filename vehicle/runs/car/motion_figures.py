@@ -1,0 +1,127 @@
+"""Headline figures of a car with the modes of the whole car that share their motions.
+
+Frequency and damping ratio of each figure are those of `vehicle.engines.simulation.ride_figures`: one motion alone, by
+its mass and its rates. A mode contains several motions, so a mode is never the figure; the modes are listed beside it,
+each with its share of this motion in its kinetic energy (`vehicle.engines.linear.motion_names`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle.engines.linear.car_modes import Mode
+from vehicle.engines.simulation.axle_ride import DamperState, axle_rides
+from vehicle.engines.simulation.ride_figures import ride_figures
+from vehicle.runs.car.axle import car_at_rest
+from vehicle.threads import one_blas_thread
+
+STATES: tuple[DamperState, ...] = ("sliding", "stuck")
+"""States of the dampers."""
+
+BODY_MOTIONS = {"heave": "body heave (z)", "pitch": "body pitch (Ry)", "roll": "body roll (Rx)"}
+"""Motions of the body to their names in `Mode.motions`."""
+
+MINIMUM_SHARE = 0.2
+"""Minimum share of a motion in the kinetic energy of a mode that is listed for it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MotionMode:
+    """Mode of the whole car with at least `MINIMUM_SHARE` of a motion.
+
+    Attributes:
+        frequency_hz: natural frequency [Hz].
+        damping_ratio: damping ratio [-].
+        share: share of the motion in the kinetic energy of the mode [-].
+        description: name of the mode; of its two largest motions if none has half of the energy.
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    share: float
+    description: str
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MotionFigure:
+    """Headline figure of a car: one motion of the sprung mass or of the wheels of an axle on its rates.
+
+    Attributes:
+        motion: "heave", "pitch", "roll", or "front wheel hop" and so on by axle.
+        dampers: "sliding" or "stuck".
+        frequency_hz: undamped natural frequency [Hz]; None if it is not defined.
+        damping_ratio: damping ratio [-], dampers at 0.1 m/s; None if it is not defined.
+        modes: modes of the whole car with this motion, by frequency.
+    """
+
+    motion: str
+    dampers: DamperState
+    frequency_hz: float | None
+    damping_ratio: float | None
+    modes: tuple[MotionMode, ...]
+
+
+@one_blas_thread()
+def motion_figures(car: Any, states: Sequence[DamperState] = STATES) -> tuple[MotionFigure, ...]:
+    """Return the headline figures of a car.
+
+    Args:
+        car: the car; on rolling tyres the figures are those of the car at rest, beside the modes at its speed.
+        states: states of the dampers.
+
+    Raises:
+        ConfigurationError: the car cannot be built.
+        SimulationError: an axle has no equilibrium near its design position.
+    """
+    still = car_at_rest(car).model
+    figures = []
+    for state in states:
+        modes = [mode for mode in car.modes(state) if not mode.grows]
+        figures += [
+            MotionFigure(
+                motion=motion,
+                dampers=state,
+                frequency_hz=_defined(figure.frequency_hz),
+                damping_ratio=_defined(figure.damping_ratio),
+                modes=tuple(_modes(modes, motion)),
+            )
+            for motion, figure in ride_figures(still, axle_rides(still, state)).items()
+        ]
+    return tuple(figures)
+
+
+def _modes(modes: Sequence[Mode], motion: str) -> Iterator[MotionMode]:
+    """Yield the modes with a motion."""
+    for mode in modes:
+        share = motion_share(mode, motion)
+        if share >= MINIMUM_SHARE:
+            yield MotionMode(
+                frequency_hz=mode.frequency,
+                damping_ratio=mode.damping_ratio,
+                share=share,
+                description=mode.description,
+            )
+
+
+def motion_share(mode: Mode, motion: str) -> float:
+    """Return the share of a motion in the kinetic energy of a mode [-].
+
+    Args:
+        mode: the mode.
+        motion: as in `MotionFigure`; for the wheels of an axle the vertical motion of both, in any phase.
+    """
+    if motion in BODY_MOTIONS:
+        return mode.motions.get(BODY_MOTIONS[motion], 0.0)
+    axle, hop = motion.removesuffix(" wheel hop"), (" wheel hop", " wheel vertical")
+    return sum(
+        share
+        for name, share in mode.motions.items()
+        if any(word in name for word in hop) and axle in name.partition(" wheel ")[0].split()
+    )
+
+
+def _defined(value: float) -> float | None:
+    return value if math.isfinite(value) else None
