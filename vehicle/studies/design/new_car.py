@@ -207,6 +207,9 @@ def _require_met(checks: tuple[Check, ...]) -> None:
             )
 
 
+DAMPING = ("damping_ratio_front", "damping_ratio_rear", "damper_curve_front", "damper_curve_rear")
+"""Numbers of the dampers."""
+
 FOLLOWS: dict[str, tuple[str, ...]] = {
     "mass [kg]": ("kerb_mass", "front_axle_load", "rear_axle_load"),
     "load on the front axle [%]": ("front_axle_load", "rear_axle_load", "cog_x"),
@@ -226,7 +229,13 @@ FOLLOWS: dict[str, tuple[str, ...]] = {
     "tyre deflection, static [mm]": ("wheel_hop",),
     "roll stiffness, springs [N m/deg]": ("ride_frequency",),
     "roll stiffness, anti-roll bar or beam [N m/deg]": ("roll_stiffness",),
-    "roll stiffness, all in series [N m/deg]": ("roll_stiffness",),
+    "roll stiffness, all in series [N m/deg]": ("roll_stiffness", "ride_frequency"),
+    "heave [Hz]": ("ride_frequency_front", "ride_frequency_rear"),
+    "pitch [Hz]": ("pitch_frequency", "ride_frequency_front", "ride_frequency_rear"),
+    "roll [Hz]": ("roll_stiffness_front", "roll_stiffness_rear"),
+    **dict.fromkeys((f"{motion}, damping [%]" for motion in ("heave", "pitch", "roll")), DAMPING),
+    "wheel hop [Hz]": ("wheel_hop",),
+    "wheel hop, damping [%]": ("damping_ratio", "damper_curve"),
     "share of roll stiffness, suspension [%]": ("roll_stiffness",),
     "share of roll stiffness, with tyres [%]": ("roll_stiffness",),
 }
@@ -237,7 +246,7 @@ def _unusual(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator
     """Yield a note for each figure of a new car without its loads outside its usual range, with its origin."""
     kerb = new_car_of({key: value for key, value in car.vehicle.table.items() if key != "load"}, template)
     words = {template.axle(word): word for word in AXLES}
-    for figure in kerb.show().figures:
+    for figure in kerb.show().usual:
         if not figure.unusual:
             continue
         names = [
