@@ -53,8 +53,8 @@ WIDENS = {
     "wheel_hop": "Lighter wheels and brakes raise it, heavier ones lower it: change parts.*.mass of this axle in the "
     "file of the template, or state another kerb mass, which scales them.",
     "roll_stiffness": "The springs give the least value: a lower ride frequency or a narrower track lowers it.",
-    "pitch_frequency": "The moments of a real body limit it: state other ride frequencies, axle loads, --roll-inertia or "
-    "--yaw-inertia.",
+    "pitch_frequency": "The moments of a real body limit it: state other ride frequencies, axle loads, roll or yaw "
+    "inertia.",
 }
 """What moves the interval that can be reached, by the name of the quantity."""
 
