@@ -57,7 +57,7 @@ ROOMS: dict[str, set[str]] = {
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
-    "design": {"car", "flexbody", "linear", "parameters", "simulation", "threads"},
+    "design": {"car", "flexbody", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}

@@ -14,7 +14,7 @@ from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import output_file_of
 from vehicle.commands.options import FORCE_HELP, command_parser, film_name, message_options, vehicle_options
 from vehicle.commands.parser import Parser
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, SimulationError
 
 if TYPE_CHECKING:
     from vehicle.runs.car.motion_figures import MotionFigure
@@ -69,8 +69,13 @@ def _job(options: argparse.Namespace) -> None:
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
-    figures = motion_figures(car, [options.damper])
+    figures, reason = (), ""
+    try:
+        figures = motion_figures(car, [options.damper])
+    except SimulationError as error:
+        reason = f"headline figures: not defined: {error}"
     table = modes_table(car, options.damper, figures)
+    table["notices"] += [reason] if reason else []
     if options.uff is not None:
         from vehicle.runs.output.folder import write_whole
         from vehicle.runs.output.mode_file import write_modes
@@ -184,7 +189,8 @@ def report(table: dict[str, Any], figures: Sequence[MotionFigure]) -> str:
     if table["growing"]:
         fault = "does not stand" if table["tyre"] == "standing" else "does not keep its course"
         lines.append(f"this car {fault}: {', '.join(table['growing'])} grows by itself (negative damping above)")
-    lines += [str(figures_table(figures)), *(f"note     {text}" for text in table["notices"])]
+    lines += [str(figures_table(figures))] if figures else []
+    lines += [f"note     {text}" for text in table["notices"]]
     free = table["free_body"]
     if free["frequency_hz"]:
         lines.append("free trimmed body")

@@ -92,17 +92,22 @@ def motion_shares(
     return dict(sorted(shares.items(), key=lambda item: -item[1]))
 
 
-def description(shares: Mapping[str, float]) -> str:
-    """Return the name of a mode: the motion with half of its energy, else the two largest with their shares.
+def leading_motions(shares: Mapping[str, float]) -> dict[str, float]:
+    """Return the motions that name a mode, with their shares: the one with half of its energy, else the two largest.
 
     Args:
         shares: share of the kinetic energy by motion, largest first.
     """
-    (first, largest), *others = shares.items()
-    if largest >= NAMED or not others:
-        return first
-    second, share = others[0]
-    return f"{first} ({100.0 * largest:.0f} %) with {second} ({100.0 * share:.0f} %)"
+    first, *others = shares.items()
+    return dict([first] if first[1] >= NAMED else [first, *others[:1]])
+
+
+def description(shares: Mapping[str, float]) -> str:
+    """Return the name of a mode: its leading motion, or two with their shares; arguments as in `leading_motions`."""
+    leading = leading_motions(shares)
+    if len(leading) == 1:
+        return next(iter(leading))
+    return " with ".join(f"{name} ({100.0 * share:.0f} %)" for name, share in leading.items())
 
 
 def _phases(pair: Mapping[str, Complex], word: str) -> dict[str, Complex]:

@@ -9,13 +9,14 @@ that roll freely; index o: by opposite travel. Stuck dampers keep their length; 
     ride rate       K_r = K_w K_t / (K_w + K_t)       (in series with the tyre, K_t and C_t)
     ride damping    C_r = (C_w K_t^2 + C_t K_w^2) / (K_w + K_t)^2
     unsprung mass   m_u = sum of m dz_m / dz / wheels (mass that rises with the wheels, z_m its height)
-    sprung mass     m_s = F / g - m_u                 (F: static wheel load)
+    spring load     N = F - m_u g                     (F: static wheel load)
+    sprung mass     m_s = N / g
     ride frequency  f = sqrt(K_r / m_s) / 2 pi
     damping ratio   zeta = C_r / (2 sqrt(K_r m_s))
     roll stiffness  K_phi = K_o t_c t_p / 2           (tracks t_c of wheel centres, t_p of patches; without tyres)
     roll damping    C_phi = C_o t_c t_p / 2
 
-By virtual work m_s g is the load that the springs carry, so K_r and m_s belong together. The ride rate and the ride
+By virtual work the springs carry N, so K_r and m_s belong together. The ride rate and the ride
 damping are those of a wheel without mass between suspension and tyre: with s = j w, (K_w + s C_w) in series with
 (K_t + s C_t) is K_r + s C_r to the first order in s.
 
@@ -79,7 +80,8 @@ class AxleRide:
 
     Attributes:
         wheel, tyre: rate and damping of the suspension at the wheel, and those of the tyre.
-        unsprung_mass, sprung_mass: of one wheel [kg].
+        unsprung_mass, sprung_mass: of one wheel [kg]; the sprung mass is nan without gravity.
+        spring_load: N of one wheel [N].
         roll_springs: roll stiffness of the axle by springs, bushings and preloads [N m/rad].
         roll_bars: roll stiffness of the axle by springs on hinges between the sides [N m/rad].
         roll_damping: C_phi [N m s/rad].
@@ -91,6 +93,7 @@ class AxleRide:
     tyre: Support
     unsprung_mass: float
     sprung_mass: float
+    spring_load: float
     roll_springs: float
     roll_bars: float
     roll_damping: float
@@ -144,7 +147,7 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
     stuck = dampers == "stuck"
     held = AxleStatics(car.model, car.static.preload, wheels=wheels, locked=True) if stuck else free
     springs, bars = opposite_rates(held)
-    load = float(np.mean([car.static.tyre_load[wheel.name] for wheel in wheels]))
+    load, gravity = _mean([car.static.tyre_load[wheel.name] for wheel in wheels]), car.vehicle.gravity
     unsprung = float(equal.mass_moment) / len(wheels)
     tracks = [_track([getattr(wheel, point)[1] for wheel in wheels]) for point in ("center", "patch")]
     arm = 0.5 * tracks[0] * tracks[1]
@@ -153,7 +156,8 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
         wheel=Support(stiffness=float(design_slopes(held)["wheel_rate_n_per_m"] or math.nan), damping=damping),
         tyre=_tyre(car, wheels),
         unsprung_mass=unsprung,
-        sprung_mass=load / car.vehicle.gravity - unsprung if car.vehicle.gravity else math.nan,
+        sprung_mass=load / gravity - unsprung if gravity else math.nan,
+        spring_load=load - unsprung * gravity,
         roll_springs=arm * springs,
         roll_bars=arm * bars,
         roll_damping=arm * roll_damping,

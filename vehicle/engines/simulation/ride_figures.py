@@ -4,26 +4,28 @@ Each figure is the natural frequency and the damping ratio of one motion alone, 
 
     f = sqrt(k / m) / 2 pi,    zeta = c / (2 sqrt(k m))
 
-    heave   m_s,               k = sum of k_i
-    pitch   I_yy,              k = sum of k_i (x_i - x_s)^2
-    roll    I_xx + m_s h^2,    k = sum of K_phi,i - m_s g h
-    hop     m_u,               k = K_w + K_t (both wheels of an axle in phase, the body at rest)
+    heave   m_s     k = sum of k_i
+    pitch   I_yy    k = sum of k_i (x_i - x_s)^2
+    roll    I_xx    k = sum of K_phi,i - N_i (z_s - z_c,i)
+    hop     m_u     k = K_w + K_t            (both wheels of an axle in phase, the body at rest)
 
 The sprung mass m_s is the whole car without the unsprung masses m_u, which count as points in the wheel centres: body,
-engine, seats, occupants and loads as one rigid part, with the centre of gravity (x_s, z_s) and the inertia I about it.
-It stands on the stations i: each axle with 2 K_r and K_phi,i of its suspension in series with its tyres (see
+engine, seats, occupants and loads as one rigid part, with the inertia I about its centre of gravity (x_s, z_s). It
+stands on the stations i: each axle with k_i = 2 K_r and K_phi,i of its suspension in series with its tyres (see
 `vehicle.engines.simulation.axle_ride`), and each other contact with the ground, a rubber block, with k_i and k_i y_i^2.
-C of dampers at 0.1 m/s, tyres and blocks in the same way. Stuck dampers keep their length.
+The damping c follows in the same way from dampers at 0.1 m/s, tyres and blocks. Stuck dampers keep their length.
 
-It rolls about the line through the roll centres z_c,i of the stations (a block: its place), at h below its centre of
-gravity: h = z_s - sum of m_i z_c,i / sum of m_i with the load g m_i on the springs of a station, which is the line
-between the two roll centres of a car with two axles.
+This is the ride model of a car on the road, where rolling tyres oppose no slow motion along or across: the sprung mass
+pitches and rolls about its centre of gravity. In roll its weight moves to the side of each station by the height above
+the roll centre z_c,i (a block: its place), under the load N_i on the springs there; with two axles the sum is m_s g h,
+with the height h of the centre of gravity above the roll axis.
 
 The motions of one car share its modes, so that a figure is no mode: coupling by the pitch rate sum of k_i (x_i - x_s),
-the engine on its mounts and the tyres across change the modes, and not the figures.
+the engine on its mounts, standing tyres and the linkage in the side view change the modes, and not the figures.
 
 Source: Gillespie, Fundamentals of Vehicle Dynamics, chapter 5 (bounce and pitch of the sprung mass on the ride rates,
-here without their coupling; wheel hop); Abe, Vehicle Handling Dynamics, chapter 6 (roll about the roll axis).
+here without their coupling; wheel hop) and chapter 6 (roll stiffness less the weight at its height above the roll
+axis).
 """
 
 from __future__ import annotations
@@ -33,15 +35,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.engines.simulation.axle_curves import design_axle
 from vehicle.engines.simulation.axle_ride import AxleRide, Support
 from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.flexbody.mass_properties import MassProperties
-
-Vector = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,14 +62,14 @@ class Station:
 
     Attributes:
         x: position along the car [m].
-        mass: load on its springs over gravity [kg]; nan without gravity.
+        load: static load on its springs [N].
         vertical: rate and damping, vertical.
         roll: roll stiffness and roll damping.
         roll_centre: height of the roll centre in the frame of the hardpoints [m].
     """
 
     x: float
-    mass: float
+    load: float
     vertical: Support
     roll: Support
     roll_centre: float
@@ -91,16 +90,13 @@ def ride_figures(car: CarModel, axles: Mapping[str, AxleRide]) -> dict[str, Ride
     """
     sprung = _sprung(car, axles)
     stations = [*(_axle_station(car, axle, ride) for axle, ride in axles.items()), *_blocks(car, sprung.cog[1])]
-    masses = np.array([station.mass for station in stations])
-    h = float(sprung.cog[2] - masses @ [station.roll_centre for station in stations] / masses.sum())
-    about_axis = float(sprung.inertia[0, 0]) + sprung.mass * h**2
-    roll = _sum([station.roll for station in stations])
-    gravity = Support(stiffness=-sprung.mass * car.vehicle.gravity * h, damping=0.0)
+    tilt = math.fsum(station.load * (sprung.cog[2] - station.roll_centre) for station in stations)
+    roll = _sum([*(station.roll for station in stations), Support(stiffness=-tilt, damping=0.0)])
     pitch = _sum([station.vertical.times((station.x - sprung.cog[0]) ** 2) for station in stations])
     figures = {
         "heave": _figure(_sum([station.vertical for station in stations]), sprung.mass),
         "pitch": _figure(pitch, float(sprung.inertia[1, 1])),
-        "roll": _figure(_sum([roll, gravity]), about_axis),
+        "roll": _figure(roll, float(sprung.inertia[0, 0])),
     }
     return figures | {
         f"{axle} wheel hop": _figure(_sum([ride.wheel, ride.tyre]), ride.unsprung_mass) for axle, ride in axles.items()
@@ -135,7 +131,7 @@ def _axle_station(car: CarModel, axle: str, ride: AxleRide) -> Station:
     _, geometry = design_axle(car.model, car.static.preload, wheels, towards=1.0)
     return Station(
         x=ride.center[0],
-        mass=len(wheels) * ride.sprung_mass,
+        load=len(wheels) * ride.spring_load,
         vertical=ride.ride.times(len(wheels)),
         roll=ride.roll.in_series(ride.tyre_roll),
         roll_centre=wheels[0].patch[2] + geometry.roll_centre_height_m,
@@ -149,10 +145,9 @@ def _blocks(car: CarModel, middle: float) -> Iterator[Station]:
         if not link.ground or link.carrier in plates or link.law is None:
             continue
         vertical = Support(stiffness=link.law.stiffness[2], damping=link.law.damping[2])
-        load = car.static.support_load[link.name]
         yield Station(
             x=link.at[0],
-            mass=load / car.vehicle.gravity if car.vehicle.gravity else math.nan,
+            load=car.static.support_load[link.name],
             vertical=vertical,
             roll=vertical.times((link.at[1] - middle) ** 2),
             roll_centre=link.at[2],

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
+from vehicle.engines.linear.motion_names import leading_motions
 from vehicle.names import AXES, point_words, side_of
 from vehicle.runs.report.band_causes import main_path, paths, strongest
 from vehicle.runs.report.base_run import OF_THE_RUN
@@ -132,8 +133,8 @@ def mode_words(mode: Mode) -> str:
 
 
 def _motion(mode: Mode) -> str:
-    """Return the motion with the largest kinetic energy of a mode, without its axis in brackets."""
-    return next(iter(mode.motions), mode.description).partition(" (")[0]
+    """Return the motions that name a mode, without their axes in brackets."""
+    return " with ".join(name.partition(" (")[0] for name in leading_motions(mode.motions))
 
 
 def _effect(first: FinishedRun, run: FinishedRun) -> str:
