@@ -49,8 +49,8 @@ def parser() -> Parser:
         "--class",
         dest="car_class",
         choices=CLASSES,
-        help="class of the car, whose masses, lengths and ride frequencies count where none are stated; electric-suv "
-        "has an electric drive in place of an engine",
+        help="class of the car: default masses, lengths and ride frequencies; electric-suv has an electric drive, "
+        "no engine",
     )
     parser.add_argument(
         "--chrono-tyre",

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,10 +18,8 @@ from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.runs.car.motion_figures import MotionFigure, motion_figures
+from vehicle.runs.car.usual_figures import UsualFigure, usual_figures
 from vehicle.threads import one_blas_thread
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.usual_figures import UsualFigure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -96,8 +94,6 @@ class CarData:
     @property
     def usual(self) -> tuple[UsualFigure, ...]:
         """Figures of the car and of its axles with their usual ranges."""
-        from vehicle.runs.car.usual_figures import usual_figures
-
         return usual_figures(self)
 
     @property

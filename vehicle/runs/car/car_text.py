@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.names import point_words
 from vehicle.runs.car.car_data import CarData
-from vehicle.runs.car.motion_figures import MINIMUM_SHARE, MotionFigure
-from vehicle.runs.car.usual_figures import axle_figures, car_figures, motion_figure, usual_figures, usual_range
+from vehicle.runs.car.motion_valuess import MINIMUM_SHARE, MotionFigure
+from vehicle.runs.car.usual_figures import axle_figures, car_figures, motion_values, usual_figures, usual_range
 
 SOURCE_WIDTH = 60
 """Maximum number of letters of a source in the table of parameters."""
@@ -134,7 +134,7 @@ def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
         cells = []
         for state in states:
             figure = by_state[motion, state]
-            frequency, ratio = motion_figure(figure)
+            frequency, ratio = motion_values(figure)
             modes = [f"{number(mode.frequency_hz, 2)} ({number(100.0 * mode.share)} %)" for mode in figure.modes]
             cells += [frequency.value_text, ratio.value_text, ", ".join(modes) or "-"]
         rows.append((motion, *cells, usual_range(motion)))

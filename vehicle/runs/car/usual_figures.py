@@ -1,4 +1,4 @@
-"""Figures of a car beside their usual ranges: names, values, and a flag outside the range.
+"""Figures of a car with their usual ranges: names, values, and a flag outside the range.
 
 Ranges and their sources are data: `usual_ranges.toml`, and the survey of measured cars for the moments of inertia.
 """
@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from vehicle.model.parameters.toml_file import read_table
 from vehicle.runs.car.axle_data import AxleData
 from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
 from vehicle.runs.car.motion_figures import MotionFigure
-
-if TYPE_CHECKING:
-    from vehicle.runs.car.car_data import CarData
 
 DEGREES = math.pi / 180.0
 """One degree [rad]."""
@@ -55,16 +52,16 @@ class UsualFigure:
 
     @property
     def value_text(self) -> str:
-        """Value with its decimals, and a flag outside the usual range; a dash for a value that is not defined."""
+        """Return the value with its decimals, and a flag outside the usual range; a dash for an undefined value."""
         return f"{self.value:z.{self.decimals}f}{' !' if self.unusual else ''}" if math.isfinite(self.value) else "-"
 
     @property
     def range_text(self) -> str:
-        """Usual range: "1 to 1.6"; a dash without a range."""
+        """Return the usual range as "1 to 1.6"; a dash without a range."""
         return f"{self.low:.4g} to {self.high:.4g}" if math.isfinite(self.low) else "-"
 
     def __str__(self) -> str:
-        """One sentence about the value and its range."""
+        """Return a sentence about the value and its range."""
         axle = f"{self.axle}: " if self.axle else ""
         return f"{axle}{self.name} {self.value:z.{self.decimals}f}, usual are {self.range_text} ({self.source})"
 
@@ -112,11 +109,11 @@ def usual_ranges() -> Mapping[str, Mapping[str, Any]]:
     return read_table(Path(__file__).parent / "usual_ranges.toml")
 
 
-def car_figures(data: CarData) -> tuple[UsualFigure, ...]:
+def car_figures(data: Any) -> tuple[UsualFigure, ...]:
     """Return the figures of the whole car.
 
     Args:
-        data: the car.
+        data: data of the car, see `CarData`.
     """
     mean_track = float(np.mean([axle.track_m for axle in data.axles])) if data.axles else math.nan
     values = {
@@ -141,15 +138,15 @@ def car_figures(data: CarData) -> tuple[UsualFigure, ...]:
     return tuple(figures)
 
 
-def axle_figures(data: CarData) -> tuple[tuple[UsualFigure, ...], ...]:
+def axle_figures(data: Any) -> tuple[tuple[UsualFigure, ...], ...]:
     """Return the figures of all axles: for each name one figure an axle; names that the car does not define are absent.
 
     Args:
-        data: the car.
+        data: data of the car, see `CarData`.
     """
     rows = []
     for name, (value_of, decimals) in AXLE_FIGURES.items():
-        values = _of_the_car(data, name) or [value_of(axle) for axle in data.axles]
+        values: list[float | None] = _of_the_car(data, name) or [value_of(axle) for axle in data.axles]
         if name not in _OF_THE_CAR or data.wheelbase_m is not None:
             rows.append(
                 tuple(_ranged(name, axle, value, decimals) for axle, value in zip(data.axles, values, strict=True))
@@ -166,8 +163,8 @@ _OF_THE_CAR = (
 """Figures of an axle that the rest of the car enters."""
 
 
-def _of_the_car(data: CarData, name: str) -> list[float] | None:
-    """Return the values of a figure of `_OF_THE_CAR` by axle; None for another figure."""
+def _of_the_car(data: Any, name: str) -> list[float | None] | None:
+    """Return the values of a figure of `_OF_THE_CAR` by axle; None for a figure of the axle alone."""
     if name not in _OF_THE_CAR or data.wheelbase_m is None:
         return None
     index = _OF_THE_CAR.index(name)
@@ -177,16 +174,16 @@ def _of_the_car(data: CarData, name: str) -> list[float] | None:
     return [(data.support_percent(axle) or (math.nan, math.nan))[index - 2] for axle in data.axles]
 
 
-def motion_figure(figure: MotionFigure) -> tuple[UsualFigure, UsualFigure]:
+def motion_values(figure: MotionFigure) -> tuple[UsualFigure, UsualFigure]:
     """Return frequency and damping ratio of a headline figure; they have usual ranges if the dampers slide.
 
     Args:
         figure: the headline figure.
     """
     axle, hop, _ = figure.motion.rpartition(" wheel hop")
-    words = "wheel hop" if hop else figure.motion
+    name = "wheel hop" if hop else figure.motion
     damping = None if figure.damping_ratio is None else 100.0 * figure.damping_ratio
-    pair = _ranged(f"{words} [Hz]", axle, figure.frequency_hz, 2), _ranged(f"{words}, damping [%]", axle, damping, 1)
+    pair = _ranged(f"{name} [Hz]", axle, figure.frequency_hz, 2), _ranged(f"{name}, damping [%]", axle, damping, 1)
     if figure.dampers == "sliding":
         return pair
     frequency, ratio = (dataclasses.replace(value, low=math.nan, high=math.nan) for value in pair)
@@ -194,25 +191,25 @@ def motion_figure(figure: MotionFigure) -> tuple[UsualFigure, UsualFigure]:
 
 
 def usual_range(motion: str) -> str:
-    """Return the usual ranges of a headline figure as text; see `motion_figure`."""
-    pair = motion_figure(
+    """Return the usual ranges of a headline figure as text; see `motion_values`."""
+    pair = motion_values(
         MotionFigure(motion=motion, dampers="sliding", frequency_hz=None, damping_ratio=None, modes=())
     )
     return "; ".join(figure.range_text for figure in pair)
 
 
-def usual_figures(data: CarData) -> tuple[UsualFigure, ...]:
+def usual_figures(data: Any) -> tuple[UsualFigure, ...]:
     """Return all figures of a car: those of the whole car, of its axles, and the headline figures.
 
     Args:
-        data: the car.
+        data: data of the car, see `CarData`.
     """
-    rows = (*axle_figures(data), *(motion_figure(figure) for figure in data.figures if figure.dampers == "sliding"))
+    rows = (*axle_figures(data), *(motion_values(figure) for figure in data.figures if figure.dampers == "sliding"))
     return (*car_figures(data), *(figure for row in rows for figure in row))
 
 
 def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int) -> UsualFigure:
-    """Return a figure with its usual range, in proportion to the load of the axle where the table says so."""
+    """Return a figure with its usual range; a range with `per` is in proportion to the load of the axle."""
     entry = usual_ranges().get(name, {})
     low, high = entry.get("all", (math.nan, math.nan))
     if isinstance(axle, AxleData):

@@ -1,4 +1,4 @@
-"""Classes of cars: numbers that a new car takes where none are stated, and its powertrain; data in `classes.toml`."""
+"""Classes of cars: default numbers and powertrain of a new car; data in `classes.toml`."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def of_class(stated: StatedNumbers) -> StatedNumbers:
 
 
 def powertrain(name: str | None) -> Mapping[str, Any] | None:
-    """Return the table of the powertrain of a class; None for that of the template, also without a class."""
+    """Return the table of the powertrain of a class; None keeps the powertrain of the template."""
     return None if name is None else _class(name).get("engine")
 
 

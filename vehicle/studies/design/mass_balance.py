@@ -81,11 +81,11 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
         )
     parts = car_masses(kerb_model(table, template), body=False)
     if mass - parts.mass < LIGHTEST_BODY:
-        least = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY
+        minimum = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY
         raise ConfigurationError(
             f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts, scaled from "
             f"{template.name}, weigh {parts.mass:.1f} kg and leave {mass - parts.mass:.1f} kg for the body, must be at "
-            f"least {LIGHTEST_BODY:g} kg; state {math.ceil(least)} kg or more"
+            f"least {LIGHTEST_BODY:g} kg; state {math.ceil(minimum)} kg or more"
         )
     radius = stated.tyre_radius or template.tyre_radius
     ground = template.wheels["front"][0].center[2] - radius

@@ -93,7 +93,9 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
     engine = powertrain(stated.car_class)
     template = template.with_powertrain(engine)
     table, sources = moved_points(template, stated)
-    table, of_parts = scaled_parts(table, template, ratio, powertrain=engine is None)
+    before = value_sources(template.file)
+    table, scaled = scaled_parts(table, template, ratio, powertrain=engine is None)
+    of_parts = {path: f"{text}: {before[path]}" if path in before else text for path, text in scaled.items()}
     table, of_body = balanced(table, template, stated)
     sources |= of_parts | of_body | _curves(table, template, stated)
     if engine is not None:
@@ -112,7 +114,7 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool
         "Behind each value: [unit] where it comes from: given, estimated by ..., or the template with its own source.\n"
         "Frame: x to the rear, y to the driver's right, z up. SI units."
     )
-    text = vehicle_text(car.vehicle, header, sources, template.name, value_sources(template.file))
+    text = vehicle_text(car.vehicle, header, sources, template.name, before)
     return NewCar(car=car, text=text, checks=checks, notes=_notes(car, template, stated, ratio))
 
 
@@ -242,15 +244,16 @@ FOLLOWS: dict[str, tuple[str, ...]] = {
 """Stated numbers that a figure of the car follows from, without the word of an axle; all others are the template's."""
 
 
-def _unusual(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator[str]:
-    """Yield a note for each figure of a new car without its loads outside its usual range, with its origin."""
+def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator[str]:
+    """Yield a note for each figure outside its usual range, with its origin; the loads of the car are left out."""
     kerb = new_car_of({key: value for key, value in car.vehicle.table.items() if key != "load"}, template)
-    words = {template.axle(word): word for word in AXLES}
+    axle_words = {template.axle(word): word for word in AXLES}
     for figure in kerb.show().usual:
         if not figure.unusual:
             continue
         names = [
-            name if hasattr(stated, name) else f"{name}_{words[figure.axle]}" for name in FOLLOWS.get(figure.name, ())
+            name if hasattr(stated, name) else f"{name}_{axle_words[figure.axle]}"
+            for name in FOLLOWS.get(figure.name, ())
         ]
         origins = [f"follows from {stated.stated(name)}" if isinstance(getattr(stated, name), float) else
                    f"follows from {option(name)}" for name in names if getattr(stated, name) is not None]  # fmt: skip
@@ -264,7 +267,7 @@ def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float)
     """Return the notes: figures outside their usual ranges, values of the template, parts left out."""
     scaled = "" if ratio == 1.0 else f"scaled by the kerb mass ({ratio:.3f} of that of {template.name}): "
     return (
-        *_unusual(car, template, stated),
+        *_unusual_notes(car, template, stated),
         f"as in {template.name}: {scaled}parts of axles and powertrain, bushings, mounts, damper friction, tyres; "
         "these values are marked 'template' in the file",
         *(f"not taken over from {template.name}: {text}" for text in template.left_out),

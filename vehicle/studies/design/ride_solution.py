@@ -42,7 +42,7 @@ LEAST = 1e-3
 """Least factor on a parameter; the largest is its inverse."""
 
 TYRE_SAG = (0.006, 0.05)
-"""Least and largest static deflection of a tyre [m]: a solid tyre, and one that rolls on its rim."""
+"""Least and largest static deflection of a tyre [m]: a solid tyre, and a flat tyre."""
 BISECTIONS = 12
 """Steps of the search for the last possible car: the factor is then within 0.2 % for a bound of 1000."""
 LIMITS = {"wheel_hop": " (static deflection of 50 to 6 mm)"}
@@ -56,7 +56,7 @@ WIDENS = {
     "pitch_frequency": "The moments of a real body limit it: state other ride frequencies, axle loads, roll or yaw "
     "inertia.",
 }
-"""What moves the interval that can be reached, by the name of the quantity."""
+"""Advice on the interval that can be reached, by the name of the quantity."""
 
 SPRING_FORCES = ("stiffness", "table.force")
 """Parameters of a spring that are proportional to its force."""
@@ -170,11 +170,11 @@ def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Ta
     """
     problem = RideProblem(table=table, template=template, targets=tuple(targets))
     try:
-        factors, unreached = problem.solution()
+        factors, unreached = problem.solved_factors()
     except ConfigurationError as error:
-        raise problem.explained(error) from None
+        raise problem.explained_error(error) from None
     if unreached is not None:
-        raise problem.unreachable(unreached)
+        raise problem.unreachable_error(unreached)
     return scaled(table, targets, factors)
 
 
@@ -202,33 +202,33 @@ class RideProblem:
         _require_inertia(changed, self.targets)
         return quantities(new_car_of(changed, self.template), self.template)
 
-    def bounds(self) -> tuple[Vector, Vector]:
-        """Return the least and the largest factor on the parameter of each target."""
-        least, largest = np.full((2, len(self.targets)), [[LEAST], [1.0 / LEAST]])
+    def factor_bounds(self) -> tuple[Vector, Vector]:
+        """Return the lower and the upper bound of the factor on the parameter of each target."""
+        lower, upper = np.full((2, len(self.targets)), [[LEAST], [1.0 / LEAST]])
         for index, target in enumerate(self.targets):
             if target.name.startswith("wheel_hop"):
                 load = _mean_load(self.table, self.template, target.name.rpartition("_")[2])
                 stiffness = value_at(self.table, target.paths[0].removesuffix(".z"))[2]
-                least[index], largest[index] = (load / (sag * stiffness) for sag in reversed(TYRE_SAG))
-        return least, largest
+                lower[index], upper[index] = (load / (sag * stiffness) for sag in reversed(TYRE_SAG))
+        return lower, upper
 
-    def solution(self) -> tuple[Vector, int | None]:
-        """Return the factors that meet the targets, and the index of a target that cannot be met within its bounds.
+    def solved_factors(self) -> tuple[Vector, int | None]:
+        """Return the factors that meet the targets, and the index of a target out of reach of its parameter.
 
-        A parameter at its bound is held there while its target asks for more, and the others are solved without it.
+        A parameter stays at its bound while its target requires more; the other targets are solved without it.
 
         Raises:
             ConfigurationError: an iterate is no car.
             SimulationError: the iteration does not converge.
         """
         aims = np.array([target.value for target in self.targets])
-        least, largest = self.bounds()
+        lower, upper = self.factor_bounds()
 
         def deviation(factors: Vector) -> Vector:
             values = self.values(factors)
-            return np.array([values[target.name] for target in self.targets]) / aims - 1.0
+            return np.asarray([values[target.name] / target.value - 1.0 for target in self.targets])
 
-        factors = np.clip(np.ones(len(aims)), least, largest)
+        factors = np.clip(np.ones(len(aims)), lower, upper)
         residual = deviation(factors)
         jacobian = np.empty((len(aims), len(aims)))
         for column in range(len(aims)):
@@ -236,14 +236,14 @@ class RideProblem:
             moved[column] += DIFFERENCE * factors[column]
             jacobian[:, column] = (deviation(moved) - residual) / (DIFFERENCE * factors[column])
         for _ in range(MOST_STEPS):
-            # Each quantity grows with its own parameter.
-            held = ((factors <= least) & (residual > SOLVED)) | ((factors >= largest) & (residual < -SOLVED))
+            # A quantity grows with the parameter of its target.
+            held = ((factors <= lower) & (residual > SOLVED)) | ((factors >= upper) & (residual < -SOLVED))
             free = ~held
             if not np.any(np.abs(residual[free]) >= SOLVED):
                 return factors, int(np.argmax(held)) if np.any(held) else None
             step = np.zeros(len(aims))
             step[free] = -np.linalg.lstsq(jacobian[np.ix_(free, free)], residual[free], rcond=None)[0]
-            low, high = np.maximum(least, factors / LARGEST_STEP), np.minimum(largest, factors * LARGEST_STEP)
+            low, high = np.maximum(lower, factors / LARGEST_STEP), np.minimum(upper, factors * LARGEST_STEP)
             step = np.clip(factors + step, low, high) - factors
             factors, last = factors + step, residual
             residual = deviation(factors)
@@ -254,20 +254,20 @@ class RideProblem:
             f"{100.0 * residual[worst]:.2f} %; state a value nearer to that of {self.template.name}, or leave it out"
         )
 
-    def interval(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:
+    def reachable_interval(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:
         """Return the interval that a target can reach, and the factors on its parameter at both ends.
 
-        The other targets are left out: their parameters remain those of the table. A bound at which the car cannot be
-        is replaced by the last factor on the way to it at which it can.
+        The parameters of the other targets remain those of the table. If the car is impossible at a bound, the last
+        possible factor replaces the bound.
 
         Args:
             index: index of the target.
         """
         target = self.targets[index]
-        alone = RideProblem(table=self.table, template=self.template, targets=(target,))
-        least, largest = alone.bounds()
-        ends = [alone.last_car(float(bound[0])) for bound in (least, largest)]
-        values = sorted(alone.values(np.array([end]))[target.name] for end in ends)
+        single = RideProblem(table=self.table, template=self.template, targets=(target,))
+        lower, upper = single.factor_bounds()
+        ends = [single.last_car(float(bound[0])) for bound in (lower, upper)]
+        values = sorted(single.values(np.array([end]))[target.name] for end in ends)
         return (values[0], values[-1]), (ends[0], ends[1])
 
     def last_car(self, bound: float) -> float:
@@ -284,10 +284,10 @@ class RideProblem:
             possible, end = end, math.sqrt(end * bound)
         return possible
 
-    def unreachable(self, index: int) -> ConfigurationError:
+    def unreachable_error(self, index: int) -> ConfigurationError:
         """Return the error of a target that cannot be reached, with the interval and what widens it."""
         target = self.targets[index]
-        (low, high), factors = self.interval(index)
+        (low, high), factors = self.reachable_interval(index)
         path = target.paths[0]
         value = value_at(self.table, path.removesuffix(".z"))
         value = value[2] if path.endswith(".z") else value[-1] if isinstance(value, list | tuple) else value
@@ -301,12 +301,12 @@ class RideProblem:
             f"{LIMITS.get(name, '')}. {WIDENS[name]}".replace(" :", ":").replace(" ,", ",")
         )
 
-    def explained(self, error: ConfigurationError) -> ConfigurationError:
+    def explained_error(self, error: ConfigurationError) -> ConfigurationError:
         """Return the error of an iterate that is no car: of the target whose parameter it names, with its interval."""
         for index, target in enumerate(self.targets):
             names = (option(target.name), *(path.removesuffix(".z") for path in target.paths))
             if any(name in str(error) for name in names):
-                return self.unreachable(index)
+                return self.unreachable_error(index)
         values = ", ".join(f"{option(target.name)} {target.value:.4g}" for target in self.targets)
         return ConfigurationError(f"with {values}: {error}")
 

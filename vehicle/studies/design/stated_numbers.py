@@ -95,7 +95,7 @@ class StatedNumbers:
         above=0.0,
         default=None,
     )
-    car_class: str | None = quantity("-", "class of the car, whose numbers count where none are stated", default=None)
+    car_class: str | None = quantity("-", "class of the car, for default numbers", default=None)
     of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
