@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.names import point_words
 from vehicle.runs.car.car_data import CarData
-from vehicle.runs.car.motion_valuess import MINIMUM_SHARE, MotionFigure
+from vehicle.runs.car.motion_figures import MINIMUM_SHARE, MotionFigure
 from vehicle.runs.car.usual_figures import axle_figures, car_figures, motion_values, usual_figures, usual_range
 
 SOURCE_WIDTH = 60

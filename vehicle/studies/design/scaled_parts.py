@@ -16,8 +16,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import paths, value_at
 from vehicle.model.parameters.toml_file import copy_table
+from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.model.parameters.whole_body import put
 from vehicle.studies.design.moved_points import Sources
 from vehicle.studies.design.template_car import TemplateCar
@@ -48,6 +50,9 @@ def scaled_parts(
         template: the template car.
         ratio: kerb mass of the new car over that of the template.
         powertrain: False for a powertrain that is not that of the template.
+
+    Raises:
+        ConfigurationError: a scaled part is outside the range of its parameter.
     """
     sources, table = Sources(), copy_table(table)
     for path, exponent in _exponents(template, powertrain=powertrain):
@@ -59,6 +64,13 @@ def scaled_parts(
         numbers = [float(f"{factor * number:.12g}") for number in (value if several else [value])]
         put(table, {path: numbers if several else numbers[0]})  # type: ignore[dict-item]
         sources[path] = f"template {template.name} times {factor:g}, scaled by the kerb mass"
+    try:
+        vehicle_of(table, template.file.parent)
+    except ConfigurationError as error:
+        raise ConfigurationError(
+            f"--kerb-mass: parts of {template.name} scaled by {ratio:.3g} are those of no car: {error}; state a mass "
+            "nearer to that of the template, or start from another car"
+        ) from None
     return table, sources
 
 
