@@ -26,6 +26,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.fuzz_files import file_case, judge_file, largest_memory
+from tests.patience import HANG
 from vehicle.commands import comfort, modes, shaker, sweep
 from vehicle.commands.command_line import FAULT
 from vehicle.model.parameters.shipped import FOCUS_FILE
@@ -33,8 +34,6 @@ from vehicle.signals.excitation.random_road import random_road
 
 CODES = {0, 2, 3, 4, 5, 6}
 """Exit codes of the contract; 130 needs an interruption."""
-PATIENCE = 60
-"""Longest time of a case [s]: a hang, even on a busy machine."""
 
 WORDS = (
     "nan", "inf", "-inf", "1e400", "-1", "0", "1e-300", "1e300", "1e30", "true", "''", '"x"', "[", "]", "[1,2]", "{}",
@@ -209,7 +208,7 @@ def run_case(index: int, only: str = "") -> Outcome:
             Path("good.csv").write_text(SIGNAL, encoding="utf-8")
             command, arguments = KINDS[kind](rng)
             memory = largest_memory()
-            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), deadline(PATIENCE):
+            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), deadline(HANG):
                 code = command(arguments)
             said = (code, out.getvalue(), err.getvalue())
             wrong = judge_file(*said, memory) if kind == "file" else judge(*said)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import HANG
 from vehicle.commands import OLDER
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -279,15 +280,15 @@ def test_importing_the_package_loads_nothing_heavy():
         "print(sorted({name.split('.')[0] for name in sys.modules} & "
         "{'mujoco', 'numpy', 'scipy', 'matplotlib', 'trimesh', 'mediapy', 'OpenGL'}))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0 and done.stdout.strip() == "[]", done.stdout + done.stderr
     # Most of the time of an import would be scipy.signal: written scipy.signal.welch, it is loaded where it is used.
     late = {"scipy.signal", "scipy.stats", "scipy.fft", "scipy.interpolate", "scipy.optimize", "matplotlib"}
     code = f"import sys, vehicle.runs.car; print({late} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     assert done.stdout.strip() == "set()", done.stdout + done.stderr
     code = "import sys, vehicle; print('vehicle.shaker' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     assert done.stdout.strip() == "False", done.stderr
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 import vehicle
+from tests.patience import HANG
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "vehicle" / "__init__.py"
@@ -63,7 +64,7 @@ def test_the_package_is_imported_without_any_of_its_modules() -> None:
         "vehicle.DataError; print(sorted(name for name in sys.modules if name.startswith('vehicle.')))\n"
         "import vehicle.sweep, vehicle.comfort; print(callable(vehicle.sweep), callable(vehicle.evaluate_comfort))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
         f"[] {len(vehicle.__all__)}",

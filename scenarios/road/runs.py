@@ -18,6 +18,7 @@ from vehicle.errors import SimulationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.road import lifting_tyres
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
@@ -263,10 +264,4 @@ def all_friction(vehicle: Vehicle, friction: float) -> tuple[str, ...]:
 
 def one_sided_tyres(vehicle: Vehicle) -> tuple[str, ...]:
     """Return the overrides that let all tyres of a car lift off."""
-    rolling = {wheel.part for wheel in vehicle.composition.wheels}
-    paths = dict.fromkeys(
-        connection.path
-        for connection in vehicle.composition.connections
-        if connection.ground and connection.moving in rolling
-    )
-    return tuple(f"{path}.one_sided=true" for path in paths)
+    return tuple(f"{path}.one_sided=true" for path in lifting_tyres(vehicle))

@@ -37,8 +37,6 @@ def test_benchmark_prints_and_compares(tmp_path, capsys, monkeypatch):
     assert (found["rows"], found["dof"]) == (66, 63)
     assert (found["four_wheel_rows"], found["four_wheel_dof"]) == (120, 113)
     assert all(found[name] > 0.0 for name in TIMES)
-    assert found["import_ms"] < 50.0 and found["first_car_ms"] < 1100.0
-    assert found["first_car_ms"] < found["shaker_ms"]
     for parts in (found["parts_us"], found["plain_parts_us"]):
         assert set(parts) == {"step", *speed.PARTS} and all(value > 0.0 for value in parts.values())
         assert sum(parts[name] for name in speed.PARTS) <= parts["step"]

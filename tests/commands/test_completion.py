@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import HANG
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS
 
@@ -30,7 +31,7 @@ def completed(script, line):
         f"source {script}; COMP_WORDS=({' '.join(repr(word) for word in words)}); COMP_CWORD={len(words) - 1}; "
         "_vehicle; printf '%s\\n' \"${COMPREPLY[@]}\""
     )
-    done = subprocess.run(["bash", "--norc", "-c", code], capture_output=True, text=True, timeout=30, check=True)
+    done = subprocess.run(["bash", "--norc", "-c", code], capture_output=True, text=True, timeout=HANG, check=True)
     assert done.stderr == ""
     return done.stdout.split()
 
@@ -65,7 +66,7 @@ def test_bash_completes(script, line, words):
 
 def test_the_script_is_registered(script):
     code = f"source {script}; complete -p vehicle python python3"
-    done = subprocess.run(["bash", "--norc", "-c", code], capture_output=True, text=True, timeout=30, check=True)
+    done = subprocess.run(["bash", "--norc", "-c", code], capture_output=True, text=True, timeout=HANG, check=True)
     names = ("vehicle", "python", "python3")
     assert done.stdout.splitlines() == [f"complete -o default -F _vehicle {name}" for name in names]
 

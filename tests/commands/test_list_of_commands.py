@@ -15,6 +15,7 @@ import pytest
 
 from scenarios.global_sensitivity import parser as global_sensitivity_parser
 from scenarios.study import study_parser
+from tests.patience import HANG
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS, OLDER, module_of
 
@@ -74,7 +75,7 @@ def test_modules_run_as_commands(name, tmp_path):
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=HANG,
     )
     assert done.returncode == 2 and done.stdout == ""
     assert done.stderr.startswith("error: ") and done.stderr.endswith(f"see python -m vehicle {name} --help\n")

@@ -11,6 +11,7 @@ import pytest
 
 import vehicle
 from tests.documentation.pages import DOCS, ROOT, pages
+from tests.patience import HANG
 
 pytest.importorskip("sphinx", reason="sphinx is missing: pip install 'vehicle-on-shaker[docs]'")
 
@@ -22,7 +23,7 @@ def site(tmp_path_factory):
     (line,) = re.findall(r"^\t\$\(BIN\)/python (-m sphinx .*)$", (ROOT / "Makefile").read_text("utf-8"), re.MULTILINE)
     words = [str(folder) if word == "docs/_build/html" else word for word in shlex.split(line)]
     words[words.index("-b") : words.index("-b")] = ["-d", str(tmp_path_factory.mktemp("doctrees"))]
-    done = subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, timeout=300, check=False)
+    done = subprocess.run([sys.executable, *words], cwd=ROOT, capture_output=True, text=True, timeout=HANG, check=False)
     assert done.returncode == 0, done.stderr
     return folder
 

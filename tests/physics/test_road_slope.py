@@ -109,8 +109,8 @@ def test_engines_agree_on_a_small_cleat() -> None:
 
 
 def test_engines_agree_on_a_cleat_but_for_products_of_motions() -> None:
-    """20 x 50 mm: RMS of the part that changes its sign with the road, of every channel."""
-    drive = Road("cleat:20x50@15", speed=30.0, duration=3.5).under(Car.load("focus_road").vehicle)
+    """20 x 50 mm and linear tyres: RMS of the part that changes its sign with the road, of every channel."""
+    drive = Road("cleat:20x50@15", speed=30.0, duration=3.5).under(Car.load("focus_road").vehicle, ["one_sided=false"])
     car, signal = Car.load("focus_road", [*drive.overrides, "solver.timestep=2.5e-4"]), drive.signal()
     down = replace(
         signal,

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from tests.engines.simulation.python_form import PythonRows
+from tests.patience import HANG
 from tests.system.conftest import csv_text
 from vehicle.signals.excitation.random_road import random_road
 
@@ -158,13 +159,13 @@ def test_item_38_interrupt(tmp_path):
         stderr=subprocess.PIPE,
         text=True,
     )
-    deadline = time.monotonic() + 60.0
+    deadline = time.monotonic() + HANG
     while not list(tmp_path.glob("runs/.high.*.partial")) and time.monotonic() < deadline:
         time.sleep(0.05)
     assert list(tmp_path.glob("runs/.high.*.partial")), "the run never began"
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=20)
+    _, said = process.communicate(timeout=HANG)
     assert process.returncode == 130
     assert said.strip().splitlines()[-1] == "error: interrupted; nothing half-written is left behind"
     assert not list(tmp_path.glob("runs/*")) and not list(tmp_path.glob("runs/.*"))
@@ -190,7 +191,7 @@ def test_item_39_closed_pipe(tmp_path):
         env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=HANG,
     )
     assert done.stderr == "" and done.stdout.strip() in {"0", "6"}
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import HANG
 from vehicle import compiler
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -68,7 +69,7 @@ def test_the_next_process_finds_it(tmp_path):
     said = []
     for _ in range(2):
         done = subprocess.run(
-            [sys.executable, "-c", SECOND_PROCESS], env=environment, capture_output=True, text=True, timeout=120
+            [sys.executable, "-c", SECOND_PROCESS], env=environment, capture_output=True, text=True, timeout=HANG
         )
         assert done.returncode == 0 and done.stderr == "", done.stderr
         said.append(done.stdout.strip())

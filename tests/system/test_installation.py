@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import HANG
+
 ROOT = Path(__file__).resolve().parents[2]
 INSTALL = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps", "--no-index"]
 
@@ -39,9 +41,9 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
     # Offline, with the setuptools of this environment.
     build = [*INSTALL[:-3], "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", str(tmp_path), str(source)]
     build[build.index("install")] = "wheel"
-    subprocess.run(build, cwd=here, check=True, capture_output=True, timeout=300)
+    subprocess.run(build, cwd=here, check=True, capture_output=True, timeout=HANG)
     (wheel,) = tmp_path.glob("*.whl")
-    subprocess.run([*INSTALL, "--target", str(installed), str(wheel)], cwd=here, check=True, timeout=300)
+    subprocess.run([*INSTALL, "--target", str(installed), str(wheel)], cwd=here, check=True, timeout=HANG)
     names = zipfile.ZipFile(wheel).namelist()
     # Every file, data too: a pattern of package-data that fits no file says nothing.
     shipped = {path.relative_to(source).as_posix() for path in (source / "vehicle").rglob("*") if path.is_file()}
@@ -55,7 +57,7 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
             env={**os.environ, "PYTHONPATH": str(installed)},
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=HANG,
         )
 
     done = run("modes", "--json")

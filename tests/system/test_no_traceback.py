@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from tests.patience import HANG
 from tests.system.conftest import csv_text
 from tests.system.test_bad_inputs import GOOD, ROOT
 from vehicle.commands.command_line import FAULT, run_command
@@ -120,7 +121,7 @@ def test_closed_and_full_streams(redirection, tmp_path):
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=HANG,
     )
     assert done.returncode == (0 if redirection == "2>&-" else 6)
     assert done.stderr.count("\n") == (0 if "2>&-" in redirection else 1)

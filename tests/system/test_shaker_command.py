@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from tests.benchmarks.frf_accuracy import banded_input
+from tests.patience import HANG
 from vehicle.errors import DataError
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.template import SHIPPED
@@ -96,7 +97,7 @@ def test_without_figures_the_other_files_are_the_same_and_no_drawing_library_is_
             env=os.environ | {"PYTHONPATH": str(ROOT)},
             capture_output=True,
             text=True,
-            timeout=300,
+            timeout=HANG,
         )
         printed.append(done.stdout.strip() + done.stderr)
     assert printed == ["0 []", "0 ['matplotlib']"]

@@ -14,6 +14,7 @@ import scipy.linalg
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 from tests.benchmarks.blas_threads import Server, jobs
+from tests.patience import HANG
 from vehicle import threads
 from vehicle.threads import THREADS, one_blas_thread, prefer_one_thread
 
@@ -119,7 +120,7 @@ def test_libraries_are_found_whatever_is_imported_first(first):
         "with one_blas_thread(): print(len(libraries) > 0, {library.num_threads for library in libraries})\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True, cwd=ROOT
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, check=True, cwd=ROOT
     )
     assert done.stdout.strip() == "True {1}"
 

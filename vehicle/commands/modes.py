@@ -69,7 +69,8 @@ def _job(options: argparse.Namespace) -> None:
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
-    figures, reason = (), ""
+    figures: Sequence[MotionFigure] = ()
+    reason = ""
     try:
         figures = motion_figures(car, [options.damper])
     except SimulationError as error:

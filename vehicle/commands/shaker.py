@@ -102,11 +102,16 @@ def parser() -> Parser:
     film.add_argument(
         "--video-duration",
         type=float,
-        default=10.0,
         metavar="S",
-        help="length of the film [s], 10 by default; slow motion shows less of the record in it",
+        help="length of the film [s], 10 by default, shorter for a bump or an obstacle; slow motion shows less of the "
+        "record in it",
     )
-    film.add_argument("--slow-motion", type=float, default=1.0, metavar="N", help="play N times slower; 1 by default")
+    film.add_argument(
+        "--slow-motion",
+        type=float,
+        metavar="N",
+        help="play N times slower; by default 1, or as much as a wheel that moves faster than 15 Hz needs",
+    )
     film.add_argument("--exaggeration", type=float, metavar="N", help="motion N times larger; chosen by default")
     measured_options(parser)
     report_option(parser, "one HTML file with findings, figures, moving modes and tables", "the run")
@@ -237,7 +242,8 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
             f"--wheel {options.wheel}: {options.input} names the wheels of its columns; leave --wheel out"
         )
     if options.video_start is not None:
-        latest = signal.duration - options.video_duration / options.slow_motion
+        chosen = options.video_duration is not None and options.slow_motion is not None
+        latest = signal.duration - (options.video_duration / options.slow_motion if chosen else 0.0)
         if not 0.0 <= options.video_start <= latest:
             raise ConfigurationError(
                 f"--video-start {options.video_start:g}: the excerpt must lie in the record, so give 0 to {latest:g} s"

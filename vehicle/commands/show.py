@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import json
+import sys
 from typing import Any
 
 from vehicle.commands.command_line import command
@@ -36,6 +37,7 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
+    from vehicle.model.parameters.idle import idle_parameters
     from vehicle.runs.car import Car
 
     if options.search is not None and options.output is not None:
@@ -51,6 +53,8 @@ def _job(options: argparse.Namespace) -> None:
 
         write_car(folder, car, data, force=options.force)
     print(json.dumps(data.summary(), indent=2, allow_nan=False) if options.json else data)
+    for notice in idle_parameters(car.vehicle, car.overrides):
+        print(f"note: {notice}", file=sys.stderr if options.json else sys.stdout)
 
 
 def _print_parameters(car: Any, options: argparse.Namespace) -> None:

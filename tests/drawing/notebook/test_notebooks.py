@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.patience import HANG
+
 nbclient = pytest.importorskip("nbclient", reason="nbclient is missing: pip install 'vehicle-on-shaker[notebook]'")
 nbformat = pytest.importorskip("nbformat", reason="nbformat is missing: pip install 'vehicle-on-shaker[notebook]'")
 
@@ -44,5 +46,5 @@ def test_a_notebook_runs_and_says_what_it_said(path, tmp_path, monkeypatch):
     fresh = nbformat.read(path, as_version=4)
     for cell in fresh.cells:
         cell.get("outputs", []).clear()
-    nbclient.NotebookClient(fresh, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    nbclient.NotebookClient(fresh, timeout=HANG, resources={"metadata": {"path": str(tmp_path)}}).execute()
     assert kinds(fresh.cells) == kinds(committed.cells)

@@ -18,7 +18,7 @@ from vehicle.errors import ConfigurationError, OutputError
 
 
 def shot(run, **options):
-    return Shot(run, Layout(width=320, height=180), Take(**{"duration": 0.2, **options}))
+    return Shot(run, Layout(width=320, height=180), Take(**{"duration": 0.2, "slow": 1.0, **options}))
 
 
 @pytest.mark.render
@@ -26,7 +26,7 @@ def shot(run, **options):
 def test_film_is_playable(run, tmp_path):
     path = tmp_path / "film.mp4"
     fractions: list[float] = []
-    cut = film(run, path, Take(duration=0.2), size=(320, 180), progress=fractions.append)
+    cut = film(run, path, Take(duration=0.2, slow=1.0), size=(320, 180), progress=fractions.append)
     done = subprocess.run(
         [find_ffmpeg(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"], capture_output=True, check=True
     )
@@ -58,7 +58,7 @@ def test_a_frame_depends_on_the_recording_alone(run):
 def test_an_unwritable_film_is_an_output_error(run, tmp_path):
     path = tmp_path / "missing" / "film.mp4"
     with pytest.raises(OutputError, match=r"film\.mp4: the film cannot be written"):
-        film(run, path, Take(duration=0.1), size=(320, 180))
+        film(run, path, Take(duration=0.1, slow=1.0), size=(320, 180))
     assert not path.exists()
 
 
@@ -69,7 +69,7 @@ def test_an_interrupted_film_leaves_nothing_behind(run, tmp_path):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        film(run, tmp_path / "film.mp4", Take(duration=0.1), size=(320, 180), progress=interrupt)
+        film(run, tmp_path / "film.mp4", Take(duration=0.1, slow=1.0), size=(320, 180), progress=interrupt)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 
 from tests.drawing.rendering.conftest import FakeCar, FakeRun, fabricated
 from vehicle.drawing.rendering import plots
+from vehicle.drawing.rendering.excerpt import liveliest_window
 from vehicle.drawing.rendering.figure import FADED, wrapped_phase
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import distinct, envelope, plot_frf, plot_time
-from vehicle.drawing.rendering.recorded_run import excerpt_start, liveliest
+from vehicle.drawing.rendering.recorded_run import liveliest
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
@@ -210,7 +211,7 @@ def test_liveliest_stretch():
 
 
 def test_without_slip_the_knuckle_decides(run):
-    start, reason = excerpt_start(run.recording, "fl", "knuckle_fl_acc_z", 1.0, 0.1)
+    start, reason = liveliest_window(run.recording, "fl", "knuckle_fl_acc_z", 1.0, 0.1)
     assert reason == "liveliest knuckle; no slip"
     assert 0.0 <= start <= 0.2
 

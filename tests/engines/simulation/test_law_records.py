@@ -12,6 +12,7 @@ import numpy as np
 
 from tests.engines.simulation.python_form import difference
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_free_body, element_law, empty_spec
+from tests.patience import HANG
 from vehicle.engines.simulation.callbacks import compiled_rows
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -111,6 +112,6 @@ def test_a_friction_law_with_40_numbers_of_its_own(tmp_path: Path) -> None:
     edit(laws / "damper.py", last, f"{last}            *range(40),\n")
     environment = os.environ | {"PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     done = subprocess.run(
-        [sys.executable, "-c", CHECK], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
+        [sys.executable, "-c", CHECK], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=HANG
     )
     assert done.returncode == 0, done.stderr

@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 import subprocess
 
+from tests.patience import HANG
+
 CELL = 0.3
 NX, NY, NZ = 13, 5, 5
 DENSITY, POINT_MASS = 100.0, 16.4
@@ -69,5 +71,5 @@ def write_deck(path, modulus=1.7e8, matrices=True):
 
 def run(folder, name):
     """Run CalculiX on a deck; on failure, show the end of its output."""
-    done = subprocess.run(["ccx", name], cwd=folder, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(["ccx", name], cwd=folder, capture_output=True, text=True, timeout=HANG)
     assert "Job finished" in done.stdout, done.stdout[-2000:]

@@ -10,6 +10,7 @@ import urllib.request
 
 import pytest
 
+from tests.patience import HANG
 from vehicle import read_signal
 from vehicle.errors import ConfigurationError
 from vehicle.runs.bench.drive import bench_drive
@@ -73,8 +74,8 @@ class Bench:
             msgspec.msgpack.encode({"type": "GuiUpdateMessage", "uuid": handle._impl.uuid, "updates": {"value": value}})
         )
 
-    def wait_for(self, condition, seconds=10.0):
-        until = time.monotonic() + seconds
+    def wait_for(self, condition):
+        until = time.monotonic() + HANG
         while not condition():
             assert time.monotonic() < until, "the page does not follow"
             time.sleep(0.02)
@@ -94,26 +95,26 @@ def bench(car, tmp_path_factory):
     close_server(bench.server)
 
 
-def received(client, seconds=2.0):
+def received(client):
     """First message of the server."""
-    return client.recv(timeout=seconds)
+    return client.recv(timeout=HANG)
 
 
 def test_the_server_listens_on_this_machine_alone(bench):
     # A server on all addresses would answer here too.
     with pytest.raises(ConnectionRefusedError):
-        socket.create_connection(("127.0.0.2", bench.port), timeout=5)
+        socket.create_connection(("127.0.0.2", bench.port), timeout=HANG)
 
 
 def test_the_page_is_served_behind_the_token_alone(bench):
     address = bench.guard.address(bench.port)
-    with urllib.request.urlopen(address, timeout=10) as answer:
+    with urllib.request.urlopen(address, timeout=HANG) as answer:
         assert b"<html" in answer.read()[:2000].lower()
         assert answer.headers["X-Frame-Options"] == "DENY" and answer.headers["Referrer-Policy"] == "no-referrer"
     root = f"http://127.0.0.1:{bench.port}"
     for path in ("/", "/index.html", f"/x{bench.guard.token}/", f"/{bench.guard.token}/../../server.py"):
         with pytest.raises(urllib.error.HTTPError) as caught:
-            urllib.request.urlopen(f"{root}{path}", timeout=10)
+            urllib.request.urlopen(f"{root}{path}", timeout=HANG)
         with caught.value:
             assert caught.value.code in (403, 404)
 
@@ -202,7 +203,7 @@ def test_a_searched_parameter_gets_a_slider(bench):
     with bench.client() as client:
         bench.send(client, bench.page.state.setting(path).value + 0.01, path)
         bench.wait_for(lambda: path in bench.page.state.changes)
-        bench.wait_for(lambda: path in bench.page._table.content, 60.0)
+        bench.wait_for(lambda: path in bench.page._table.content)
     bench.page._reset()
     bench.wait_for(lambda: "**A** unchanged" in bench.page._table.content)
 

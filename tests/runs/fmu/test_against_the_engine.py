@@ -41,9 +41,12 @@ STRIBECK: dict[str, Any] = {
 
 
 def on_road(name: str, level: str, overrides: tuple[str, ...] = ()) -> tuple[Car, Signal]:
-    """Return a car on a road or an obstacle with rolling tyres, and the road under its wheels."""
+    """Return a car on a road or an obstacle with rolling tyres, and the road under its wheels.
+
+    An FMU contains linear tyres, so an obstacle does not lift them here.
+    """
     car = Car.load(name, overrides)
-    ride = Road(level, speed=80, duration=SECONDS + 0.1).under(car.vehicle, car.overrides)
+    ride = Road(level, speed=80, duration=SECONDS + 0.1).under(car.vehicle, (*car.overrides, "one_sided=false"))
     return car.with_(ride.overrides), ride.signal()
 
 

@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.patience import HANG
+
 
 def picture(browser) -> np.ndarray:
     """The canvas of the modes as it is seen."""
@@ -52,10 +54,10 @@ def test_the_policy_of_the_page_lets_nothing_in(browser):
 
 
 def test_a_mode_moves_and_stops(browser):
-    first = picture(browser)
-    time.sleep(0.4)
-    second = picture(browser)
-    assert np.mean(np.abs(first - second).max(axis=2) > 30) > 0.002
+    first, late = picture(browser), time.monotonic() + HANG
+    while not np.mean(np.abs(first - picture(browser)).max(axis=2) > 30) > 0.002:
+        assert time.monotonic() < late, "the mode stands still"
+        time.sleep(0.1)
     press(browser, "play")
     still = picture(browser)
     assert np.array_equal(still, picture(browser))
@@ -134,6 +136,6 @@ def fill_of_pages(pdf: Path) -> list[float]:
     """Height down to the last ink of each page over the height of the page."""
     if shutil.which("pdftoppm") is None:
         pytest.skip("pdftoppm is not installed: tools/system-libraries.sh tests installs it")
-    subprocess.run(["pdftoppm", "-r", "20", "-gray", str(pdf), str(pdf.with_suffix(""))], check=True, timeout=60)
+    subprocess.run(["pdftoppm", "-r", "20", "-gray", str(pdf), str(pdf.with_suffix(""))], check=True, timeout=HANG)
     pages = [np.asarray(Image.open(path)) for path in sorted(pdf.parent.glob(f"{pdf.stem}-*.pgm"))]
     return [float(np.flatnonzero((page < 200).any(axis=1)).max() / len(page)) for page in pages]

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.patience import HANG
 from vehicle.drawing.rendering.backend import find_ffmpeg
 from vehicle.runs.report.film_section import BUDGET, embedded, film
 from vehicle.runs.report.finished_run import read_run
@@ -55,7 +56,7 @@ def test_a_large_film_is_encoded_again_with_all_frames_and_the_same_bytes(large_
         "gray",
         "-",
     ]
-    raw = subprocess.run(command, capture_output=True, check=True, timeout=60).stdout
+    raw = subprocess.run(command, capture_output=True, check=True, timeout=HANG).stdout
     pictures = np.frombuffer(raw, dtype=np.uint8).reshape(-1, 240, 320)
     assert len(pictures) == 60
     assert pictures[30][100:140, 130:190].mean() > 200 > pictures[30][100:140, 10:60].mean(), "the square has moved"

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import scipy
 
+from tests.patience import HANG
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
@@ -356,7 +357,8 @@ def test_the_section_says_what_the_slider_did(browser, reported):
     signal = page_input(run.car, recorded_signal(run)).at_ratio()
     now = car_of(run.car, state).run(signal, engine="reduced").comfort().weighted.overall
     change = 100.0 * abs(now / total - 1.0)
-    for _ in range(100):
+    late = time.monotonic() + HANG
+    while time.monotonic() < late:
         words = browser.find_element("id", "trial-words").text
         if "100 N → 40 N" in words:
             break

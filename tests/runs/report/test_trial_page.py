@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.patience import HANG
 from tests.runs.report.test_trial import STRIBECK
 from vehicle.commands.shaker import main
 from vehicle.runs.car import Car, Road
@@ -43,11 +44,10 @@ def picture(browser: Any) -> np.ndarray:
 
 def wait(condition: Callable[[], bool]) -> None:
     """Wait until a condition holds."""
-    for _ in range(300):
-        if condition():
-            return
+    late = time.monotonic() + HANG
+    while not condition():
+        assert time.monotonic() < late, "the page did not answer"
         time.sleep(0.1)
-    pytest.fail("the page did not answer")
 
 
 def words(browser: Any) -> str:
@@ -64,8 +64,7 @@ def test_the_car_moves_and_stops(browser):
     browser.execute_script("document.getElementById('trial-picture').scrollIntoView()")
     wait(lambda: drawn(picture(browser)) > 0.005)
     first = picture(browser)
-    time.sleep(0.5)
-    assert np.mean(np.abs(first - picture(browser)).max(axis=2) > 30) > 0.002
+    wait(lambda: bool(np.mean(np.abs(first - picture(browser)).max(axis=2) > 30) > 0.002))
     browser.find_element("id", "trial-play").click()
     still = picture(browser)
     time.sleep(0.3)

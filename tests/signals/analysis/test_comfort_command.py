@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 
+from tests.patience import HANG
 from vehicle.commands.comfort import main
 from vehicle.signals.analysis.weighting import weighted_record, weighting
 
@@ -173,7 +174,7 @@ def test_the_module_runs_as_a_command_and_a_closed_pipe_is_quiet(ride):
         assert process.stderr is not None
         process.stdout.close()  # nobody reads: what `| head -0` does
         assert "Error" not in process.stderr.read()
-        assert process.wait(timeout=60) == 6
+        assert process.wait(timeout=HANG) == 6
 
 
 @pytest.mark.parametrize("skip", ["-5", "nan", "60"])

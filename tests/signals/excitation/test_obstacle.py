@@ -154,3 +154,18 @@ def test_obstacles_need_no_more_than_1_khz(rolling_at_30, text) -> None:
     assert values["vdv"]["seat_rail"]["z"] > 2.0 * 0.76  # of the mean over the contact patch
     assert set(values["knuckle_peak"]) == {"fr", "fl", "rr", "rl"}
     assert values["settling_s"]["seat_rail"] is not None
+
+
+def test_an_obstacle_lifts_tyres_unless_the_user_decides():
+    """Rear tyres of `focus_road` pulled at a cleat of 20 mm with up to 1400 N."""
+    vehicle = Car.load("focus_road").vehicle
+    lifting = ("front.bushings.tyre.one_sided=true", "rear.bushings.tyre.one_sided=true")
+    cleat = Road("cleat:20x50", speed=30)
+    assert cleat.under(vehicle).overrides[1:] == lifting
+    for overrides in (["*.bushings.tyre.one_sided=false"], ["front.bushings.tyre.one_sided=true"]):
+        assert len(cleat.under(vehicle, overrides).overrides) == 1
+    assert len(Road("C", speed=30).under(vehicle).overrides) == 1
+    run = Car.load("focus_road").run(cleat, engine="reduced")
+    wheels = run.car.vehicle.wheels
+    assert min(np.min(run[f"tyre_{wheel}_force_z"]) for wheel in wheels) >= -1e-9
+    assert any("left its plate" in notice for notice in run.recording.statistics.notices)

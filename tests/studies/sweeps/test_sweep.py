@@ -14,8 +14,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from tests.patience import HANG
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, Worker, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
@@ -222,12 +224,12 @@ def test_a_killed_sweep_keeps_its_rows_leaves_no_worker_and_goes_on(tmp_path):
     marker = f"SWEEP_TEST={tmp_path}"
     environment = os.environ | {"PYTHONPATH": str(ROOT), "SWEEP_TEST": str(tmp_path)}
     process = subprocess.Popen([sys.executable, str(script)], env=environment)
-    rows, patience = folder / "rows.jsonl", time.monotonic() + 150.0
+    rows, patience = folder / "rows.jsonl", time.monotonic() + HANG
     while time.monotonic() < patience and (not rows.exists() or rows.read_bytes().count(b"\n") < 3):
         time.sleep(0.05)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    patience = time.monotonic() + 60.0
+    patience = time.monotonic() + HANG
     while running(marker) and time.monotonic() < patience:
         time.sleep(0.1)
     assert running(marker) == []
@@ -311,7 +313,7 @@ def test_a_worker_that_joins_a_running_sweep_is_used():
         if not joined:
             cluster.scale(2)
             with distributed.Client(cluster.scheduler_address, set_as_default=False) as client:
-                client.wait_for_workers(2, timeout=60)
+                client.wait_for_workers(2, timeout=HANG)
             joined.append(time.time())
 
     options: dict[str, Any] = {"dashboard_address": None, "worker_dashboard_address": None, "silence_logs": 50}
@@ -324,14 +326,19 @@ def test_a_worker_that_joins_a_running_sweep_is_used():
     processes, times = table.column("process"), table.column("time")
     assert len(set(processes)) == 2
     later = max(set(processes), key=lambda process: times[processes == process].min())
-    assert times[processes == later].min() - joined[0] < 10.0
+    # Each run waits for 0.3 s: of 39 runs that remain, the second worker takes its part, whatever the machine does.
+    assert np.count_nonzero(processes == later) >= 8
+    assert times[processes == later].min() > joined[0]
 
 
 def test_a_run_that_hangs_is_a_failed_row(tmp_path):
-    hanging = ShortRoad(name="hanging", wait=600.0)
+    hanging = ShortRoad(name="hanging", wait=10.0 * HANG)
     cases = grid({"damper.viscous": [2000.0]}, [ShortRoad(), hanging, ShortRoad(seed=2)], engine="reduced")
-    table = sweep(cases, Peak(), jobs=1, time_limit=8.0)
-    assert [result.reason for result in table.results] == ["", overdue(8.0), ""]
+    began = time.monotonic()
+    sweep(cases[:1], Peak(), jobs=1, time_limit=HANG)
+    limit = 4.0 * (time.monotonic() - began)
+    table = sweep(cases, Peak(), jobs=1, time_limit=limit)
+    assert [result.reason for result in table.results] == ["", overdue(limit), ""]
 
 
 def test_a_cluster_without_response_is_named(monkeypatch):

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from vehicle.drawing.rendering.backend import choose_backend, find_ffmpeg
 from vehicle.drawing.rendering.crew import drawn_by
+from vehicle.drawing.rendering.excerpt import FPS
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.recorded_run import RecordedRun
-from vehicle.drawing.rendering.shot import FPS, Cut, Shot, Take
+from vehicle.drawing.rendering.shot import Cut, Shot, Take
 from vehicle.errors import OutputError
 
 QUALITY = 20
@@ -33,7 +34,8 @@ def film(
     Args:
         run: the run.
         path: MP4 file.
-        take: settings of the film; by default, ten seconds with the largest motion.
+        take: settings of the film; by default, ten seconds with the largest motion, or a single event, in slow motion
+            where a wheel moves fast.
         size: width and height [pixel], even.
         jobs: number of drawing processes, which does not change the film. A script with several processes needs an
             `if __name__ == "__main__":` block.

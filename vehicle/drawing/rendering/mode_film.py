@@ -17,11 +17,11 @@ from vehicle.drawing.rendering.cameras import whole_car
 from vehicle.drawing.rendering.canvas import Canvas
 from vehicle.drawing.rendering.caption import Caption
 from vehicle.drawing.rendering.drawing import Drawing
+from vehicle.drawing.rendering.excerpt import FPS
 from vehicle.drawing.rendering.film import write_film
 from vehicle.drawing.rendering.layout import OneView, Picture
 from vehicle.drawing.rendering.motion import Motion, State
 from vehicle.drawing.rendering.rounding import round_up
-from vehicle.drawing.rendering.shot import FPS
 from vehicle.drawing.rendering.stage import stage_model
 from vehicle.drawing.rendering.wireframe import car_wireframe, unit_factor
 from vehicle.engines.simulation.car_model import CarModel

@@ -1,7 +1,8 @@
-"""Protocol of a run for plots and films, and functions for its wheels and for the choice of an excerpt."""
+"""Protocol of a run for plots and films, and functions for its wheels and its liveliest moment."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -91,15 +92,27 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
         wheel: wheel of the plate.
         rms: RMS of the plate displacement [m].
     """
-    plate = 1e3 * recording[f"plate_{wheel}_displacement"]
-    largest = float(np.max(np.abs(plate, out=plate)))
-    if np.mean(plate > 0.01 * largest) < BUMP_SHARE:
-        return f"{largest:.2g} mm bump"
-    return f"RMS {1e3 * rms:.3g} mm"
+    if event_of(recording, [wheel]) is None:
+        return f"RMS {1e3 * rms:.3g} mm"
+    return f"{1e3 * np.max(np.abs(recording[f'plate_{wheel}_displacement'])):.3g} mm bump"
 
 
-BUMP_SHARE = 0.5
-"""Maximum share of the record in which the plate is displaced for a motion to count as a single bump."""
+def event_of(recording: Recording, wheels: Sequence[str]) -> tuple[float, float] | None:
+    """Return begin and end of a single event of plates [s], as a bump; None for a continuous motion or for rest.
+
+    Args:
+        recording: recording of the run.
+        wheels: wheels of the plates.
+    """
+    plates = np.abs([recording[f"plate_{wheel}_displacement"] for wheel in wheels])
+    moved = np.flatnonzero(np.any(plates > EVENT_LEVEL * plates.max(initial=0.0), axis=0))
+    if not moved.size or moved[-1] - moved[0] > EVENT_SHARE * recording.time.size:
+        return None
+    return float(recording.time[moved[0]]), float(recording.time[moved[-1]])
+
+
+EVENT_LEVEL, EVENT_SHARE = 0.1, 0.5
+"""Share of the largest displacement above which a plate takes part in an event, and maximum share of the record."""
 
 
 def liveliest(time: Vector, values: Vector, length: float) -> float:
@@ -117,22 +130,3 @@ def liveliest(time: Vector, values: Vector, length: float) -> float:
     sums = np.zeros(len(time) + 1)
     np.cumsum(values**2, out=sums[1:])
     return float(time[np.argmax(sums[count:] - sums[:-count])])
-
-
-def excerpt_start(recording: Recording, wheel: str, hub: str, slip_velocity: float, length: float) -> tuple[float, str]:
-    """Choose the time window with the largest damper motion of a wheel; without slip, with the largest knuckle motion.
-
-    Args:
-        recording: recording of the run.
-        wheel: the excited wheel.
-        hub: acceleration channel of the part that carries the wheel.
-        slip_velocity: damper velocity above which the damper slips [m/s].
-        length: length of the window [s].
-
-    Returns:
-        First time [s], and the reason for the choice.
-    """
-    velocity = recording.channels.get(f"damper_{wheel}_velocity")
-    if velocity is not None and np.any(np.abs(velocity) > slip_velocity):
-        return liveliest(recording.time, velocity, length), "most damper motion"
-    return liveliest(recording.time, recording[hub], length), "liveliest knuckle; no slip"

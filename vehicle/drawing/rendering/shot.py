@@ -15,13 +15,13 @@ from vehicle.drawing.rendering.body_wireframe import Wireframe
 from vehicle.drawing.rendering.cameras import close_up, whole_car
 from vehicle.drawing.rendering.canvas import Canvas
 from vehicle.drawing.rendering.drawing import Drawing
+from vehicle.drawing.rendering.excerpt import FPS, choose_excerpt
 from vehicle.drawing.rendering.layout import Layout, Picture
 from vehicle.drawing.rendering.motion import Motion, RecordedMotion
 from vehicle.drawing.rendering.overlay import Overlay
 from vehicle.drawing.rendering.recorded_run import (
     RecordedRun,
     dampers_of,
-    excerpt_start,
     hub_channel,
     hub_of,
     level_words,
@@ -40,7 +40,11 @@ VISIBLE_TRAVEL = 0.08
 """Travel [m] to which the largest displacement of the excerpt is exaggerated."""
 
 LARGEST_FACTOR = 1000.0
-"""Maximum automatic exaggeration, so that a car at rest stays at rest in the film."""
+"""Maximum automatic exaggeration."""
+
+AT_REST = 1e-6
+"""Maximum displacement of a car at rest [m], which is not exaggerated; static equilibrium is exact to 1e-9 m, rounding
+is below that."""
 
 FASTEST_MOTION = 40.0
 """Maximum frequency [Hz] of visible motion; the heading of a film with fewer than two frames per period states it."""
@@ -48,12 +52,11 @@ FASTEST_MOTION = 40.0
 VISIBLE_TIME = 2.0
 """Visible time of the traces in real time [s]; divided by the square root of the slow-motion factor otherwise."""
 
+LEAST_ACCELERATION = 1e-3
+"""Minimum end of the scale of an acceleration [m/s2]: a hundredth of what a person feels, so rounding stays a line."""
+
 GHOST_OPACITY = 0.22
 """Opacity of the wheel in the close-up, where it would hide the strut."""
-
-
-FPS = 30.0
-"""Frames per second of every film [Hz]."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -65,11 +68,11 @@ class Take:
     """
 
     start: float | None = None
-    """first time of the record [s]; by default, the window with the largest motion"""
-    duration: float = 10.0
-    """length of the film [s], which shows duration / slow of the record at most"""
-    slow: float = 1.0
-    """slow-motion factor, at least 1"""
+    """first time of the record [s]; by default, a single event or the window with the largest motion"""
+    duration: float | None = None
+    """length of the film [s], which shows duration / slow of the record at most; 10 s or a single event by default"""
+    slow: float | None = None
+    """slow-motion factor, at least 1; by default, real time for motion below 15 Hz (see `choose_excerpt`)"""
     exaggeration: float | None = None
     """factor of all motion; by default, the largest displacement becomes 5 to 8 cm"""
     speed: float | None = None
@@ -78,9 +81,9 @@ class Take:
     """times [s], and heights of the road itself by wheel [m]; by default, the road is drawn as the plates move"""
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.duration < np.inf:
+        if self.duration is not None and not 0.0 < self.duration < np.inf:
             raise ConfigurationError(f"film, duration: found {self.duration:g} s, must be above 0 and finite")
-        if not 1.0 <= self.slow < np.inf:
+        if self.slow is not None and not 1.0 <= self.slow < np.inf:
             raise ConfigurationError(f"film, slow motion: found {self.slow:g}, must be at least 1")
         if self.exaggeration is not None and not 0.0 < self.exaggeration < np.inf:
             raise ConfigurationError(f"film, exaggeration: found {self.exaggeration:g}, must be above 0 and finite")
@@ -132,35 +135,35 @@ class Shot:
             dampers_of(recording),
             hub_channel(vehicle.composition, run.wheel),
         )
-        record, interval = float(recording.time[-1]), 1.0 / (FPS * take.slow)
+        record = float(recording.time[-1])
         self.slip = vehicle.damper.slip_velocity
-        length = take.duration / take.slow
-        if take.start is None:
-            start, reason = excerpt_start(recording, run.wheel, self.hub, self.slip, length)
-        elif 0.0 <= take.start < record:
-            start, reason = take.start, "chosen"
-        else:
+        if take.start is not None and not 0.0 <= take.start < record:
             raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
-        length = min(length, record - start)
-        frames = max(int(length * take.slow * FPS + 1e-9), 1)
+        excerpt = choose_excerpt(
+            recording, run.wheel, self.hub, self.slip, start=take.start, duration=take.duration, slow=take.slow
+        )
+        start, slow, interval = excerpt.start, excerpt.slow, 1.0 / (FPS * excerpt.slow)
+        frames = max(int(excerpt.length * slow * FPS + 1e-9), 1)
         self.model = stage_model(run.car.model, (layout.width, layout.view_height), road=take.speed is not None)
         self.opacity = self.model.mat_rgba[:, 3].copy()  # drawing changes the values of the model
         self.unveiled = unveiled(self.model)
         self.motion = Motion(self.model)
         self.wireframe = Wireframe(run.car.model, self.motion)
-        recorded = RecordedMotion(self.model, recording, start, start + length)
+        recorded = RecordedMotion(self.model, recording, start, start + excerpt.length)
         self.states = [recorded.at(start + number * interval, interval) for number in range(frames)]
         largest, node = self._largest()
-        factor = round_factor(VISIBLE_TRAVEL / largest) if take.exaggeration is None else take.exaggeration
-        self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=reason)
+        self.rests = largest < AT_REST
+        chosen = 1.0 if self.rests else round_factor(min(VISIBLE_TRAVEL / largest, LARGEST_FACTOR))
+        factor = chosen if take.exaggeration is None else take.exaggeration
+        self.cut = Cut(start=start, frames=frames, interval=interval, exaggeration=factor, reason=excerpt.reason)
         self.road = None
         if take.speed is not None:
             self.road = RoadStrip(self.composition.wheels, recording, take.speed, interval, take.profile)
-        self.visible = VISIBLE_TIME / np.sqrt(take.slow)
-        self.scale_top = 1e-3 * round_up(1e3 * node)
+        self.visible = VISIBLE_TIME / np.sqrt(slow)
+        self.scale_top = 1e-3 * round_up(1e3 * max(node, AT_REST))
         self.overlay = Overlay(
             layout=layout,
-            heading=self._heading(run, take.slow),
+            heading=self._heading(run, slow),
             scale_top=1e3 * self.scale_top,
             strip=TraceStrip(layout=layout, time=recording.time, traces=self._traces(), visible=self.visible),
         )
@@ -213,9 +216,7 @@ class Shot:
         for state in self.states:
             part_displacements.append(np.linalg.norm(state.translation[moving], axis=1))
             node_displacements.append(self.wireframe.displacement(state))
-        largest = max(
-            float(np.max(part_displacements)), float(np.max(node_displacements)), VISIBLE_TRAVEL / LARGEST_FACTOR
-        )
+        largest = max(float(np.max(part_displacements)), float(np.max(node_displacements)))
         return largest, float(np.quantile(node_displacements, 0.97))
 
     def _heading(self, run: RecordedRun, slow: float) -> list[str]:
@@ -228,6 +229,8 @@ class Shot:
         if highest < FASTEST_MOTION:
             speed += f" (faster than {highest:g} Hz averages out)"
         scale = f"exaggerated {cut.exaggeration:g} times" if cut.exaggeration != 1.0 else "true to scale"
+        if self.rests:
+            scale += " (at rest)"
         road, exaggerated = [], "motion"
         if self.road is not None:
             road = [
@@ -250,15 +253,15 @@ class Shot:
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
         traces = []
         input_label = "plate [mm]" if self.road is None else "effective road [mm]"
-        for label, channel, scale, band in (
-            (input_label, f"plate_{wheel}_displacement", 1e3, None),
-            ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None),
-            (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip),
+        for label, channel, scale, band, least in (
+            (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
+            ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None, LEAST_ACCELERATION),
+            (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip, 0.0),
         ):
             if channel not in recording.channels:
                 continue
             values = scale * recording[channel]
-            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0)))
+            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0), least))
             traces.append(Trace(label=label, values=values, top=top, band=band))
         return traces
 

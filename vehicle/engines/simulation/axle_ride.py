@@ -86,7 +86,6 @@ class AxleRide:
         roll_bars: roll stiffness of the axle by springs on hinges between the sides [N m/rad].
         roll_damping: C_phi [N m s/rad].
         track: distance of the patches [m].
-        center: mean x and height of the wheel centres [m].
     """
 
     wheel: Support
@@ -98,7 +97,6 @@ class AxleRide:
     roll_bars: float
     roll_damping: float
     track: float
-    center: tuple[float, float]
 
     @property
     def ride(self) -> Support:
@@ -162,7 +160,6 @@ def axle_ride(car: CarModel, axle: str, dampers: DamperState = "sliding") -> Axl
         roll_bars=arm * bars,
         roll_damping=arm * roll_damping,
         track=tracks[1],
-        center=(_mean([wheel.center[0] for wheel in wheels]), _mean([wheel.center[2] for wheel in wheels])),
     )
 
 

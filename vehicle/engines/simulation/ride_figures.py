@@ -130,7 +130,7 @@ def _axle_station(car: CarModel, axle: str, ride: AxleRide) -> Station:
     # The roll centre does not depend on the direction to the middle of the car.
     _, geometry = design_axle(car.model, car.static.preload, wheels, towards=1.0)
     return Station(
-        x=ride.center[0],
+        x=wheels[0].center[0],
         load=len(wheels) * ride.spring_load,
         vertical=ride.ride.times(len(wheels)),
         roll=ride.roll.in_series(ride.tyre_roll),

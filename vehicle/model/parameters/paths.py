@@ -256,6 +256,20 @@ def unit_of_override(vehicle: Any, path: str) -> str:
     return str(vehicle.quantity_of(first).get("unit", ""))
 
 
+def values_of_override(vehicle: Any, path: str) -> list[Any]:
+    """Return the different values that an override would replace; empty for keys that the file lacks.
+
+    Args:
+        vehicle: the vehicle.
+        path: see `meant`.
+    """
+    try:
+        values = [value_at(vehicle.table, whole) for whole in meant(vehicle.table, path)]
+    except ConfigurationError:
+        return []
+    return [value for number, value in enumerate(values) if value is not None and value not in values[:number]]
+
+
 def quantity_of(car: Any, path: str) -> Mapping[str, Any]:
     """Return the declaration of a parameter, see `quantity`: unit, meaning, range.
 

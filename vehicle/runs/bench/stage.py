@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.drawing.rendering.excerpt import FPS
 from vehicle.drawing.rendering.mode_film import EXAGGERATION, PERIOD
 from vehicle.drawing.rendering.rounding import round_factor
-from vehicle.drawing.rendering.shot import FPS, LARGEST_FACTOR, VISIBLE_TRAVEL
+from vehicle.drawing.rendering.shot import LARGEST_FACTOR, VISIBLE_TRAVEL
 from vehicle.runs.bench.car_scene import CarScene
 from vehicle.runs.bench.drive import BenchDrive
 from vehicle.runs.bench.motion import SECONDS, CarMotion

@@ -12,6 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.excitation.iso_road import Side
+from vehicle.signals.excitation.obstacle import is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.signals.records.choice import Choice
@@ -67,7 +68,8 @@ class Road:
 
         Args:
             vehicle: the car.
-            overrides: texts "path=value" with which the car was loaded; driving.speed among them decides on the tyres.
+            overrides: texts "path=value" with which the car was loaded; driving.speed and one_sided among them decide
+                on the tyres.
 
         Raises:
             ConfigurationError: a value out of range or of another type of road, or a car that cannot roll.
@@ -85,6 +87,7 @@ class Road:
             track=2.0 * sum(abs(wheel.patch[1]) for wheel in wheels) / len(wheels),
             radius=sum(wheel.center[2] - wheel.patch[2] for wheel in wheels) / len(wheels),
             driving=driving,
+            lifting=lifting_tyres(vehicle, overrides) if isinstance(road, str) and is_obstacle(road) else (),
             **self._given("duration", "rate", "seed", "coherence", "patch", "contact"),
         )
 
@@ -164,6 +167,19 @@ def road(
         tyre=tyre,
         choice=choice or Choice(),
     )
+
+
+def lifting_tyres(vehicle: Vehicle, overrides: Iterable[str] = ()) -> tuple[str, ...]:
+    """Return the paths of the linear tyres, which would pull at an obstacle; empty if the overrides decide on it.
+
+    Args:
+        vehicle: the car.
+        overrides: texts "path=value" with which the car was loaded.
+    """
+    if any(text.partition("=")[0].strip().endswith("one_sided") for text in overrides):
+        return ()
+    laws = [(each.path, each.law) for each in vehicle.composition.connections if isinstance(each.law, Tyre)]
+    return tuple(dict.fromkeys(path for path, law in laws if not law.one_sided and law.table_z is None))
 
 
 def _wheel_positions(vehicle: Vehicle) -> tuple[tuple[str, float, Side], ...]:

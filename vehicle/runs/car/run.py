@@ -245,7 +245,7 @@ class Run:
         Args:
             file: name of the film, with the ending .mp4.
             take: start, length, slow motion and exaggeration (`vehicle.drawing.rendering.shot.Take`); by default ten
-                seconds with the largest motion.
+                seconds with the largest motion, or a single event; slow where motion is fast.
             progress: called with the finished fraction.
 
         Raises:

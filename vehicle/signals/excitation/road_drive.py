@@ -71,6 +71,7 @@ class RoadDrive:
             for cams on an obstacle and the average on other roads.
         radius: radius of the tyres [m], for the cams.
         driving: speed of rolling tyres [m/s], 0 for tyres that do not roll; None for the parameter of the car.
+        lifting: paths of the tyres that can leave the road at an obstacle; a linear tyre would pull.
 
     Raises:
         ConfigurationError: a value out of range, or a coherence for a measured profile.
@@ -87,6 +88,7 @@ class RoadDrive:
     patch: float = CONTACT_PATCH
     tagged: bool = False
     driving: float | None = None
+    lifting: tuple[str, ...] = ()
     contact: str | None = None
     radius: float = RADIUS
 
@@ -151,8 +153,9 @@ class RoadDrive:
 
     @property
     def overrides(self) -> tuple[str, ...]:
-        """Parameters that the drive sets on its car, as texts of `Car.load`: the speed of rolling tyres."""
-        return () if self.driving is None else (f"driving.speed={self.driving!r}",)
+        """Parameters that the drive sets on its car, as texts of `Car.load`: speed of rolling tyres, lifting tyres."""
+        speed = () if self.driving is None else (f"driving.speed={self.driving!r}",)
+        return (*speed, *(f"{path}.one_sided=true" for path in self.lifting))
 
     def signal(self) -> Signal:
         """Generate the plate signals.
@@ -211,7 +214,7 @@ class RoadDrive:
     def identity(self) -> dict[str, object]:
         """Return all data that determine the signal: parameters, and the digest of a measured profile."""
         identity = asdict(self) | {"road": str(self.road)}
-        del identity["tagged"], identity["contact"], identity["radius"]
+        del identity["tagged"], identity["contact"], identity["radius"], identity["lifting"]
         if self.envelope is not None:
             identity["envelope"] = asdict(self.envelope)
         if isinstance(self.road, Path):

@@ -27,7 +27,8 @@ from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, i
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Variations = Mapping[str, Sequence[Any]] | Combinations | RowChanges | Sequence[Iterable[str] | Mapping[str, Any]]
-"""Path to values, run in every combination; or a list of variations, each path to value or texts "path=value"."""
+"""Path to values, run in every combination; or a list of variations, each path to value or texts "path=value"; an empty
+variation is the unchanged car."""
 
 MOST_NAMED = 3
 """Maximum number of inputs named in a message."""
@@ -113,16 +114,19 @@ def plan_sweep(
     """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`."""
     changes = changes_of(vary)
     vehicle = file_of(car)
-    require_paths(vehicle, car.overrides, changes[0])
+    require_paths(vehicle, car.overrides, _one_of_each_path(changes))
     sources = inputs_of(car, inputs)
     start = common_start(sources, skip)
     cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
-    paths = [text.partition("=")[0] for text in changes[0]]
+    paths = [text.partition("=")[0] for text in _one_of_each_path(changes)]
+    idle = _idle_notes(vehicle, car.overrides, changes)
+    if len(idle) == len(paths):
+        raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
         cases=cases,
         measure=ComfortMeasure(skip=start, seat=car.vehicle.seated) if measure is None else measure,
         skip=start,
-        notes=(*body_rules(car.vehicle, paths), *_idle_notes(vehicle, car.overrides, changes)),
+        notes=(*body_rules(car.vehicle, paths), *idle),
     )
 
 
@@ -146,7 +150,8 @@ def sweep(
     Args:
         car: car loaded by `Car.load`; its overrides apply to every run.
         vary: path to values, as {"damper.coulomb_friction": [62.5, 125]}, for every combination; or a list of
-            variations, each path to value.
+            variations, each path to value, in which {} is the car itself. If the variations of a list change different
+            parameters, the car itself is the first row without being named, so that each is compared with it.
         inputs: files or names of shipped ones, roads, signals; one or several.
         engine: as in `Car.run`.
         skip: start of the evaluation [s]; by default as in `Car.run`, on several inputs the latest of them.
@@ -160,7 +165,8 @@ def sweep(
         A row for each run with its engine, the inputs varying slowest; a failed run is a row with an error message.
 
     Raises:
-        ConfigurationError: a path does not exist, an input is missing, or `skip` is out of range.
+        ConfigurationError: a path does not exist, no varied parameter has an effect, an input is missing, or `skip` is
+            out of range.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     plan = plan_sweep(car, vary, inputs, engine=engine, skip=skip, measure=measure)
@@ -181,7 +187,9 @@ def changes_of(vary: Variations) -> Sequence[tuple[str, ...]]:
         changes = vary
     else:
         changes = [tuple(assignments(each)) for each in vary]
-    if not changes or not changes[0]:
+        if () not in changes and len({frozenset(_values(each)) for each in changes}) > 1:
+            changes = [(), *changes]
+    if not any(changes):
         raise ConfigurationError("vary: no variation; pass {PATH: [VALUE, ...]}, as {'damper.viscous': [1500, 2000]}")
     return changes
 
@@ -194,7 +202,7 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
     Args:
         vehicle: vehicle file; by default that of the Focus.
         overrides: texts "path=value" of every run.
-        changes: texts "path=value" of the first variation.
+        changes: texts "path=value".
 
     Raises:
         ConfigurationError: a path does not exist, or a value cannot be parsed.
@@ -209,16 +217,27 @@ def require_paths(vehicle: Path | None, overrides: Sequence[str], changes: Seque
 
 def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return a message for each varied parameter without effect; empty if laws vary, which may switch it on."""
-    first = _values(changes[0])
+    each = _one_of_each_path(changes)
+    first = _values(each)
     for change in changes:
-        values = _values(change)
-        different = [(first.get(path, ""), values.get(path, "")) for path in {**first, **values}]
+        different = [(first[path], value) for path, value in _values(change).items()]
         if any(old != new and (old[:1].isalpha() or new[:1].isalpha()) for old, new in different):
             return ()
     try:
-        return idle_parameters(load_vehicle(file, [*overrides, *changes[0]]), changes[0])
+        return idle_parameters(load_vehicle(file, [*overrides, *each]), each)
     except ConfigurationError:
         return ()  # the row contains the reason
+
+
+def _one_of_each_path(changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """Return the first text "path=value" of each varied parameter."""
+    if isinstance(changes, Combinations | RowChanges):
+        return tuple(changes[0])
+    first: dict[str, str] = {}
+    for change in changes:
+        for text in change:
+            first.setdefault(text.partition("=")[0].strip(), text)
+    return tuple(first.values())
 
 
 def _values(change: Sequence[str]) -> dict[str, str]:

@@ -61,6 +61,8 @@ def best_sentences(cars: RankedCars) -> list[str]:
         return ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[car], strict=True))
 
     base = f"Base car, the first of the sweep: {parameters(0)}: {values(0)}."
+    if cars.alike and len(cars.order) > 1:
+        return [f"All {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here.", base]
     if cars.best == 0:
         return [f"The base car is the most comfortable of {len(cars.order)} cars.", base]
     change = cars.change(cars.best)

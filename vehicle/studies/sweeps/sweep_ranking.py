@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.model.parameters.paths import unit_of_override
+from vehicle.model.parameters.parameter_list import value_text
+from vehicle.model.parameters.paths import unit_of_override, values_of_override
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
@@ -18,6 +19,9 @@ Vector = npt.NDArray[np.float64]
 
 RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
 """Columns by which cars are ranked: on the cushion of a car with a seat, otherwise at the seat rail."""
+
+ROUNDING = 1e-9
+"""Relative difference of two comfort values that is rounding: sums of some 1e5 samples in double precision."""
 
 SHOWN = 12
 """Maximum number of cars in the printed table."""
@@ -59,6 +63,12 @@ class RankedCars:
         """Car with the lowest weighted value."""
         return self.order[0]
 
+    @property
+    def alike(self) -> bool:
+        """True if all cars are equally comfortable, within the rounding of a run."""
+        values = self.weighted[list(self.order)]
+        return bool(np.ptp(values) <= ROUNDING * np.max(values))
+
     def change(self, car: int) -> float:
         """Return the change of the weighted value from the first car [%]; NaN without a value of the first car."""
         return 100.0 * (float(self.weighted[car]) / float(self.weighted[0]) - 1.0)
@@ -86,9 +96,13 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
         return None
     prefix = ranked_by.removesuffix(WEIGHTED)
     paths = table.paths()
+    base = table.cases[0]
+    vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
+    # A run that does not vary a parameter has the value of the car.
+    unchanged = [" or ".join(map(value_text, values_of_override(vehicle, path))) for path in paths]
     rows: dict[tuple[str, ...], list[int]] = {}
     for number, case in enumerate(table.cases):
-        cells = tuple(parameter_cells(case, paths))
+        cells = tuple(cell or own for cell, own in zip(parameter_cells(case, paths), unchanged, strict=True))
         rows.setdefault(cells, []).append(number)
     # The speed of rolling tyres is a parameter of the input: it has the same value in all cars, or in those of a road.
     varied = [column for column in range(len(paths)) if len({cells[column] for cells in rows}) > 1]
@@ -105,8 +119,6 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
     order = [int(car) for car in np.argsort(weighted, kind="stable") if math.isfinite(weighted[car])]
     if not order:
         return None
-    base = table.cases[0]
-    vehicle = load_vehicle(base.vehicle, base.overrides[: base.shared])
     return RankedCars(
         prefix=prefix,
         paths=names,
@@ -146,7 +158,9 @@ def ranking_lines(cars: RankedCars) -> list[str]:
     definitions = ", ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
     lines.append(f"{definitions}; {cars.point}{over}")
     best = ", ".join(f"{path} = {cell}" for path, cell in zip(cars.paths, cars.cells[cars.best], strict=True))
-    if best and cars.best == 0:
+    if cars.alike and len(cars.order) > 1:
+        lines.append(f"all {len(cars.order)} cars are equally comfortable: the varied parameters have no effect here")
+    elif best and cars.best == 0:
         lines.append(f"most comfortable is the first car: {best}")
     elif best:
         lines.append(f"most comfortable: {best} ({cars.change(cars.best):+.2f} % weighted)")
