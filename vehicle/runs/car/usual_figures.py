@@ -20,6 +20,9 @@ from vehicle.runs.car.axle_data import AxleData
 from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
 from vehicle.runs.car.motion_figures import MotionFigure
 
+GRAVITY = 9.81
+"""Gravity by which a load of an axle becomes a mass [m/s2]."""
+
 DEGREES = math.pi / 180.0
 """One degree [rad]."""
 
@@ -214,9 +217,12 @@ def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int)
     low, high = entry.get("all", (math.nan, math.nan))
     if isinstance(axle, AxleData):
         low, high = entry.get("front" if axle.front else "rear", (low, high))
+        load = sum(axle.load_n.values())
         if entry.get("per") == "axle load":
-            mass = sum(axle.load_n.values()) / GRAVITY
-            low, high = low * mass, high * mass
+            low, high = low * load / GRAVITY, high * load / GRAVITY
+        if not load:
+            # A car without weight is on no road.
+            low, high = math.nan, math.nan
     return UsualFigure(
         name=name.strip(),
         axle=axle.name if isinstance(axle, AxleData) else axle,
@@ -226,10 +232,6 @@ def _ranged(name: str, axle: AxleData | str, value: float | None, decimals: int)
         high=high,
         source=entry.get("source", ""),
     )
-
-
-GRAVITY = 9.81
-"""Gravity by which a load of an axle becomes a mass [m/s2]."""
 
 
 def _milli(value: float | None) -> float | None:

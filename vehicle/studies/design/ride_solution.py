@@ -236,7 +236,7 @@ class RideProblem:
             moved[column] += DIFFERENCE * factors[column]
             jacobian[:, column] = (deviation(moved) - residual) / (DIFFERENCE * factors[column])
         for _ in range(MOST_STEPS):
-            # A quantity grows with the parameter of its target.
+            # A quantity grows with the parameter of its target; pitch, which does not, meets the limits of Iyy first.
             held = ((factors <= lower) & (residual > SOLVED)) | ((factors >= upper) & (residual < -SOLVED))
             free = ~held
             if not np.any(np.abs(residual[free]) >= SOLVED):
@@ -272,16 +272,17 @@ class RideProblem:
 
     def last_car(self, bound: float) -> float:
         """Return a bound of the only factor, or the last factor between 1 and the bound at which the car can be."""
-        possible, end = 1.0, bound
+        possible, impossible, factor = 1.0, bound, bound
         for _ in range(BISECTIONS):
             try:
-                self.values(np.array([end]))
+                self.values(np.array([factor]))
             except ConfigurationError:
-                end = math.sqrt(possible * end)
-                continue
-            if end == bound:
-                return bound
-            possible, end = end, math.sqrt(end * bound)
+                impossible = factor
+            else:
+                possible = factor
+            if possible == bound:
+                break
+            factor = math.sqrt(possible * impossible)
         return possible
 
     def unreachable_error(self, index: int) -> ConfigurationError:
