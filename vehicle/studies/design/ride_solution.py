@@ -257,33 +257,50 @@ class RideProblem:
     def reachable_interval(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:
         """Return the interval that a target can reach, and the factors on its parameter at both ends.
 
-        The parameters of the other targets remain those of the table. If the car is impossible at a bound, the last
-        possible factor replaces the bound.
+        All other targets are met at both ends. If that is impossible at a bound, the last possible factor replaces it.
 
         Args:
             index: index of the target.
         """
-        target = self.targets[index]
-        single = RideProblem(table=self.table, template=self.template, targets=(target,))
-        lower, upper = single.factor_bounds()
-        ends = [single.last_car(float(bound[0])) for bound in (lower, upper)]
-        values = sorted(single.values(np.array([end]))[target.name] for end in ends)
-        return (values[0], values[-1]), (ends[0], ends[1])
+        lower, upper = self.factor_bounds()
+        ends = [self.last_end(index, float(bound[index])) for bound in (lower, upper)]
+        values = sorted(value for _, value in ends)
+        return (values[0], values[-1]), (ends[0][0], ends[1][0])
 
-    def last_car(self, bound: float) -> float:
-        """Return a bound of the only factor, or the last factor between 1 and the bound at which the car can be."""
-        possible, impossible, factor = 1.0, bound, bound
+    def value_at_factor(self, index: int, factor: float) -> float:
+        """Return the quantity of a target with a factor on its parameter, all other targets met.
+
+        Raises:
+            ConfigurationError, SimulationError: the other targets cannot be met.
+        """
+        target, others = self.targets[index], (*self.targets[:index], *self.targets[index + 1 :])
+        table = scaled(self.table, [target], np.array([factor]))
+        # Of the target itself only the limits of its parameter count.
+        _require_inertia(table, [target])
+        problem = RideProblem(table=table, template=self.template, targets=others)
+        factors, unreached = problem.solved_factors()
+        if unreached is not None:
+            raise ConfigurationError(f"{option(others[unreached].name)}: out of reach")
+        return problem.values(factors)[target.name]
+
+    def last_end(self, index: int, bound: float) -> tuple[float, float]:
+        """Return factor and quantity at a bound, or at the last factor between 1 and the bound that is possible.
+
+        Raises:
+            ConfigurationError, SimulationError: a factor of 1 is impossible too.
+        """
+        possible, impossible, factor, value = 1.0, bound, bound, math.nan
         for _ in range(BISECTIONS):
             try:
-                self.values(np.array([factor]))
-            except ConfigurationError:
+                value = self.value_at_factor(index, factor)
+            except (ConfigurationError, SimulationError):
                 impossible = factor
             else:
                 possible = factor
             if possible == bound:
                 break
             factor = math.sqrt(possible * impossible)
-        return possible
+        return possible, value if math.isfinite(value) else self.value_at_factor(index, possible)
 
     def unreachable_error(self, index: int) -> ConfigurationError:
         """Return the error of a target that cannot be reached, with the interval and what widens it."""
