@@ -53,10 +53,13 @@ class CarRuns:
 
     def car(self, overrides: Sequence[str] = ()) -> Car:
         """Return the car with modified parameters, cached."""
-        return self.car_of((*self.overrides, *overrides))
+        changes = tuple(overrides)
+        if not changes:
+            return self._car_of(self.overrides)
+        return self._car_of(self.car().with_(changes).overrides)
 
-    def car_of(self, changes: tuple[str, ...]) -> Car:
-        """Return the car with all overrides of a case, cached."""
+    def _car_of(self, changes: tuple[str, ...]) -> Car:
+        """Return the car with all changes, cached."""
         if changes not in self._cars:
             self._cars[changes] = Car.load(self.vehicle, changes)
         return self._cars[changes]
@@ -70,7 +73,7 @@ class CarRuns:
             with process_pool(min(self.jobs, len(missing))) as pool:
                 recordings = list(pool.map(recording_of, missing.values()))
         for (key, case), recording in zip(missing.items(), recordings, strict=True):
-            car, signal = self.car_of(case.overrides), signal_of(case.source)
+            car, signal = self.car(case.overrides[case.shared :]), signal_of(case.source)
             if recording is None:
                 self._done[key] = car.run(signal, engine=case.engine)
             else:

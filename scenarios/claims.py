@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
+from scenarios.verdict import Verdict, verdict
 from vehicle.runs.output.folder import write_text
 
 Status = Literal["predicted", "fitted", "chosen", "own check", "duplicate", "not testable"]
@@ -40,7 +41,10 @@ LEGEND = (
     "bodies, was taken with it in view; `own check`: not a published result; `duplicate`: the statement of "
     "another row again; `not testable`: the source leaves out what a test needs. `source` `axis interval`: only the "
     "labels of the axes are left of the figure; the extreme of the curve lies between them. `deviation` is (ours - "
-    "published) / published where both are numbers, and from the nearer end of an interval, 0 inside."
+    "published) / published where both are numbers, and from the nearer end of an interval, 0 inside. `inside`: our "
+    "value lies in the printed interval; `within`: the row agrees by its rule, for an interval if it is not "
+    "contradicted at 5 %; `undecided`: two standard errors over seeds, roads or windows turn the verdict, or single "
+    "seeds or readings differ."
 )
 
 
@@ -53,8 +57,8 @@ class Claim:
     ours: float | str
     deviation: float | None
     """(ours - published) / published where both are numbers, that from the nearer end of an interval, else None."""
-    within: bool | None
-    """True if our value agrees with the print by the rule in `why`; None for an untestable row."""
+    within: Verdict
+    """True if our value agrees with the print by the rule in `why`; None if undecided, or for an untestable row."""
     why: str
     status: Status
     source: Source
@@ -66,6 +70,10 @@ class Claim:
     """File name of the figure of the study that shows the row, or nothing."""
     probability: float | None = None
     """Of the interval, where ours is a spread; see `interval_probability`."""
+    inside: bool | None = None
+    """True if our value, or its mean, is inside the interval; None without interval."""
+    evidence: str = ""
+    """Key in `scenarios.evidence`, or nothing for a row that had no part in the choice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +91,7 @@ class Kind:
         tolerance: float,
         why: str,
         *,
+        error: float = 0.0,
         place: str = "",
         picture: str = "",
     ) -> Claim:
@@ -94,18 +103,19 @@ class Kind:
             ours: own value.
             tolerance: largest |ours - published|, in the unit of the value.
             why: reason of the tolerance, and of a disagreement.
+            error: standard error of our value over seeds, roads or windows, in the unit of the value.
             place: figure, table or section of the source.
             picture: file name of the figure of the study that shows the row.
         """
         deviation = float(ours - published) / published
-        within = _verdict(self.status, abs(ours - published) <= tolerance)
+        within = self._judged(verdict(lambda value: abs(value - published) <= tolerance, float(ours), error))
         value = float(ours)
         return Claim(
             name, published, value, deviation, within, why, self.status, self.source, place=place, picture=picture
         )
 
     def statement(
-        self, name: str, published: str, ours: str, holds: bool, why: str, *, place: str = "", picture: str = ""
+        self, name: str, published: str, ours: str, holds: Verdict, why: str, *, place: str = "", picture: str = ""
     ) -> Claim:
         """Return the row of a printed statement in words; arguments as for `number`.
 
@@ -113,13 +123,16 @@ class Kind:
             name: what is compared.
             published: printed statement.
             ours: own values.
-            holds: True if the statement is true of ours.
+            holds: True if the statement is true of ours, None if undecided; see `scenarios.verdict`.
             why: rule, and reason of a disagreement.
             place: figure, table or section of the source.
             picture: file name of the figure of the study that shows the row.
         """
-        within = _verdict(self.status, holds)
+        within = self._judged(None if holds is None else bool(holds))
         return Claim(name, published, ours, None, within, why, self.status, self.source, place=place, picture=picture)
+
+    def _judged(self, holds: Verdict) -> Verdict:
+        return None if self.status == "not testable" else holds
 
 
 PREDICTED, FITTED, CHOSEN = Kind("predicted", "text"), Kind("fitted", "text"), Kind("chosen", "text")
@@ -150,10 +163,11 @@ def interval_claim(
         picture: file name of the figure of the study that shows the row.
     """
     value = float(ours)
-    inside = _verdict(status, interval[0] <= value <= interval[1])
+    inside = interval[0] <= value <= interval[1]
     deviation = _interval_deviation(interval, value)
-    row = Claim(name, between(interval), value, deviation, inside, why, status, "axis interval", interval)
-    return replace(row, place=place, picture=picture)
+    within = None if status == "not testable" else inside
+    row = Claim(name, between(interval), value, deviation, within, why, status, "axis interval", interval)
+    return replace(row, inside=inside, place=place, picture=picture)
 
 
 def spread_claim(
@@ -168,8 +182,8 @@ def spread_claim(
 ) -> Claim:
     """Return the row of an extreme of a random signal that is only known to lie between two labels of an axis.
 
-    The row agrees when the probability of the interval, estimated from our values, is above 5 %. A single value is
-    compared as by `interval_claim`.
+    The row agrees when the probability of the interval, estimated from our values, is above 5 %; it is undecided where
+    that depends on the standard error of their mean. A single value is compared as by `interval_claim`.
 
     Args:
         name: what is compared, with its unit.
@@ -188,12 +202,22 @@ def spread_claim(
     probability = interval_probability(values, interval)
     text = f"{middle:.3g} +- {np.std(values, ddof=1):.2g} ({values.size} values)"
     rule = f"probability of the interval {100.0 * probability:.3g} %, must be above {100.0 * AGREES_ABOVE:g} %"
-    within = row.within if row.within is None else probability > AGREES_ABOVE
+    within = None if status == "not testable" else not_contradicted(values, interval)
     return replace(row, ours=text, within=within, why=f"{rule}; {why}", probability=probability)
 
 
-def _verdict(status: Status, holds: object) -> bool | None:
-    return None if status == "not testable" else bool(holds)
+def not_contradicted(values: npt.NDArray[np.float64], interval: Interval, error: float = 0.0) -> Verdict:
+    """Return the verdict "probability of the interval above 5 %", undecided within two standard errors of the mean.
+
+    Args:
+        values: own values of independent seeds or windows, (n,).
+        interval: lowest and highest published value.
+        error: standard uncertainty of every value from another cause than the seed.
+    """
+    mean_error = float(np.std(values, ddof=1)) / math.sqrt(values.size) if values.size > 1 else 0.0
+    return verdict(
+        lambda shift: interval_probability(values + shift, interval, error=error) > AGREES_ABOVE, 0.0, mean_error
+    )
 
 
 def _interval_deviation(interval: Interval, ours: float) -> float | None:
@@ -206,19 +230,39 @@ def _interval_deviation(interval: Interval, ours: float) -> float | None:
 
 
 def headline(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return how many predicted rows agree, and the other rows by status: "3 of 4 predicted rows agree; ..."."""
+    """Return how many predicted rows agree, the other rows by status, and both counts of the rows with an interval."""
     counts = {
-        status: f"{len(verdicts)} {status}"
-        + ("" if status == "not testable" else f" ({sum(map(bool, verdicts))} agree)")
+        status: f"{len(verdicts)} {status}" + ("" if status == "not testable" else f" ({_agree(verdicts)})")
         for status in STATUSES
         if (verdicts := [row["within"] for row in rows if row["status"] == status])
     }
-    predicted = [bool(row["within"]) for row in rows if row["status"] == "predicted"]
+    predicted = [row["within"] for row in rows if row["status"] == "predicted"]
     others = ", ".join(text for status, text in counts.items() if status != "predicted")
     if not predicted:
         return f"no row is a prediction of the model; {others or 'no other rows'}"
-    count = f"{sum(predicted)} of {len(predicted)} predicted rows agree"
-    return f"{count}; in addition {others}" if others else count
+    count = f"{sum(map(bool, predicted))} of {len(predicted)} predicted rows agree{_undecided(predicted)}"
+    return "; ".join([count, *([f"in addition {others}"] if others else []), *interval_counts(rows)])
+
+
+def interval_counts(rows: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return a text with both counts of the rows with a printed interval; an empty list without these rows."""
+    compared = [row for row in rows if row["inside"] is not None and row["status"] not in UNCOUNTED]
+    inside, allowed = (sum(row[name] is True for row in compared) for name in ("inside", "within"))
+    text = f"of {len(compared)} rows with a printed interval our value is inside in {inside}, not contradicted at "
+    return [f"{text}{100.0 * AGREES_ABOVE:g} % in {allowed}"] if compared else []
+
+
+UNCOUNTED = ("duplicate", "not testable")
+"""Statuses of rows that are listed and counted nowhere."""
+
+
+def _agree(verdicts: Sequence[Verdict]) -> str:
+    return f"{sum(map(bool, verdicts))} agree{_undecided(verdicts)}"
+
+
+def _undecided(verdicts: Sequence[Verdict]) -> str:
+    count = list(verdicts).count(None)
+    return f", {count} undecided" if count else ""
 
 
 def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -229,8 +273,8 @@ def markdown(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return the rows as a Markdown table."""
-    columns = ("name", "place", "published", "ours", "deviation", "within", "status", "source", "why")
-    return markdown(columns, [[cell(name, row[name]).replace("|", "\\|") for name in columns] for row in rows])
+    columns = ("name", "place", "published", "ours", "deviation", "inside", "within", "status", "source", "why")
+    return markdown(columns, [[cell(row, name).replace("|", "\\|") for name in columns] for row in rows])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -281,17 +325,25 @@ def between(interval: Interval) -> str:
     return f"{high:g} or less" if math.isinf(low) else f"{low:g} to {high:g}"
 
 
-def cell(name: str, value: Any) -> str:
+VERDICTS = {True: "yes", False: "NO", None: "undecided"}
+
+
+def cell(row: Mapping[str, Any], name: str) -> str:
     """Return the text of a member of a row.
 
     Args:
-        name: name of the member, see `Claim`.
-        value: its value.
+        row: the row, see `Claim`.
+        name: name of the member.
     """
+    value = row[name]
     if name == "within":
-        return "not testable" if value is None else "yes" if value else "NO"
+        return (
+            {True: "yes", False: "NO", None: "undecided"}[value] if row["status"] != "not testable" else row["status"]
+        )
     if value is None:
         return ""
+    if name == "inside":
+        return "yes" if value else "no"
     if name == "deviation":
         return f"{100.0 * value:+.1f} %"
     return value if isinstance(value, str) else f"{value:.4g}"

@@ -35,8 +35,10 @@ class Evidence:
         error: standard deviation of a normal error of the model, in the unit of the quantity; 0 if the scatter of the
             input over its unpublished seeds is larger.
         weight: weight in the sum of log-likelihoods; 1 / k for each of k rows from one curve or run.
-        before: status of the row from an earlier choice, in both halves: the body's frame was fitted to it,
-            or chosen with it in view; None if no earlier choice used the row.
+        before: status of the row in both halves: the body was fitted to it, or an earlier choice had it in view; None
+            if neither did.
+        same: key of the row that counts in place of this row: another figure with the same half second of the same
+            road; empty by default.
     """
 
     key: str
@@ -49,6 +51,7 @@ class Evidence:
     error: float = 0.0
     weight: float = 1.0
     before: Status | None = None
+    same: str = ""
 
 
 SLIP_ERROR = 1.3
@@ -226,9 +229,10 @@ figures of a road show the same half second of the same road."""
 
 
 def _levels() -> list[Evidence]:
+    first = {road: _level_key(figure) for figure, _, road, *_ in reversed(LEVELS)}
     rows = [
         Evidence(
-            key=f"level_{figure.replace('.', '_')}",
+            key=_level_key(figure),
             name=f"largest |seat rail, vertical| in 0.5 s of all cars of the figure, {road} road",
             unit="m/s2",
             place=f"figure {figure}",
@@ -237,6 +241,7 @@ def _levels() -> list[Evidence]:
             how=f"nominal car and both ends of {name.replace('_', ' ')}, in every half second of the records",
             weight=weight,
             before="fitted" if figure in ("4.1", "4.2") else None,
+            same=first[road] if first[road] != _level_key(figure) else "",
         )
         for figure, name, road, interval, weight in LEVELS
     ]
@@ -252,6 +257,10 @@ def _levels() -> list[Evidence]:
         )
     )
     return rows
+
+
+def _level_key(figure: str) -> str:
+    return f"level_{figure.replace('.', '_')}"
 
 
 def _modes() -> list[Evidence]:
@@ -305,9 +314,20 @@ def evidence_of(key: str) -> Evidence:
 
 
 def status_of(key: str) -> Status:
-    """Return the status of a row: "fitted" in the half used for the choice, "predicted" in the held-out half.
+    """Return the status of a row.
 
-    A row that was fitted or considered by an earlier choice is not a prediction in either half.
+    "fitted" if a parameter was fitted to the row, in either half; "chosen" in the half used for the choice, and in the
+    held-out half if an earlier choice had the row in view; "predicted" in the held-out half otherwise; "duplicate" if
+    another row counts for it.
     """
     row = evidence_of(key)
-    return "fitted" if key in USED else row.before or "predicted"
+    if row.same:
+        return "duplicate"
+    if row.before == "fitted":
+        return "fitted"
+    return "chosen" if key in USED else row.before or "predicted"
+
+
+def half_of(key: str) -> str:
+    """Return the half of a row: "used" for the choice, or "held out"."""
+    return "used" if key in USED else "held out"

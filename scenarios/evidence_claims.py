@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.claims import Claim, Interval, Source, interval_claim
+from scenarios.claims import Claim, Interval, Source, interval_claim, not_contradicted
 from scenarios.evidence import Evidence, evidence_of, status_of
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 
@@ -19,7 +19,8 @@ def evidence_claim(
 ) -> Claim:
     """Return the row of an evidence: it agrees where the probability of its interval is above 5 %.
 
-    The probability takes the scatter of ours over its seeds and the error that the evidence states.
+    The probability contains the scatter of ours over its seeds and the error that the evidence states. The row is
+    undecided where two standard errors of our mean turn the verdict.
 
     Args:
         key: of the evidence.
@@ -31,13 +32,15 @@ def evidence_claim(
     """
     evidence, values = evidence_of(key), np.atleast_1d(np.asarray(ours, dtype=float))
     row = interval_claim(name, evidence.interval, float(np.mean(values)), why, status=status_of(key))
-    row = replace(row, place=evidence.place, picture=picture, source=_source(evidence, printed))
+    if evidence.same:
+        why = f"the half second of {evidence_of(evidence.same).place} again, counted there; {why}"
+    row = replace(row, why=why, place=evidence.place, picture=picture, evidence=key, source=_source(evidence, printed))
     if printed is not None:
         deviation = (float(np.mean(values)) - printed) / printed if printed else None
         row = replace(row, published=printed, deviation=deviation)
     if not np.all(np.isfinite(values)):
         never = f"never in {np.sum(~np.isfinite(values))} of {values.size}"
-        return replace(row, ours=never, deviation=None, within=False)
+        return replace(row, ours=never, deviation=None, within=False, inside=False)
     if values.size > 1:
         row = replace(row, ours=f"{np.mean(values):.4g} +- {np.std(values, ddof=1):.2g} ({values.size} values)")
     elif not evidence.error:
@@ -46,7 +49,8 @@ def evidence_claim(
     rule = (
         f"{100.0 * probability:.3g} % is the probability of {_words(evidence)}, must exceed {100.0 * AGREES_ABOVE:g} %"
     )
-    return replace(row, within=probability > AGREES_ABOVE, probability=probability, why=f"{rule}; {why}")
+    within = not_contradicted(values, evidence.interval, evidence.error)
+    return replace(row, within=within, probability=probability, why=f"{rule}; {why}")
 
 
 def reason(interval: Interval, trials: Mapping[str, float]) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
 
@@ -132,13 +133,16 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             "dampers stuck; 5 %. The source shows roll as a peak of its FRFs: that row is below",
             place="section 3.2.1.1",
         ),
-        Kind(status_of("rigid_modes"), "text").statement(
-            "six rigid body modes",
-            "all below 10 Hz",
-            f"{len(rigid)}: {_list(rigid)} Hz",
-            len(rigid) == 6 and max(rigid) < 10.0,
-            "modes with the largest share of energy in the body, dampers stuck, Ixx 1000",
-            place="table 3.1",
+        replace(
+            Kind(status_of("rigid_modes"), "text").statement(
+                "six rigid body modes",
+                "all below 10 Hz",
+                f"{len(rigid)}: {_list(rigid)} Hz",
+                len(rigid) == 6 and max(rigid) < 10.0,
+                "modes with the largest share of energy in the body, dampers stuck, Ixx 1000",
+                place="table 3.1",
+            ),
+            evidence="rigid_modes",
         ),
         FITTED.statement(
             "engine modes",
@@ -165,7 +169,31 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             "the free body; its frame was fitted to these frequencies, so this says that the fit was carried through",
             place="section 3.1.2",
         ),
+        torsion_claim(cars[0]),
     ]
+
+
+COUPLED = 0.1
+"""Least share of its kinetic energy that a mode has in a motion with which it couples [-]."""
+
+
+def torsion_claim(car: Car) -> Claim:
+    """Return the row on the torsion mode of the body that couples with the vertical wheel mode at the low level."""
+
+    def torsion(mode: Mode) -> float:
+        return sum(share for motion, share in mode.motions.items() if "torsion" in motion)
+
+    mode = max(car.modes("stuck"), key=torsion)
+    wheels = sum(share for part, share in mode.energy.items() if part.startswith("wheel"))
+    return FITTED.statement(
+        "torsion mode of the body couples with the vertical wheel mode, low level",
+        "couples",
+        f"mode at {mode.frequency:.1f} Hz: {100.0 * torsion(mode):.0f} % torsion, {100.0 * wheels:.0f} % wheels",
+        min(torsion(mode), wheels) >= COUPLED,
+        f"shares of kinetic energy, dampers stuck; rule: at least {100.0 * COUPLED:g} % each. The torsion mode of the "
+        "frame was fitted to the wheel mode",
+        place="section 3.1.2",
+    )
 
 
 def roll_peak(response: FrequencyResponse, roll: float) -> float:

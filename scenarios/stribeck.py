@@ -18,8 +18,9 @@ from scenarios.bump.runs import FULL, QUICK, SIZES, damper_velocity, relative_ac
 from scenarios.bump.seeds import RECORD, SEEDS
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
-from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, markdown
+from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, interval_claim, markdown
 from scenarios.interval_probability import AGREES_ABOVE
+from scenarios.places import placed
 from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.laws.damper import damper_law
@@ -62,7 +63,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     force_figure(folder / "force_velocity.png", results)
     return Findings(
         title="Coulomb and Stribeck friction over the 7.5 mm bump (Bommer 2006, section 3.4)",
-        claims=peak_claims(results, phases, counts),
+        claims=[*peak_claims(results, phases, counts), *axis_claims(results)],
         tyres=runs.car().vehicle.driving.words,
         notes=[peak_table(phases, record.start), *setting(runs, results["Coulomb"], options.quick)],
         data={
@@ -174,6 +175,19 @@ def peak_claims(
         )
     )
     return claims
+
+
+def axis_claims(runs: Mapping[str, Run]) -> list[Claim]:
+    """Return the rows on the readable labels of figure 3.39, whose axes hold both laws."""
+    velocity = max(float(np.max(damper_velocity(run))) for run in runs.values())
+    force = min(float(np.min(run[f"damper_{run.wheel}_force"])) for run in runs.values())
+    name = "damper over the 7.5 mm bump, both laws"
+    axis, only = "axis to 0.1 with labels 0.05 apart", "-300 is the only readable label of the axis"
+    rows = [
+        interval_claim(f"highest velocity of the {name} [m/s]", (0.05, 0.1), velocity, axis),
+        interval_claim(f"lowest force of the {name} [N]", (-300.0, 0.0), force, only),
+    ]
+    return placed(rows, "figure 3.39", "force_velocity.png")
 
 
 def peak_table(phases: Mapping[str, list[SlipPhase]], start: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.advice import LARGEST, run_advice
 from tests.validation_page import check_page
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
@@ -21,6 +22,30 @@ def pytest_runtest_call(item):
         raise
     check_page(item.nodeid)
     return result
+
+
+ADVISED = ("signals/records", "signals/excitation", "commands", "runs/comparison")
+"""Folders of tests whose record files are those of users: `inspect` advises a command that accepts each of them."""
+
+_SEEN: set[tuple[str, int, bytes]] = set()
+
+
+@pytest.fixture(autouse=True)
+def _advice_is_accepted(request, tmp_path_factory):
+    """Run the commands that `inspect` advises for the files that a test leaves in its folder, each file once."""
+    files = request.node.path.relative_to(request.config.rootpath / "tests").as_posix()
+    if not files.startswith(ADVISED) or "tmp_path" not in request.fixturenames:
+        yield
+        return
+    folder = request.getfixturevalue("tmp_path")
+    yield
+    for file in sorted(folder.glob("*.*")):
+        if not file.is_file() or not 0 < file.stat().st_size < LARGEST:
+            continue
+        identity = (file.suffix, file.stat().st_size, file.read_bytes()[-4000:])
+        if identity not in _SEEN:
+            _SEEN.add(identity)
+            run_advice(file, tmp_path_factory.mktemp("advice"))
 
 
 @pytest.fixture(scope="session")

@@ -57,7 +57,8 @@ ROOMS: dict[str, set[str]] = {
     | {"rendering", "report", "shapes", "threads"},
     "fmu": {"car", "laws", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"},
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
+    | {"simulation"},
     "design": {"car", "flexbody", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "rendering", "report", "simulation", "threads"},

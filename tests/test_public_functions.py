@@ -76,14 +76,14 @@ def test_inputs_of_many_runs(sedan):
 
 def test_a_sweep_runs_the_car_that_it_is_given(sedan):
     stiff = Car.load("sedan", {"body.mass": 1100.0})
-    plan = plan_sweep(stiff, {"front.damper.viscous": [1500, 2500]}, Road("A", speed=72, duration=3), skip=1.0)
+    plan = plan_sweep(stiff, {"rear.damper.viscous": [1500, 2500]}, Road("A", speed=72, duration=3), skip=1.0)
     assert [case.overrides for case in plan.cases] == [
-        ("body.mass=1100.0", "driving.speed=20.0", f"front.damper.viscous={value}") for value in (1500, 2500)
+        ("body.mass=1100.0", "driving.speed=20.0", f"rear.damper.viscous={value}") for value in (1500, 2500)
     ]
     assert plan.skip == 1.0 and plan.cases[0].vehicle == file_of(sedan)
     changed = Car(stiff.vehicle)  # from no file: workers could not load it
     with pytest.raises(ConfigurationError, match=r"loaded from a file; load the car with Car\.load"):
-        sweep(changed, {"front.damper.viscous": [1500]}, "low.csv")
+        sweep(changed, {"rear.damper.viscous": [1500]}, "low.csv")
 
 
 def test_parameters_of_a_fit_start_at_the_car(focus):

@@ -61,6 +61,8 @@ if TYPE_CHECKING:
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
     from vehicle.runs.fmu.fmu_file import write_fmu as write_fmu
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
+    from vehicle.runs.output.saved_car import save_car as save_car
+    from vehicle.runs.output.saved_run import load_run as load_run
     from vehicle.runs.output.saved_run import save_run as save_run
     from vehicle.runs.report.report_file import write_report as write_report
     from vehicle.signals.excitation.input_files import shipped_inputs as shipped_inputs
@@ -112,6 +114,7 @@ _MODULES = {
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
     "evaluate_comfort": "vehicle.signals.records.record_comfort",
     "fit_mount": "vehicle.studies.mounts.mount_fit",
+    "load_run": "vehicle.runs.output.saved_run",
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",
@@ -120,6 +123,7 @@ _MODULES = {
     "read_signal": "vehicle.signals.excitation.signal_file",
     "replicate_drive": "vehicle.studies.replication.drive_search",
     "road": "vehicle.runs.car.road",
+    "save_car": "vehicle.runs.output.saved_car",
     "save_comparison": "vehicle.runs.output.comparison_files",
     "save_drive": "vehicle.studies.replication.drive_files",
     "save_run": "vehicle.runs.output.saved_run",

@@ -67,10 +67,12 @@ def channel_words(channel: str) -> str:
     """Return the name of a channel in words: "front left knuckle z" for knuckle_fl_acc_z, other channels unchanged.
 
     Args:
-        channel: name of a channel.
+        channel: name of a channel, or of an FRF as "knuckle_fl_acc_z/plate_fl".
     """
-    point, _, axis = channel.rpartition("_acc_")
-    return f"{point_words(point)} {axis}" if point else channel
+    output, _, plate = channel.partition("/")
+    point, _, axis = output.rpartition("_acc_")
+    output = f"{point_words(point)} {axis}" if point else output
+    return f"{output} to {plate}" if plate else output
 
 
 def axle_and_side(wheel: str) -> tuple[str, str]:

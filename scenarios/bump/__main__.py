@@ -13,6 +13,7 @@ import numpy as np
 
 from scenarios.bump.claims import extreme_claims, ring_down_claims, slip_claims
 from scenarios.bump.figures import friction_figure, history_figures, ring_down_figure, side_by_side
+from scenarios.bump.linear_models import linear_claim, linear_errors
 from scenarios.bump.runs import (
     FRICTIONS,
     FULL,
@@ -50,7 +51,8 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     record = QUICK if options.quick else FULL
     frictions = FRICTIONS[::2] if options.quick else FRICTIONS
     bumps = run_bumps(runs, record, options.reading, frictions)
-    seeds = many_seeds(runs, options.reading, frictions, 2 if options.quick else SEEDS)
+    count = 2 if options.quick else SEEDS
+    seeds = many_seeds(runs, options.reading, frictions, count)
     trials = {} if options.quick else experiments(runs, options.reading, bumps.other_reading, seeds)
     history_figures(folder, bumps, seeds)
     friction_figure(folder / "friction.png", bumps)
@@ -66,7 +68,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     slip, end = (when(slip_after(high, record.start, limit)) for limit in (bumps.slip_velocity, SATURATED_VELOCITY))
     return Findings(
         title=f"Bumps of 1.5 and 7.5 mm, {options.reading} reading (Bommer 2006, section 3.2.2)",
-        claims=[*slip_claims(bumps, seeds), *ends, *ringing],
+        claims=[*slip_claims(bumps, seeds), *ends, *ringing, linear_claim(linear_errors(runs, count))],
         tyres=runs.car().vehicle.driving.words,
         unjudged={**too_few, **too_short} if options.quick else {},
         notes=[

@@ -16,8 +16,10 @@ from scenarios.bump.runs import (
     RUNG_DOWN,
     SIZES,
     Bumps,
+    fastest,
     relative_acceleration,
     ring_down_time,
+    saturated_time,
 )
 from scenarios.bump.seeds import BumpSeeds, row_key
 from scenarios.charts import figure_file, rows_of
@@ -102,7 +104,12 @@ def history_figures(folder: Path, bumps: Bumps, seeds: BumpSeeds) -> None:
                     _published_ends(axis, size, point, seeds)
             for axis, label in zip(axes[:, 0], channels, strict=True):
                 axis.set_ylabel(f"{label}\n[m/s²]")
-    note = _caption(bumps, "relative acceleration along the strut axis; zero while the damper sticks")
+    note = _caption(
+        bumps,
+        "relative acceleration along the strut axis; near zero while the damper sticks. The pictured low bump breaks "
+        f"away: largest velocity {1e3 * fastest(bumps.noisy[0]):.2f} mm/s, above 1 mm/s for "
+        f"{1e3 * saturated_time(bumps.noisy[0]):.0f} ms",
+    )
     title = "Acceleration of the damper top relative to the knuckle (figure 3.16)"
     with figure_file(folder / "relative_acceleration.png", (11.0, 5.6), title, note) as figure:
         axes = rows_of(figure, 2, 1)[:, 0]

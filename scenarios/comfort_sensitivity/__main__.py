@@ -16,13 +16,14 @@ from typing import Any
 
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings, markdown
-from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, comfort_options, records_of
+from scenarios.comfort_runs import QUICK, Changes, ComfortRuns, Curves, Point, comfort_options, records_of
 from scenarios.comfort_sensitivity.claims import (
     BODY,
     DEGRESSIVE,
     RIGID_BODY,
     SOURCE,
     TITLES,
+    degressive_claim,
     order_claims,
     size_claims,
     slip_claims,
@@ -112,7 +113,7 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
     slip = slip_claims(comfort.nominal(), runs.car().vehicle.damper.slip_velocity)
     claims = [*slip, *order_claims(curves), *size_claims(curves, trials), *level_claims(levels, louder)]
     claims += [*history_claims(levels), amplification_claim(comfort.nominal()), stiffness_claim(wheel_modes(comfort))]
-    claims += wheel_claims(levels)
+    claims += [*wheel_claims(levels), degressive_claim(degressive_points(comfort))]
     return Findings(
         title="Comfort on a smooth and a rough road (Bommer 2006, chapter 4)",
         claims=claims,
@@ -147,6 +148,11 @@ def beyond_cases(comfort: ComfortRuns) -> list[Case]:
     return [*more, *comfort.all_cases(BODY), *edges, *checks, *trial_cases(comfort)]
 
 
+def degressive_points(comfort: ComfortRuns) -> dict[str, Point]:
+    """Return road to the point of the car with the degressive damper, relative to that with the linear one."""
+    return {road: comfort.point(0.0, DEGRESSIVE, road, ()) for road in ROAD_RMS}
+
+
 def beyond_findings(
     comfort: ComfortRuns, folder: Path, linear: Mapping[str, Curves]
 ) -> tuple[list[str], dict[str, Any]]:
@@ -157,7 +163,7 @@ def beyond_findings(
         folder: where to.
         linear: curves of Bommer 2006, with the linear damper.
     """
-    against = {road: comfort.point(0.0, DEGRESSIVE, road, ()) for road in ROAD_RMS}
+    against = degressive_points(comfort)
     damper = comfort.runs.car(DEGRESSIVE).vehicle.damper
     ratios = (
         f"{100.0 * point.relative:.1f} ± {100.0 * point.relative_error:.2f} % on the {road} road"

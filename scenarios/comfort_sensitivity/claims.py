@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from scenarios.claims import PREDICTED, Claim, Interval
+from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, Interval
 from scenarios.comfort_runs import Changes, Curves, Point, Variation
 from scenarios.evidence import COMFORT_ENDS
 from scenarios.evidence_claims import evidence_claim, reason
@@ -107,6 +107,26 @@ def size_claims(curves: Mapping[str, Curves], trials: Trials | None = None) -> l
             claim = evidence_claim(*row, 100.0 * point.relative, why, picture=f"{name}.png")
         claims.append(claim)
     return claims
+
+
+def degressive_claim(points: Mapping[str, Point]) -> Claim:
+    """Return the row on the degressive damper in the complete car, which the source recommends and does not compute.
+
+    Args:
+        points: road to the car with the damper of equation C.1, relative to that with the linear damper.
+    """
+    return NOT_TESTABLE.statement(
+        "degressive damper in the complete car: comfort value over that with the linear damper",
+        "recommended, not computed",
+        ", ".join(
+            f"{road} road {100.0 * point.relative:.1f} ± {200.0 * point.relative_error:.1f} %"
+            for road, point in points.items()
+        ),
+        None,
+        "the source has this damper for the quarter car only; ours with the numbers of appendix C.2, ± two standard "
+        "errors",
+        place="section 5",
+    )
 
 
 def _end_name(word: str, value: float, road: str) -> str:

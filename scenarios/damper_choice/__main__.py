@@ -33,6 +33,7 @@ from scenarios.damper_choice.fit import (
     half_car_values,
     quarter_car_values,
 )
+from scenarios.damper_choice.other_vehicles import fitted_to_wheels
 from scenarios.damper_choice.runs import (
     MEASURES,
     RoadHolding,
@@ -82,7 +83,7 @@ def study(parameters: DamperChoiceParameters, folder: Path, options: argparse.Na
         *quarter_response_claims(parameters, lines, quarter),
         *quarter_optimum_claims(parameters, holding["highway"]["printed"], "printed"),
         *quarter_optimum_claims(parameters, holding["highway"]["physical"], "physical"),
-        *half_response_claims(parameters, wide, half),
+        *half_response_claims(parameters, wide, half, None if options.quick else fitted_to_wheels(parameters)),
         *half_optimum_claims(holding["highway"]["printed"], "printed"),
         *rate_claims(parameters, holding["highway"]["printed"], printed(4000.0, 4000.0), printed(3250.0, 3250.0)),
         *half_optimum_claims(holding["highway"]["physical"], "physical"),

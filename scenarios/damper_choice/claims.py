@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
 from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim
 from scenarios.damper_choice.experiments import rear_experiment, wheel_experiments
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
+from scenarios.damper_choice.optimum import Optimum
+from scenarios.damper_choice.other_vehicles import CROSSING, LOW_EDGE, SAME, Refit, region_verdicts
 from scenarios.damper_choice.response_features import crossing, last_peak, local_peaks, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
 from scenarios.places import placed
+from scenarios.verdict import common
 from vehicle.engines.lumped.half_car_rider_model import ENDS
 from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.model.parameters.damper_choice import DamperChoiceParameters
@@ -23,19 +28,13 @@ READING = 125.0
 RATE_READING = 0.05
 """The printed R carry two to three digits and come from figures: 0.05 [-]."""
 
-SAME = 0.15
-""""No effect of damping": the curves differ by less than this share of the road amplitude [-]."""
-
-CROSSING = 1.5
-"""Reading of the 6 Hz at which the order of the curves changes, a third of a tick interval [Hz]."""
-
 PICTURES = {2: "figure_02_03_quarter_car.png", 5: "figure_05_to_08_half_car.png", 9: "figure_09_10_highway.png"}
 """First figure of the source that a picture shows -> its file."""
 
 ITERATION = "figure_11_12_13_iteration.png"
 
-ASIDE = 1500.0
-"""Distance from the optimum at which both flanks are compared [N s/m]."""
+ASIDE = (1000.0, 1500.0, 2000.0)
+"""Distances from the optimum at which both flanks are compared [N s/m]; the source prints none."""
 
 
 def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
@@ -123,14 +122,27 @@ def _second_maximum(parameters: DamperChoiceParameters, lines: Array) -> Claim:
 
 
 def half_response_claims(
-    parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
+    parameters: DamperChoiceParameters,
+    lines: Array,
+    responses: dict[float, Array],
+    other: Refit | None = None,
 ) -> list[Claim]:
-    """Return the rows on figures 5 to 8; arguments as in `quarter_response_claims`, for the half car."""
+    """Return the rows on figures 5 to 8.
+
+    Args:
+        parameters: parameters of the half car.
+        lines: frequencies [Hz], (m,).
+        responses: damping [N s/m] to |response| of front wheel, rear wheel, heave and pitch, (4, m).
+        other: vehicle fitted to these rows as well, the experiment for a row that disagrees.
+    """
     stack = np.array([responses[c] for c in HALF_DAMPING])  # (damping, coordinate, line)
     rows = []
     for end, (name, figure) in enumerate((("front", 5), ("rear", 6))):
-        why = wheel_experiments(parameters, lines, end)
-        regions = _regions(f"half car {name} wheel", lines, stack[:, end], 2.0, "2 Hz", why)
+        why = list(wheel_experiments(parameters, lines, end))
+        if other is not None:
+            verdicts = region_verdicts(lines, stack[:, end], LOW_EDGE)
+            why = [why[row] + ("" if holds else f"; {other.text(end, row)}") for row, holds in enumerate(verdicts)]
+        regions = _regions(f"half car {name} wheel", lines, stack[:, end], LOW_EDGE, "2 Hz", why)
         rows += placed(regions, f"figure {figure}", PICTURES[5])
     hop = [last_peak(lines, curves[0]) for curves in (stack[:, 0], stack[:, 1])]
     masses = [axle.unsprung_mass for axle in (parameters.half_car.front, parameters.half_car.rear)]
@@ -176,10 +188,6 @@ def half_response_claims(
 def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: RoadHolding, measure: str) -> list[Claim]:
     """Return the rows on figure 9 for one measure."""
     best = road_holding.quarter_optimum
-    below, above = (
-        float(np.interp(best.damping + shift, road_holding.damping, road_holding.quarter)) - best.value
-        for shift in (-ASIDE, ASIDE)
-    )
     row_maker = FITTED if measure == "printed" else COMPARED
     rows = [
         row_maker.number(
@@ -189,13 +197,7 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: Roa
             250.0,
             f"printed as 3500 to 4000; R = {best.value:.3f} there",
         ),
-        (PREDICTED if measure == "printed" else COMPARED).statement(
-            f"quarter car: steeper below the optimum than above, {measure} measure",
-            "steeper below",
-            f"R rises by {below:.3f} to {ASIDE:.0f} N s/m below, by {above:.3f} to {ASIDE:.0f} N s/m above",
-            below > above,
-            "both flanks at the same distance from the optimum",
-        ),
+        _steeper("quarter car", measure, best, road_holding.damping, road_holding.quarter),
     ]
     if measure == "printed":
         signed = [
@@ -218,6 +220,29 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: Roa
             )
         )
     return placed(rows, "figure 9", PICTURES[9])
+
+
+def _steeper(name: str, measure: str, best: Optimum, damping: Array, curve: Array) -> Claim:
+    """Return the row on the flanks of a curve of R, undecided where the distance from the optimum turns it.
+
+    Args:
+        name: vehicle.
+        measure: name of the measure.
+        best: optimum of the curve.
+        damping, curve: the curve [N s/m], [-], (m,).
+    """
+    rises = {
+        distance: [float(np.interp(best.damping + side * distance, damping, curve)) - best.value for side in (-1, 1)]
+        for distance in ASIDE
+    }
+    return (PREDICTED if measure == "printed" else COMPARED).statement(
+        f"{name}: steeper below the optimum than above, {measure} measure",
+        "steeper below",
+        "R rises below / above by "
+        + ", ".join(f"{below:.3f} / {above:.3f} ({distance:.0f} N s/m)" for distance, (below, above) in rises.items()),
+        common(below > above for below, above in rises.values()),
+        "at each of three distances from the optimum; the source prints none",
+    )
 
 
 def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
@@ -248,20 +273,10 @@ def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
             "the rear wheel is heavier than the front one in the fitted car",
         ),
     ]
-    for end, (best, curve) in enumerate(zip(road_holding.equal_optima, road_holding.equal, strict=True)):
-        below, above = (
-            float(np.interp(best.damping + shift, road_holding.damping, curve)) - best.value
-            for shift in (-ASIDE, ASIDE)
-        )
-        rows.append(
-            (PREDICTED if measure == "printed" else COMPARED).statement(
-                f"half car {ENDS[end]}: steeper below the optimum than above, {measure} measure",
-                "steeper below",
-                f"R rises by {below:.3f} to {ASIDE:.0f} N s/m below, by {above:.3f} to {ASIDE:.0f} N s/m above",
-                below > above,
-                "both flanks at the same distance from the optimum",
-            )
-        )
+    rows += [
+        _steeper(f"half car {name}", measure, best, road_holding.damping, curve)
+        for name, best, curve in zip(ENDS, road_holding.equal_optima, road_holding.equal, strict=True)
+    ]
     rows = placed(rows, "figure 10", PICTURES[9])
     for step, printed, figure in ((first, 4250.0, 11), (second, 3000.0, 12), (third, 4250.0, 13)):
         rows.append(
@@ -341,23 +356,21 @@ def _regions(
     curves: Array,
     low_edge: float,
     printed_edge: str,
-    why: tuple[str, str] = ("", ""),
+    why: Sequence[str] = ("", ""),
 ) -> list[Claim]:
     """Return the rows on the three frequency regions of a wheel response; `why` has a note for each of two rows."""
-    softest, firmest = curves[0], curves[-1]
-    middle, high = (lines > 3.0) & (lines < 5.0), lines > 8.0
+    same, ordered = region_verdicts(lines, curves, low_edge)
     apart = spread_of(curves)
     spread = float(apart[lines < low_edge].max())
     beyond = float(lines[np.flatnonzero(apart > SAME)[0]])
-    above = firmest > softest
-    change = crossing(lines, softest, firmest)
+    change = crossing(lines, curves[0], curves[-1])
     extra = [f"; {note}" if note else "" for note in why]
     return [
         PREDICTED.statement(
             f"{name}: no effect of damping below {printed_edge}",
             "no meaningful difference",
             f"the curves differ by at most {spread:.2f} m/m below {low_edge:g} Hz",
-            spread < SAME,
+            same,
             f"rule: less than {SAME} m/m, a tenth of the printed axis; they differ by more from {beyond:.2f} Hz on, by "
             f"the body resonance, whose height depends on damping{extra[0]}",
         ),
@@ -365,7 +378,7 @@ def _regions(
             f"{name}: 2 to 6 Hz less with low damping, beyond less with high damping",
             "change of order at 6 Hz",
             f"the curves of lowest and highest damping cross at {change:.1f} Hz",
-            bool(np.all(above[middle]) and not np.any(above[high]) and abs(change - 6.0) < CROSSING),
+            ordered,
             f"rule: in order from 3 to 5 Hz and above 8 Hz, crossing within {CROSSING} Hz of 6 Hz, a third of a tick "
             f"interval{extra[1]}",
         ),

@@ -47,11 +47,12 @@ HALF_FREE = (
 
 _QUARTER_SCALE = np.array([250.0, 60.0, 280e3])
 _QUARTER_BOUNDS = (np.array([150.0, 30.0, 150e3]), np.array([400.0, 120.0, 500e3]))
-_HALF_SCALE = np.array([700.0, 1.0, 2.6, 0.5, 50.0, 70.0, 2e5, 2e5])
-_HALF_BOUNDS = (
+HALF_SCALE = np.array([700.0, 1.0, 2.6, 0.5, 50.0, 70.0, 2e5, 2e5])
+HALF_BOUNDS = (
     np.array([400.0, 0.2, 2.3, 0.3, 25.0, 25.0, 8e4, 8e4]),
     np.array([1500.0, 1.3, 2.9, 0.7, 130.0, 200.0, 5e5, 5e5]),
 )
+"""Lowest and highest values of `HALF_FREE` in their order: those of road vehicles, with room."""
 _COARSE = np.arange(2000.0, 6001.0, 250.0)
 _READING = 125.0  # half of the 250 N s/m to which the source reads its optima [N s/m]
 
@@ -80,8 +81,8 @@ def fit_half_car(
     Returns:
         The fitted values and the residuals there, each over its scale.
     """
-    lower = np.where(np.array(HALF_FREE) == "inertia_index", least_index, _HALF_BOUNDS[0])
-    return _fit(half_car_residuals, start, road, bands, _HALF_SCALE, (lower, _HALF_BOUNDS[1]))
+    lower = np.where(np.array(HALF_FREE) == "inertia_index", least_index, HALF_BOUNDS[0])
+    return _fit(half_car_residuals, start, road, bands, HALF_SCALE, (lower, HALF_BOUNDS[1]))
 
 
 def quarter_car_of(values: npt.ArrayLike) -> RoadHoldingQuarterCar:

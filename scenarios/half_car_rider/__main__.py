@@ -13,10 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from scenarios.claims import Findings, markdown
-from scenarios.half_car_rider.claims import base_case_claims, dose_claims, matrix_claim, speed_claims, travel_claims
+from scenarios.claims import Claim, Findings, markdown
+from scenarios.half_car_rider.claims import (
+    base_case_claims,
+    dose_claims,
+    law_claim,
+    matrix_claim,
+    speed_claims,
+    travel_claims,
+)
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
+from scenarios.half_car_rider.seats import FACTORS, Measure, with_experiment
 from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.engines.lumped.half_car_rider_model import ENDS
 from vehicle.model.parameters.half_car_rider_parameters import (
@@ -25,6 +33,7 @@ from vehicle.model.parameters.half_car_rider_parameters import (
     half_car_rider_parameters,
 )
 from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
+from vehicle.signals.analysis.exposure import vibration_dose_value
 
 TITLE = "Half car with seat and rider (Parametric study of rider's comfort in a vehicle with semi-active suspension)"
 
@@ -62,7 +71,10 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
         *speed_claims(car, scan, [o.upper_vdv for o in outcomes[PASSIVE]], [o.upper_vdv for o in free_outcomes]),
         *travel_claims(car, studied, factors),
         matrix_claim(car),
+        law_claim({law: [o.upper_vdv for o in row] for law, row in outcomes.items()}),
     ]
+    if not options.quick:
+        claims = with_experiment(claims, car, rows_of)
     shown = {PASSIVE: history, "skyhook": semi_active["skyhook"][0], "hybrid": semi_active["hybrid"][0]}
     time_figures(folder, shown, SPEEDS[0])
     study_figures(folder, factors, studied, skyhook)
@@ -81,6 +93,18 @@ def study(car: HalfCarRiderParameters, folder: Path, options: argparse.Namespace
         "base_case": base_case_table(car, history),
     }
     return Findings(title=TITLE, claims=claims, tyres=VERTICAL_TYRES, unjudged=None, notes=notes, data=data)
+
+
+def rows_of(car: HalfCarRiderParameters, measure: Measure = vibration_dose_value) -> list[Claim]:
+    """Return the rows of a passive car with coarse variations, for the experiments; see `seats`."""
+    studied = parameter_study(car, FACTORS, measure=measure)
+    middle = [row[FACTORS.index(1.0)].upper_vdv for row in studied["sprung_mass"]]
+    return [
+        *base_case_claims(car, passive(car, SPEEDS[0])),
+        *dose_claims(car, studied, FACTORS),
+        *speed_claims(car, {"speed": SPEEDS, "upper": middle}, middle, middle),
+        *travel_claims(car, studied, FACTORS),
+    ]
 
 
 def _lift_off_note(glued: Sequence[Outcome], free: Sequence[Outcome]) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from scenarios.claims import COMPARED, DUPLICATE, PREDICTED, Claim, Kind
+from scenarios.claims import COMPARED, DUPLICATE, NOT_TESTABLE, PREDICTED, Claim, Kind
 from scenarios.half_car_rider.printed_matrices import growth_rate, printed_system
 from scenarios.half_car_rider.runs import (
     KMH,
@@ -340,6 +340,23 @@ def matrix_claim(car: HalfCarRiderParameters) -> Claim:
         "typing errors: neither is symmetric and the pitch damping is negative, so the printed equations grow for "
         "ever; the figures of the source cannot come from them as they stand",
         place="equation 16",
+    )
+
+
+def law_claim(doses: Mapping[str, Sequence[float]]) -> Claim:
+    """Return the row on the control law of the title, which is not printed.
+
+    Args:
+        doses: law to the dose value of the upper body at `SPEEDS` [m/s^1.75].
+    """
+    return NOT_TESTABLE.statement(
+        "semi-active suspension: control forces uf and ur",
+        "a magneto-rheological damper, no law",
+        "; ".join(f"{law} {_list(values)}" for law, values in doses.items()) + " m/s^1.75",
+        None,
+        "the title and equations 4 to 7 have control forces, but no law and no number of a damper is printed; VDV of "
+        f"the upper body with usual laws at {_list(SPEEDS)} km/h, all numbers assumed",
+        place="section 2",
     )
 
 

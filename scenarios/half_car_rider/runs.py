@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -72,14 +72,22 @@ def passive(car: HalfCarRiderParameters, speed: float) -> History:
     return bump_response(half_car_rider(car), passage, time_step=TIME_STEP, duration=DURATION)
 
 
-def outcome(car: HalfCarRiderParameters, history: History) -> Outcome:
-    """Return dose values, travel and lift-off of a passage over the bump."""
+def outcome(
+    car: HalfCarRiderParameters, history: History, measure: Callable[[float, Array], float] = vibration_dose_value
+) -> Outcome:
+    """Return dose values, travel and lift-off of a passage over the bump.
+
+    Args:
+        car: the car.
+        history: its motion.
+        measure: function of time step [s] and acceleration [m/s2] in place of the dose value.
+    """
     step = float(history.time[1] - history.time[0])
     loads = linear_tyre_load(car, history)
     front, rear = (tuple(lift_off(history.time, load)) for load in loads)
     return Outcome(
-        upper_vdv=vibration_dose_value(step, history.acceleration("upper_limb")),
-        lower_vdv=vibration_dose_value(step, history.acceleration("lower_limb")),
+        upper_vdv=measure(step, history.acceleration("upper_limb")),
+        lower_vdv=measure(step, history.acceleration("lower_limb")),
         travel=max(peak(history.displacement(f"{end}_travel")) for end in ENDS),
         lift_off=(front, rear),
         least_load=(float(loads[0].min()), float(loads[1].min())),
@@ -101,7 +109,10 @@ def varied(car: HalfCarRiderParameters, parameter: str, factor: float) -> HalfCa
 
 
 def parameter_study(
-    car: HalfCarRiderParameters, factors: Sequence[float], law: str = PASSIVE
+    car: HalfCarRiderParameters,
+    factors: Sequence[float],
+    law: str = PASSIVE,
+    measure: Callable[[float, Array], float] = vibration_dose_value,
 ) -> Mapping[str, list[list[Outcome]]]:
     """Return the outcomes over every varied parameter, speed and factor.
 
@@ -109,6 +120,7 @@ def parameter_study(
         car: base case.
         factors: of the varied parameter [-].
         law: "passive" for the exact response, else a law of `semi_active`.
+        measure: in place of the dose value, passive cars only; see `outcome`.
 
     Returns:
         Parameter -> speed -> factor -> outcome.
@@ -117,7 +129,8 @@ def parameter_study(
     cars = [varied(car, name, factor) for name, _, factor in cases]
     if law == PASSIVE:
         results = [
-            outcome(variant, passive(variant, speed)) for variant, (_, speed, _) in zip(cars, cases, strict=True)
+            outcome(variant, passive(variant, speed), measure)
+            for variant, (_, speed, _) in zip(cars, cases, strict=True)
         ]
     else:
         results = []

@@ -9,14 +9,14 @@ import argparse
 import json
 import sys
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from scenarios.claims import headline
 from scenarios.published.page import page
 from scenarios.published.pictures import write_copy
-from scenarios.published.sources import SOURCES
+from scenarios.published.sources import BESIDE, BESIDE_NAME, BESIDE_STUDIES, SOURCES
 from scenarios.published.table import collect
 from scenarios.study import main_of
 from vehicle.commands.command_line import parse_and_run
@@ -71,7 +71,11 @@ def _job(options: argparse.Namespace) -> None:
         began = clock.perf_counter()
         results[name] = study_results(name, options)
         seconds[name] = clock.perf_counter() - began
-    rows = collect(results)
+    beside: dict[str, dict[str, Any]] = {}
+    for name in () if options.quick else (name for name in STUDIES if name in BESIDE_STUDIES):
+        print(f"{name}, {BESIDE_NAME}", flush=True)
+        beside[name] = study_results(name, options, f"{name}_beside", (*BESIDE_STUDIES[name], "--set", *BESIDE))
+    rows = collect(results, beside)
     notes = results.get(CHOICE, {}).get("notes", [])
     write_text(folder / "results.json", json.dumps({"rows": rows, "choice": notes}, indent=1, allow_nan=False) + "\n")
     copied = copy_pictures(results, options.runs, folder / "figures")
@@ -109,21 +113,25 @@ def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: 
     return copies
 
 
-def study_results(name: str, options: argparse.Namespace) -> dict[str, Any]:
+def study_results(
+    name: str, options: argparse.Namespace, folder_name: str = "", more: Sequence[str] = ()
+) -> dict[str, Any]:
     """Return the content of `results.json` of a study; run the study unless a finished run may be used.
 
     Args:
         name: name of the study.
         options: options of `parser`.
+        folder_name: name of the folder of the results, by default that of the study.
+        more: further options of the study.
 
     Raises:
         SimulationError: the study failed; its message is printed above.
         DataError: the file of the study cannot be read.
     """
-    folder = options.runs / name
+    folder = options.runs / (folder_name or name)
     path = folder / "results.json"
     if not (options.reuse and path.exists()):
-        arguments = ["--output", str(folder), "--force", "--jobs", str(options.jobs)]
+        arguments = ["--output", str(folder), "--force", "--jobs", str(options.jobs), *more]
         if options.quick:
             arguments.append("--quick")
         code = main_of(name)(arguments)

@@ -119,6 +119,20 @@ def source_of(study: str) -> Source:
     raise KeyError(study)
 
 
+BESIDE = ("body.inertia.ixx=1080",)
+"""Overrides of the car of the second column: its roll mode is at the measured 5.8 Hz."""
+
+BESIDE_NAME, PRINTED_IXX = "Ixx 1080", "Ixx 1000"
+
+BESIDE_STUDIES: Mapping[str, tuple[str, ...]] = {
+    "levels": (),
+    "bump": (),
+    "stribeck": (),
+    "comfort_sensitivity": ("--source-only",),
+}
+"""Studies of the complete car that run with both cars, and further options of the second run."""
+
+
 KINDS = ("section", "appendix", "equation", "table", "figure", "")
 """Order of the rows of one section."""
 

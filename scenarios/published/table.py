@@ -6,27 +6,44 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from scenarios.claims import STATUSES
-from scenarios.published.sources import SOURCES, source_of
+from scenarios.published.sources import BESIDE_NAME, PRINTED_IXX, SOURCES, source_of
 
 Row = Mapping[str, Any]
 """A row of `results.json` of a study, with "study: " before its name."""
 
 
-def collect(results: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+def collect(
+    results: Mapping[str, Mapping[str, Any]], beside: Mapping[str, Mapping[str, Any]] | None = None
+) -> list[dict[str, Any]]:
     """Return the rows of all studies, with the study before the name and the picture.
 
     Args:
         results: study to the content of its `results.json`.
+        beside: results of studies with the car of `sources.BESIDE`; their values are the member `beside` of a row.
     """
+    others = {
+        (study, row["name"]): {name: row[name] for name in ("ours", "within", "inside")}
+        for study, content in (beside or {}).items()
+        for row in content["rows"]
+    }
     return [
         {
             **row,
             "name": f"{study}: {row['name']}",
             "picture": f"{study}_{row['picture']}" if row["picture"] else "",
+            "beside": others.get((study, row["name"])),
         }
         for study, content in results.items()
         for row in content["rows"]
     ]
+
+
+def beside_counts(rows: Sequence[Row]) -> str:
+    """Return how many predicted rows of both cars agree with each, or "" without rows of the other car."""
+    both = [row for row in rows if row["beside"] is not None and row["status"] == "predicted"]
+    first, second = (sum(row["within"] is True for row in part) for part in (both, [row["beside"] for row in both]))
+    text = f"Of {len(both)} predicted rows computed with both cars, {first} agree with the printed {PRINTED_IXX} and "
+    return f"{text}{second} with {BESIDE_NAME}." if both else ""
 
 
 def study_of(row: Row) -> str:
@@ -52,7 +69,6 @@ def counts(rows: Sequence[Row]) -> list[tuple[str, ...]]:
 
 
 def _count(rows: Sequence[Row]) -> str:
-    judged = [row["within"] for row in rows if row["within"] is not None]
-    if not rows:
-        return ""
-    return f"{sum(judged)} of {len(judged)}" if judged else f"{len(rows)}"
+    if not rows or rows[0]["status"] == "not testable":
+        return f"{len(rows)}" if rows else ""
+    return f"{sum(row['within'] is True for row in rows)} of {len(rows)}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from scenarios.claims import Claim, Findings
+from scenarios.quarter_car.axis_claims import axis_claims
 from scenarios.quarter_car.damper_claims import degressive_claims, strut_claims
 from scenarios.quarter_car.in_mujoco import in_mujoco_claims
 from scenarios.quarter_car.linear_claims import element_claims, mass_on_damper_claims, mode_claims, phase_claims
@@ -24,7 +25,7 @@ def findings(runs: Runs) -> Findings:
     claims: list[Claim] = [*mode_claims(runs), *phase_claims(runs), swing_claim(), *mass_on_damper_claims(runs)]
     claims += [*sine_claims(runs), *level_claims(runs), *element_claims(runs), *engine_sine_claims(runs)]
     claims += [*engine_road_claims(runs), *steepness_claims(runs), *degressive_claims(runs), *strut_claims(runs)]
-    claims += in_mujoco_claims(runs)
+    claims += [*axis_claims(runs), *in_mujoco_claims(runs)]
     notes = [
         f"Random road: constant velocity PSD up to 100 Hz, {runs.duration:g} s, seeds from {SEED} on, scaled to each "
         "level: the RMS in 30 s, from 1/30 Hz on; the band is not printed, and with it the level inside 1 to 50 Hz is "

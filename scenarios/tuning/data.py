@@ -17,6 +17,7 @@ from vehicle.runs.car import Run
 from vehicle.runs.output.folder import write_whole
 from vehicle.runs.output.run_files import FRAME
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 from vehicle.signals.records.frf_file import read_frf, write_frf
@@ -73,7 +74,7 @@ def make_measurements(
     channels = driven_channels(channels, vehicle.shaker_wheel)
     signals = [read_signal(find_input(f"{name}.csv"), wheel=vehicle.shaker_wheel) for name in (*levels, *bumps)]
     done = runs([runs.case(signal, changes, engine=engine) for signal in signals])
-    measurements = []
+    measurements, plate = [], ResponseName("", plates_of({vehicle.shaker_wheel: 1.0}))
     for name, signal, run in zip((*levels, *bumps), signals, done, strict=True):
         noise = np.random.default_rng([SEED, INPUTS.index(name)])
         if name in bumps:
@@ -81,12 +82,12 @@ def make_measurements(
             continue
         response = _noisy(run.frf(channels), noise)
         file = folder / f"{name}_frf.csv"
-        write_whole(file, partial(write_frf, response=response, channels=channels, frame=FRAME))
+        write_whole(file, partial(write_frf, responses={plate.input: response}, channels=channels, frame=FRAME))
+        data = read_frf(file).select(channels, band=BAND, spacing=spacing)
         target = FrfTarget(
             name=name,
-            data=read_frf(file).select(channels, band=BAND, spacing=spacing),
+            data=data.renamed([dataclasses.replace(plate, output=channel) for channel in data.channels]),
             signal=None if name == "low" else signal,
-            wheel=vehicle.shaker_wheel,
             averages=float(np.nanmedian(response.averages)),
         )
         measurements.append(MeasuredTarget(target=target, signal=signal))

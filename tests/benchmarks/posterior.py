@@ -19,6 +19,7 @@ from vehicle.errors import SimulationError
 from vehicle.model.parameters.paths import overrides_of, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.signal_file import read_signal
@@ -66,6 +67,7 @@ def ranges(car: Car, factors: Mapping[str, tuple[float, float]]) -> list[Range]:
 def targets(coherence: float = COHERENCE) -> list[FrfTarget]:
     """Return targets without data: FRFs of one plate at three levels."""
     shape = (len(CHANNELS), FREQUENCY.size)
+    names = tuple(ResponseName(name, plates_of({"fl": 1.0})) for name in CHANNELS)
     listed = []
     for level in LEVELS:
         signal = read_signal(find_input(f"{level}.csv"), wheel="fl")
@@ -75,9 +77,9 @@ def targets(coherence: float = COHERENCE) -> list[FrfTarget]:
             displacement={"fl": signal.displacement["fl"][:count]},
             source=level,
         )
-        data = FrfData(frequency=FREQUENCY, channels=CHANNELS, response=np.ones(shape, dtype=complex),
+        data = FrfData(frequency=FREQUENCY, names=names, response=np.ones(shape, dtype=complex),
                        coherence=np.full(shape, coherence), random_error=np.full(shape, np.nan))  # fmt: skip
-        listed.append(FrfTarget(name=level, data=data, signal=signal, wheel="fl", averages=AVERAGES, window=WINDOW))
+        listed.append(FrfTarget(name=level, data=data, signal=signal, averages=AVERAGES, window=WINDOW))
     return listed
 
 

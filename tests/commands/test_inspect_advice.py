@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import shlex
-from importlib import import_module
 
 import numpy as np
 import pytest
 
+from tests.advice import run_advice
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.inspect import main as inspect
-from vehicle.errors import SimulationError
 from vehicle.signals.records.channel import Channel
 from vehicle.signals.records.channel_words import axis_of, suggested_channels, wheel_of
 
@@ -123,17 +122,7 @@ def test_the_command_runs_as_printed(tmp_path, capsys, monkeypatch, kind):
     words = shlex.split(line := line.strip())
     assert words[:3] == ["python", "-m", "vehicle"]
     assert all(text in shlex.join(words).replace("'", "") for text in needed), line
-    if words[3] == "shaker" and kind != "plain":
-        # all that belongs to the record is done before the run, which takes seconds
-
-        def run(*_, **__):
-            raise SimulationError("the run has begun")
-
-        monkeypatch.setattr("vehicle.runs.car.car.Car.run", run)
-    extra = ["--engine", "reduced", "--quiet", "--output", "out"] if words[3] == "shaker" else []
-    code = import_module(f"vehicle.commands.{words[3]}").main([*words[4:], *extra])
-    err = capsys.readouterr().err
-    assert code == 0 or (code == 4 and "the run has begun" in err), err
+    assert run_advice(tmp_path / path.name, tmp_path)
 
 
 def test_levels_are_in_the_unit_of_the_file(tmp_path, capsys):

@@ -83,7 +83,7 @@ def test_a_group_that_only_the_command_can_judge():
         ("body", ["import", "f.sti", "--output", "b.npz", "--axes", "-x,-y,z"], "axes", "-x,-y,z"),
         ("body", ["import", "f.sti", "--output", "b.npz", "--origin", "-1.2,0,.3"], "origin", "-1.2,0,.3"),
         ("shaker", ["--input", "low.csv", "--from", "-2.5"], "first", -2.5),
-        ("compare", ["runs/low", "--measured", "m.uff", "--delay", "-1e-3"], "delay", -1e-3),
+        ("compare", ["runs/low", "--measured", "m.uff", "--delay", "-1e-3"], "delay", ["-1e-3"]),
         ("inspect", ["-my file.csv"], "files", ["-my file.csv"]),
     ],
 )

@@ -88,7 +88,8 @@ def test_the_fitted_file_runs_and_the_report_is_whole(fitted, tmp_path):
     words = ["--vehicle", str(fitted / "vehicle.toml"), "--input", "low.csv", "--engine", "reduced", "--quiet"]
     assert shake([*words, "--output", str(tmp_path / "run")]) == 0
     page = (fitted / "report.html").read_text(encoding="utf-8")
-    for text in ("focus fitted to bench", "What the data leave open", content["set"], "<svg", "last steps with mujoco"):
+    settings = " ".join(f"--set {text}" for text in content["set"])
+    for text in ("focus fitted to bench", "What the data leave open", settings, "<svg", "last steps with mujoco"):
         assert text in page
     answer = page.partition('<p class="answer">')[2].partition("</p>")[0]
     first, error = content["parameters"][0], max(content["agreement"], key=lambda row: row["before"])
@@ -104,7 +105,8 @@ def test_console_says_the_values_first(record, tmp_path, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("damper.viscous ") and "start 2250, bounds 800 to 4000" in lines[0]
     assert lines[2].startswith("--set damper.viscous=2250 --set suspension_mount.stiffness.z=")
-    assert lines[3].startswith("not determined: damper.viscous: the data do not identify this parameter")
+    (text,) = [line for line in lines if line.startswith("not determined: damper.viscous")]
+    assert "the data do not identify this parameter" in text
 
 
 def test_posterior_of_the_record_and_a_rival_law(record, tmp_path, capsys):

@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 
 from scenarios.bump.__main__ import main
-from scenarios.bump.claims import PANELS, extreme_claims, slip_claims
+from scenarios.bump.claims import PANELS, extreme_claims, no_slip_claim, slip_claims
 from scenarios.bump.figures import BANNER, HALF, side_by_side
+from scenarios.bump.linear_models import linear_claim
 from scenarios.bump.runs import SIZES, relative_acceleration, ring_down_time, slip_after
 from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
+from tests.scenarios.kept_table import contradictions
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
 from vehicle.signals.excitation.bump import bump
 
@@ -37,10 +39,15 @@ FIRST_SLIP = "bump 7.5 mm, first slip (end of sticking) with Fd 125 N [s]"
 NO_SLIP = "bump 1.5 mm, no slip: largest velocity of the damper over the slip velocity"
 
 
+LINEAR = "one nonlinear against two linear models, seat rail over both bumps"
+
+
 def test_first_slips_and_what_is_not_judged(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     rows = {row["name"]: row for row in content["rows"]}
-    assert set(rows) == {FIRST_SLIP, NO_SLIP, "bump 7.5 mm, first slip against Fd"}
+    assert set(rows) == {FIRST_SLIP, NO_SLIP, LINEAR, "bump 7.5 mm, first slip against Fd"}
+    # A damper that never moves is far off where ours slips, a damper without friction where ours sticks.
+    assert rows[LINEAR]["within"] is True and rows[LINEAR]["place"] == "section 3.5"
     assert rows["bump 7.5 mm, first slip against Fd"]["status"] == "predicted"
     assert rows[FIRST_SLIP]["within"] is True and rows[FIRST_SLIP]["place"] == "figure 3.12"
     # Two seeds: the probability is that of Student's t with one degree of freedom.
@@ -80,6 +87,29 @@ class Silent:
 
     def slip_share(self, wheel, velocity):
         return 0.0
+
+    def __getitem__(self, channel):
+        return np.zeros(2)
+
+
+def test_the_low_bump_is_undecided_where_single_seeds_slip():
+    bumps: Any = SimpleNamespace(slip_velocity=0.006, noisy=[Silent()])
+    for fastest, verdict in (([3e-3, 5e-3], True), ([3e-3, 6.5e-3], None), ([7e-3, 9e-3], False)):
+        row = no_slip_claim(bumps, np.array(fastest))
+        assert row.within is verdict and row.evidence == "bump_1p5_no_slip"
+    assert "0 of 2 seeds stay below; 0 stay below 1 mm/s" in row.why
+    assert "reaches 0.00 mm/s and is above 1 mm/s for 0 ms" in row.why
+
+
+def test_a_linear_model_that_could_be_used_contradicts_the_source():
+    def row(stick, slip):
+        return linear_claim(
+            {"stick": dict(zip(SIZES, stick, strict=True)), "slip": dict(zip(SIZES, slip, strict=True))}
+        )
+
+    assert row(([0.1, 0.1], [3.0, 2.0]), ([0.9, 0.8], [0.6, 0.6])).within is True
+    assert row(([0.1, 0.1], [0.3, 0.2]), ([0.1, 0.2], [0.6, 0.6])).within is False
+    assert row(([0.1, 0.1], [3.0, 2.0]), ([0.9, 0.4], [0.6, 0.6])).within is None
 
 
 def swapped(seeds, key, other):
@@ -178,3 +208,7 @@ def test_the_film_shows_both_bumps_in_step(car, tmp_path):
     clock = (slice(70, 94), slice(0, 130))
     assert np.std(left[clock]) > 20.0
     assert np.mean(np.abs(left[clock] - right[clock])) < 2.5
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("bump", results) == []

@@ -5,6 +5,7 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import scenarios
@@ -90,6 +91,34 @@ def test_the_headline_counts_predicted_rows_only():
     )
 
 
+def test_both_counts_of_the_rows_with_an_interval():
+    near = [0.61, 0.62, 0.6, 0.59, 0.63, 0.61, 0.6, 0.62]  # outside, yet not improbable
+    rows = [
+        interval_claim("a", (0.0, 1.0), 0.5, "w"),
+        spread_claim("b", (0.4, 0.6), near, "w"),
+        interval_claim("c", (0.0, 1.0), 2.0, "w", status="fitted"),
+        interval_claim("d", (0.0, 1.0), 0.5, "w", status="duplicate"),
+        made("predicted", True),
+    ]
+    assert [row.inside for row in rows] == [True, False, False, True, None]
+    assert headline([asdict(row) for row in rows]) == (
+        "3 of 3 predicted rows agree; in addition 1 fitted (0 agree), 1 duplicate (1 agree); of 3 rows with a printed "
+        "interval our value is inside in 1, not contradicted at 5 % in 2"
+    )
+
+
+def test_a_verdict_that_the_seeds_turn_is_undecided():
+    values = np.array([0.61, 0.66, 0.6, 0.71, 0.64, 0.61, 0.69, 0.62])
+    ends = [spread_claim("a", (0.4, high), values, "w").within for high in np.linspace(0.45, 0.65, 81)]
+    # From NO to yes as the interval grows, undecided between.
+    assert [ends.index(one) for one in (False, None, True)] == sorted(ends.index(one) for one in (False, None, True))
+    assert ends == sorted(ends, key=[False, None, True].index)
+    row = PREDICTED.number("a", 1.0, 1.09, 0.1, "w", error=0.01)
+    assert (row.within, PREDICTED.number("a", 1.0, 1.09, 0.1, "w", error=0.004).within) == (None, True)
+    assert headline([asdict(row)]) == "0 of 1 predicted rows agree, 1 undecided"
+    assert "| undecided | predicted |" in claim_table([asdict(row)])
+
+
 def test_files_hold_rows_notes_and_data(tmp_path):
     rows = [
         TABLE.number("a | b", 2.0, 2.1, 0.2, "w"),
@@ -98,15 +127,18 @@ def test_files_hold_rows_notes_and_data(tmp_path):
     ]
     Findings(title="Title", claims=rows, notes=["A note."], data={"extra": [1.0, float("inf")]}).write(tmp_path)
     text = (tmp_path / "results.md").read_text(encoding="utf-8")
-    assert "\n1 of 2 predicted rows agree; in addition 1 fitted (0 agree)." in text
-    assert "| a \\| b |  | 2 | 2.1 | +5.0 % | yes | predicted | table | w |" in text
-    assert "| a |  | b | c |  | NO | fitted | text | w |" in text
-    assert "| c | figure 4.12 | 95 or more | 90 | -5.3 % | NO | predicted | axis interval | v |" in text
+    assert (
+        "\n1 of 2 predicted rows agree; in addition 1 fitted (0 agree); of 1 rows with a printed interval our value is "
+        "inside in 0, not contradicted at 5 % in 0." in text
+    )
+    assert "| a \\| b |  | 2 | 2.1 | +5.0 % |  | yes | predicted | table | w |" in text
+    assert "| a |  | b | c |  |  | NO | fitted | text | w |" in text
+    assert "| c | figure 4.12 | 95 or more | 90 | -5.3 % | no | NO | predicted | axis interval | v |" in text
     assert text.endswith("A note.\n")
     content = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
     assert set(content["rows"][0]) == {
         "name", "published", "ours", "deviation", "within", "why", "status", "source", "interval",
-        "place", "picture", "probability",
+        "place", "picture", "probability", "inside", "evidence",
     }  # fmt: skip
     assert [row["interval"] for row in content["rows"]] == [None, None, [95.0, None]]
     assert content["rows"][0]["deviation"] == pytest.approx(0.05)

@@ -1,6 +1,7 @@
 """`python -m scenarios.damper_choice` as a user runs it."""
 
 import json
+import re
 from dataclasses import fields
 
 import numpy as np
@@ -9,7 +10,9 @@ import pytest
 from scenarios.claims import Claim
 from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
+from scenarios.damper_choice.other_vehicles import region_verdicts
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
+from tests.scenarios.kept_table import contradictions
 from vehicle.engines.lumped.road_holding import quarter_car_model, tyre_load_ratio
 from vehicle.model.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -63,6 +66,23 @@ def test_rows_show_what_the_source_prints(results):
     curves = [row for name, row in rows.items() if name.startswith("damper curve: ")]
     assert len(curves) == 2
     assert all(row["status"] == "not testable" and row["within"] is None for row in curves)
+
+
+def test_a_flank_that_the_distance_turns_is_undecided(results):
+    rows = {row["name"]: row for row in json.loads((results / "results.json").read_text(encoding="utf-8"))["rows"]}
+    row = rows["half car front: steeper below the optimum than above, printed measure"]
+    pairs = [[float(value) for value in pair] for pair in re.findall(r"([\d.]+) / ([\d.]+) \(", row["ours"])]
+    assert len(pairs) == 3 and len({below > above for below, above in pairs}) == 2 and row["within"] is None
+
+
+def test_the_order_of_the_wheel_curves():
+    lines = np.arange(0.1, 12.0, 0.1)
+    soft, firm = 1.0 + 0.0 * lines, 1.0 + 0.1 * np.sign(6.0 - lines)
+    firm[lines < 2.0] = 1.0
+    assert region_verdicts(lines, np.array([soft, firm]), 2.0) == (True, True)
+    assert region_verdicts(lines, np.array([firm, soft]), 2.0) == (True, False)
+    firm[lines < 2.0] = 1.2
+    assert region_verdicts(lines, np.array([soft, firm]), 2.0) == (False, True)
 
 
 def test_every_row_has_its_place_and_a_picture_that_is_there(results):
@@ -140,3 +160,7 @@ def test_complete_car_quarter_carries_its_share():
     assert car.wheel.suspension_stiffness == pytest.approx(2.5e4 * cosine**2, rel=1e-9)
     assert car.wheel.suspension_damping == pytest.approx(2250.0 * cosine**2, rel=1e-9)
     assert 30.0 < car.wheel.unsprung_mass < 60.0
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("damper_choice", results) == []

@@ -8,7 +8,17 @@ import numpy as np
 import pytest
 
 from scenarios.evidence import status_of
-from scenarios.inertia import led_by, loss_angle, main, moment_about_cog, roll_claims, roll_mode, roll_peak
+from scenarios.inertia import (
+    led_by,
+    loss_angle,
+    main,
+    moment_about_cog,
+    roll_claims,
+    roll_mode,
+    roll_peak,
+    torsion_claim,
+)
+from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
 
 
@@ -28,6 +38,7 @@ def test_modes_are_judged_and_roll_peaks_need_a_long_record(results):
         "hydromount, loss angle at 7 Hz [deg]": ("predicted", True),
         "engine modes": ("fitted", True),
         "flexible modes of the trimmed body": ("fitted", True),
+        "torsion mode of the body couples with the vertical wheel mode, low level": ("fitted", True),
     }
     left = list(content["not_judged"])
     assert len(left) == 3 and all(name.startswith("roll peak of the seat rail FRF") for name in left)
@@ -52,6 +63,10 @@ def test_modes_belong_to_the_part_with_most_energy(car):
     for part in ("body", "engine"):
         assert len(led_by(modes, part)) == 6
         assert all(mode.energy[part] == max(mode.energy.values()) for mode in led_by(modes, part))
+
+
+def test_a_torsion_mode_far_above_the_wheel_mode_does_not_couple():
+    assert torsion_claim(Car.load(overrides=["body.frequency_scale=4"])).within is False
 
 
 def test_roll_rows_follow_the_peaks():
@@ -90,3 +105,7 @@ def test_the_peak_nearest_to_the_mode_is_taken(car):
     # One line without an estimate, 0.2 Hz below the top, must not hide it.
     response.response[0, np.argmin(np.abs(response.frequency - roll.frequency + 0.2))] = np.nan
     assert roll_peak(response, roll.frequency) == pytest.approx(roll.frequency, rel=roll.damping_ratio)
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("inertia", results) == []

@@ -11,13 +11,13 @@ from scenarios.levels import (
     CHANNELS,
     DAMPER,
     OUTPUTS,
-    PUBLISHED_SLIP,
     LevelNumbers,
     frequency_claims,
     main,
     order_claims,
-    slip_claims,
 )
+from scenarios.slip_shares import OTHER_VELOCITIES, PUBLISHED_SLIP, slip_claims
+from tests.scenarios.kept_table import contradictions
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.peaks import phase_resonance
 
@@ -47,7 +47,7 @@ def test_short_signals_judge_only_what_they_can(results):
     shares = [content["levels"][level]["slip"][0] for level in ("low", "mid", "high")]
     assert shares == sorted(shares)
     assert shares[0] < 0.005 < shares[2]
-    assert "| high | 21.8 |" in (results / "results.md").read_text(encoding="utf-8")
+    assert "| high | 1 | 21.8 |" in (results / "results.md").read_text(encoding="utf-8")
 
 
 def test_every_output_of_chapter_3_has_a_figure():
@@ -112,7 +112,6 @@ def test_a_coherence_is_judged_where_something_is_seen():
 def level(slip, wheel_hz, peak, ratio):
     return LevelNumbers(
         slip=slip,
-        saturated=slip,
         wheel_hz=wheel_hz,
         wheel_peak_hz=wheel_hz,
         wheel_peak=peak,
@@ -121,16 +120,43 @@ def level(slip, wheel_hz, peak, ratio):
     )
 
 
+def shares_of(levels):
+    """Eight records, each with the slip shares of the levels, at every velocity."""
+    scatter = 1e-3 * np.linspace(-1.0, 1.0, 8)[:, None]
+    return {
+        name: {velocity: np.array(one.slip) + scatter for velocity in (*OTHER_VELOCITIES, 0.006)}
+        for name, one in levels.items()
+    }
+
+
+def slip_rows(levels):
+    return slip_claims(shares_of(levels), {name: one.slip for name, one in levels.items()}, 0.006)
+
+
+def test_a_slip_row_gives_the_shares_by_other_definitions():
+    levels = {name: level((0.2, 0.03), 28.0, 1.0, 1.0) for name in PUBLISHED_SLIP}
+    shares = shares_of(levels)
+    shares["high"][0.012] = np.full((8, 2), (0.12, 0.004))
+    row = slip_claims(shares, {name: one.slip for name, one in levels.items()}, 0.006)[-2]
+    assert row.name.startswith("slip share of the right damper, high") and row.evidence == "slip_right_high"
+    assert "above 6 mm/s; the shipped record has 20.00 %" in row.why
+    assert "20.0 / 3.00 % above 1 mm/s, 12.0 / 0.40 % above 12 mm/s" in row.why
+
+
 def test_rows_disagree_where_the_numbers_do():
     good = {
         "low": level((0.0, 0.0), 28.0, 3.0, 1.0),
         "mid": level((0.039, 0.0), 27.5, 2.0, 0.9),
         "high": level((0.218, 0.0), 26.0, 1.0, 0.8),
     }
-    assert all(claim.within for claim in (*slip_claims(good, 0.01), *frequency_claims(good), *order_claims(good)))
+    assert all(claim.within for claim in (*slip_rows(good), *frequency_claims(good), *order_claims(good)))
     bad = {
         "low": level((0.04, 0.04), 30.0, 1.0, 0.9),
         "mid": level((0.08, 0.04), 30.0, 2.0, 0.9),
         "high": level((0.17, 0.04), 30.0, 1.0, 0.9),
     }
-    assert not any(claim.within for claim in (*slip_claims(bad, 0.01), *frequency_claims(bad), *order_claims(bad)))
+    assert not any(claim.within for claim in (*slip_rows(bad), *frequency_claims(bad), *order_claims(bad)))
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("levels", results) == []

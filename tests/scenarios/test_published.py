@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +13,7 @@ import pytest
 from PIL import Image, ImageDraw
 
 import scenarios.published.__main__ as published
+from scenarios import evidence
 from scenarios.published.pictures import LARGEST, write_copy
 from scenarios.published.sources import SOURCES, THESIS, place_of, section_of
 from scenarios.published.statements import STATEMENTS, unanswered
@@ -22,7 +24,7 @@ def row(name, within=True, **changes):
     return {
         "name": name, "published": 1.0, "ours": 1.02, "deviation": 0.02, "within": within, "why": "5 %",
         "status": "predicted", "source": "text", "interval": None,
-        "place": "figure 3.3", "picture": "", "probability": None, **changes,
+        "place": "figure 3.3", "picture": "", "probability": None, "inside": None, "evidence": "", **changes,
     }  # fmt: skip
 
 
@@ -59,8 +61,8 @@ def studies(monkeypatch, tmp_path):
     def module(name):
         def main(arguments):
             calls[name].append(arguments)
-            folder = tmp_path / "runs" / name
-            assert arguments[:2] == ["--output", str(folder)]
+            folder = Path(arguments[1])
+            assert folder in (tmp_path / "runs" / name, tmp_path / "runs" / f"{name}_beside")
             folder.mkdir(parents=True, exist_ok=True)
             content: dict[str, Any] = {"title": f"title of {name}", "rows": CONTENT[name], "notes": [f"made by {name}"]}
             if name == "levels":
@@ -89,7 +91,7 @@ def test_every_row_of_every_study_is_in_the_table_and_on_the_page(studies, tmp_p
     assert studies["levels"] == [["--output", str(tmp_path / "runs" / "levels"), "--force", "--jobs", "2", "--quick"]]
     rows = json.loads((tmp_path / "table" / "results.json").read_text(encoding="utf-8"))["rows"]
     assert [row["name"] for row in rows] == [f"{study}: {row['name']}" for study in CONTENT for row in CONTENT[study]]
-    assert all(set(row) == KEYS for row in rows)
+    assert all(set(row) == {*KEYS, "beside"} for row in rows)
     text, messages = written(tmp_path), capsys.readouterr()
     counts = "2 of 3 predicted rows agree; in addition 1 chosen (1 agree), 1 not testable"
     assert f"**{counts}.**" in text and counts in messages.out
@@ -120,7 +122,7 @@ def test_the_page_follows_the_order_of_the_sources(studies, tmp_path):
 def test_rows_that_do_not_agree_stand_at_the_top_with_a_link(studies, tmp_path):
     assert command(tmp_path) == 0
     text = written(tmp_path)
-    top = text[text.index("## Rows that do not agree") : text.index("## Thesis of Bommer")]
+    top = text[text.index("## Rows that do not agree") : text.index("## Rows that are undecided")]
     link = "[Thesis of Bommer, 2006: section 3.2.1.2](#bommer-section-3-2-1-2)"
     assert f"| {link} | vertical wheel mode, low [Hz] | 1 | 1.02 | predicted | 5 % |" in top
     assert top.count("\n| ") == 2 and '<a id="bommer-section-3-2-1-2"></a>' in text
@@ -182,7 +184,29 @@ def test_finished_studies_are_read_and_missing_ones_run(studies, tmp_path):
     assert command(tmp_path) == 0
     (tmp_path / "runs" / "levels" / "results.json").unlink()
     assert command(tmp_path, "--reuse", "--force") == 0
-    assert {name: len(calls) for name, calls in studies.items()} == {"levels": 2, "quarter_car": 1, "half_car_rider": 1}
+    assert {name: len(calls) for name, calls in studies.items()} == {"levels": 3, "quarter_car": 1, "half_car_rider": 1}
+
+
+def test_the_second_car_has_a_column_and_a_count(studies, tmp_path):
+    assert command(tmp_path) == 0
+    first, second = studies["levels"]
+    assert second == [*first[:1], f"{first[1]}_beside", *first[2:], "--set", "body.inertia.ixx=1080"]
+    text = written(tmp_path)
+    assert "| statement | published | ours | agrees | Ixx 1080 | status | why |" in text
+    assert "| slip share of the right damper, high [%] | 1 | 1.02 | yes | 1.02: yes | predicted | 5 % |" in text
+    assert "Of 2 predicted rows computed with both cars, 1 agree with the printed Ixx 1000 and 1 with Ixx 1080." in text
+
+
+def test_a_row_of_the_choice_says_its_half(studies, tmp_path, monkeypatch):
+    used, held = (
+        next(key for key in evidence.EVIDENCE if (key.key in evidence.USED) == half) for half in (True, False)
+    )
+    rows = [row("a", status="chosen", evidence=used.key, inside=False), row("b", evidence=held.key, inside=True)]
+    monkeypatch.setitem(CONTENT, "levels", rows)
+    assert command(tmp_path, "--quick") == 0
+    text = written(tmp_path)
+    assert "| a | 1 | 1.02 | no | yes | chosen (used) | 5 % |" in text
+    assert "| b | 1 | 1.02 | yes | yes | predicted (held out) | 5 % |" in text
 
 
 def test_the_notes_of_the_choice_are_the_last_section(studies, tmp_path, monkeypatch):
@@ -216,7 +240,7 @@ def test_an_occupied_folder_is_refused_before_anything_runs(studies, tmp_path, c
     assert command(tmp_path) == 0
     assert command(tmp_path) == 2
     assert "holds files already" in capsys.readouterr().err
-    assert len(studies["levels"]) == 1
+    assert len(studies["levels"]) == 2  # both cars, once
 
 
 def test_a_failed_study_ends_the_command(studies, tmp_path, monkeypatch, capsys):

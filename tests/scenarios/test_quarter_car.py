@@ -97,6 +97,8 @@ def test_the_table_holds_every_published_row(tmp_path):
         "longitudinal damping 0, 550, 1100",
         "effect of the transitions",
         "engine and wheel, both relative",
+        "sine 50 mm: highest velocity of the damper",
+        "sine 1 mm: lowest acceleration relative to the body",
     ):
         assert any(wanted in name for name in names), wanted
     for row in results["rows"]:

@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+from scenarios.claims import STATUSES, UNCOUNTED
+from scenarios.evidence import EVIDENCE, evidence_of
 from scenarios.published.__main__ import HOME, PAGE
 from scenarios.published.page import page
 from vehicle.signals.excitation.slip_set import CHOSEN
@@ -38,7 +40,22 @@ def ours(pattern: str) -> list[float]:
 
 def predicted() -> list[str]:
     verdicts = [row["within"] for row in ROWS if row["status"] == "predicted"]
-    return [f"{sum(verdicts)}", f"{len(verdicts)}"]
+    return [f"{count}" for count in (verdicts.count(True), len(verdicts), verdicts.count(None))]
+
+
+def intervals() -> list[str]:
+    rows = [row for row in ROWS if row["inside"] is not None and row["status"] not in UNCOUNTED]
+    return [f"{len(rows)}", *(f"{[row[name] for row in rows].count(True)}" for name in ("inside", "within"))]
+
+
+def halves() -> dict[tuple[str, str], str]:
+    """Return name and place of every statement in the list of the choice to its half: "chose" or "held out"."""
+    cells = [line.split(" | ") for note in TABLE["choice"] for line in note.split("\n")]
+    return {(row[0].removeprefix("| "), row[1]): row[2] for row in cells if len(row) > 2 and row[2] in HALVES}
+
+
+HALVES = {"chose": "used", "held out": "held out"}
+"""Word of a half in the list of the choice, and behind the status of a row."""
 
 
 def number_of(status: str) -> list[str]:
@@ -58,7 +75,8 @@ def first(pattern: str, digits: int) -> list[str]:
 N = r"(-?[\d.]+)"
 
 QUOTES: dict[str, Callable[[], list[str]]] = {
-    rf"{N} of {N} predicted rows agree": predicted,
+    rf"{N} of {N} predicted rows agree, {N} undecided": predicted,
+    rf"of {N} rows with a printed interval our value is inside in {N}, not contradicted at 5 % in {N}": intervals,
     rf"in addition {N} rows are fitted": lambda: number_of("fitted"),
     rf"rows are fitted, {N} chosen": lambda: number_of("chosen"),
     rf"slip share[^|]*, right damper[^|]*\| {N} / {N} / {N} % \| {N} / {N} / {N} % \|": lambda: shares("right"),
@@ -96,6 +114,23 @@ def test_a_quoted_number_is_that_of_the_table(sentence):
 def test_a_quoted_row_says_whether_it_is_fitted(words, pattern):
     rows = [row for text in PAGES.values() for row in re.findall(r"\| ([^|]+) \|", text) if row.startswith(words)]
     assert rows and all(named(pattern)["status"] in row for row in rows), rows
+
+
+def test_statuses_are_those_of_the_list_of_the_choice():
+    rows = {row["evidence"]: row for row in ROWS if row["evidence"]}
+    listed = halves()
+    assert set(listed) == {(one.name, one.place) for one in EVIDENCE}
+    # Both ends of the range of the engine modes are one row of the page.
+    assert set(rows) == {one.key for one in EVIDENCE} - {"engine_lowest", "engine_highest"}
+    text = (ROOT / PAGE).read_text(encoding="utf-8")
+    for key, row in rows.items():
+        half, status = listed[evidence_of(key).name, evidence_of(key).place], row["status"]
+        assert status in {"chose": ("chosen", "fitted", "duplicate")}.get(half, STATUSES), key
+        if not evidence_of(key).before and half == "held out":
+            assert status in ("predicted", "duplicate"), key
+        name = row["name"].partition(": ")[2].replace("|", "\\|")
+        line = next(one for one in text.split("\n") if one.startswith(f"| {name} |"))
+        assert f"| {status} ({HALVES[half]}) |" in line, key
 
 
 def test_the_page_is_that_of_the_table():

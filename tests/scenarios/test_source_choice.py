@@ -59,6 +59,19 @@ def test_the_halves_hold_every_topic_and_every_row_once():
         status_of("slip_right_middle")
 
 
+def test_statuses_follow_the_halves():
+    for row in EVIDENCE:
+        status = status_of(row.key)
+        if row.same:
+            assert status == "duplicate" and not evidence_of(row.same).same
+        elif row.before == "fitted":
+            assert status == "fitted"
+        else:
+            assert status == ("chosen" if row.key in USED else row.before or "predicted")
+    # One half second of the same road and car in three figures, and in two of the other road.
+    assert [row.key for row in EVIDENCE if row.same] == ["level_4_5", "level_4_9", "level_4_10"]
+
+
 def test_a_row_changes_the_likelihood_by_at_most_a_factor_of_a_hundred():
     row = evidence_of("wheel_mode")
     far, near = log_likelihood(row, [40.0]), log_likelihood(row, [28.0])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from scenarios.stribeck import force_error, law_force, main, peak_claims
+from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.slip import extra_peaks, most_prominent, slip_phases
 from vehicle.signals.excitation.bump import bump
@@ -27,6 +28,8 @@ def test_the_extra_peak_is_there_with_stribeck_alone(results):
         "extra peak after stick ends, Stribeck": True,
         "extra peak after stick ends, Coulomb": True,
         "damper force over velocity against equations 3.1 and 3.2": True,
+        "highest velocity of the damper over the 7.5 mm bump, both laws [m/s]": True,
+        "lowest force of the damper over the 7.5 mm bump, both laws [N]": True,
     }
     assert all(len(counts) in (0, 2) for counts in content["extra_peaks_over_seeds"].values())
     largest = {
@@ -101,3 +104,7 @@ def test_force_error_sees_another_law(car):
     rows = peak_claims({"Stribeck": bent, "Coulomb": bent}, phases, {"Stribeck": [0, 2], "Coulomb": [1, 0]})
     assert [row.within for row in rows] == [True, True, False]
     assert str(rows[0].ours).startswith("present with 1 of 3 seeds of the noise; pictured run: 0,")
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("stribeck", results) == []

@@ -1,4 +1,4 @@
-"""Complete command for a measurement file, from the units and the names of its channels."""
+"""Complete command for a measurement file, from the units and the names of its channels; it accepts the file."""
 
 from __future__ import annotations
 
@@ -7,11 +7,23 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.accepted import refusal
 from vehicle.errors import VehicleError
-from vehicle.signals.records.channel_words import axis_of, map_options, suggested_channels, wheel_of, words_of
+from vehicle.signals.records.channel import NOT_OVER_TIME, ROAD_PROFILE
+from vehicle.signals.records.channel_words import (
+    axis_of,
+    map_options,
+    may_be_plate,
+    suggested_channels,
+    wheel_of,
+    words_of,
+)
 
 if TYPE_CHECKING:
     from vehicle.signals.records.channel import Channel, Measurement
+
+Numbered = tuple[int, "Channel"]
+"""Number of a channel in its file, and the channel."""
 
 SHAKER_WHEEL = "fl"
 """Shaker wheel of the car `focus`, the default of the command `shaker`."""
@@ -23,22 +35,25 @@ LARGEST_CHECKED = 200_000_000
 """Largest file that is read a second time, to see that the command runs [bytes]."""
 
 
-def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
+def command_for(measurement: Measurement, file: str, databases: Sequence[Path] = ()) -> tuple[str, str]:
     """Return the command for a file with its purpose, or the reason for the lack of a command.
 
     Args:
         measurement: the file.
         file: name of the file as typed.
+        databases: DBC files that decoded the log of a CAN bus.
     """
     if measurement.shapes and not measurement.channels:
-        return _line("compare", "--measured", file), "compares the mode shapes with those of a car"
+        command, why = _first(measurement, [["compare", "--measured", file]])
+        return command, "compares the mode shapes with those of a car" if command else f"mode shapes, but: {why}"
     road = _road(measurement, file)
     if road is not None:
         return road
+    files = [file, *(word for database in databases for word in ("--dbc", str(database)))]
     histories = [
         (number, channel)
         for number, channel in enumerate(measurement.channels, 1)
-        if channel.kind == "time" and channel.function != "road profile" and channel.axis is not None
+        if channel.kind == "time" and channel.axis is not None
     ]
     by = {
         quantity: [(number, channel) for number, channel in histories if channel.quantity == quantity]
@@ -49,33 +64,88 @@ def command_for(measurement: Measurement, file: str) -> tuple[str, str]:
             "a force with a velocity or a travel: the curve of a damper or a spring; name the file in the vehicle "
             "file, docs/vehicle-file.md"
         )
-    if by["displacement"]:
-        return _plates(measurement, file, by["displacement"], by["velocity"])
-    if by["acceleration"]:
-        return _accelerations(measurement, file, by["acceleration"])
+    empty = [channel for _, channel in (*by["displacement"], *by["acceleration"]) if not _has_values(channel)]
+    plates, accelerations = (
+        [(number, channel) for number, channel in by[quantity] if _has_values(channel)]
+        for quantity in ("displacement", "acceleration")
+    )
+    moves = [(number, channel) for number, channel in plates if may_be_plate(channel, measurement.channels)]
+    reasons = []
+    if moves:
+        command, why = _plates(measurement, files, moves, by["velocity"])
+        if command:
+            return command, why
+        reasons.append(why)
+    if accelerations:
+        command, why = _accelerations(measurement, files, accelerations)
+        if command:
+            return command, why
+        reasons.append(why)
+    if reasons:
+        return "", reasons[0]
+    if plates:
+        names = ", ".join(channel.name for _, channel in plates[:4])
+        return "", f"{names}: a height above the sea, a distance, or the travel of a spring, no plate and no road"
+    if empty:
+        note = f" ({empty[0].remark})" if empty[0].remark else ""
+        return "", f"{', '.join(channel.name for channel in empty[:4])}: no values{note}"
     if any(channel.kind == "frequency" for channel in measurement.channels):
         return "", "responses: python -m vehicle compare RUN --measured FILE --map knuckle_fr_acc_z=NAME"
+    if not measurement.channels:
+        return "", "no channels, nodes only"
     if histories:
         return "", "no unit is known that tells a displacement or an acceleration: set --unit ROLE=UNIT with --channel"
+    if any(channel.function in NOT_OVER_TIME for channel in measurement.channels):
+        return "", "the channels are over distance or angle, not over time; export them over time"
     return "", "no channel with times: set --rate HZ, or --channel time=NAME"
 
 
-def comparison_for(measurement: Measurement, file: str) -> str:
+def comparison_for(measurement: Measurement, file: str, command: str) -> str:
     """Return the command that compares the accelerations of a file with a run of its plate; empty without both.
 
     Args:
         measurement: the file.
         file: name of the file as typed.
+        command: command from `command_for`; the comparison uses its run.
     """
-    suggested = suggested_channels(measurement.channels)
+    from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.signals.records.choice import pick
+
+    run_command = shlex.split(command)[3:]
+    if run_command[:1] != ["shaker"] or "--road" in run_command:
+        return ""
+    car = Path(run_command[run_command.index("--vehicle") + 1]) if "--vehicle" in run_command else None
+    suggested = suggested_channels(measurement.channels, load_vehicle(car).channels)
     plates = [name for name in suggested if name.startswith("plate_")]
     if not plates or len(plates) == len(suggested):
         return ""
-    return f"{_line('compare', 'RUN', '--measured', file)} {map_options(suggested)}"
+    mapped_channels = [measurement.channels[pick(measurement, name)] for name in suggested.values()]
+    databases = [word for at, word in enumerate(run_command) if "--dbc" in run_command[max(at - 1, 0) : at + 1]]
+    arguments = ["compare", "RUN", "--measured", file, *databases, *_clock(*mapped_channels)]
+    mapped = map_options(suggested)
+    checked = [*arguments, *shlex.split(mapped), *(("--vehicle", str(car)) if car else ())]
+    return "" if _is_checked(measurement) and refusal(checked) else f"{_line(*arguments)} {mapped}"
 
 
 def _line(*arguments: str) -> str:
     return shlex.join(["python", "-m", "vehicle", *arguments])
+
+
+def _is_checked(measurement: Measurement) -> bool:
+    return measurement.path.stat().st_size <= LARGEST_CHECKED
+
+
+def _first(measurement: Measurement, candidates: Sequence[list[str]]) -> tuple[str, str]:
+    """Return the first command that accepts its file and "", or "" and the reason why the first does not."""
+    if not _is_checked(measurement):
+        return _line(*candidates[0]), ""
+    reasons = []
+    for arguments in candidates:
+        reason = refusal(arguments)
+        if not reason:
+            return _line(*arguments), ""
+        reasons.append(reason)
+    return "", reasons[0]
 
 
 def _pick(measurement: Measurement, number: int) -> str:
@@ -85,43 +155,77 @@ def _pick(measurement: Measurement, number: int) -> str:
     return name if name and once and not name.isdecimal() and not set(name) & set("*?[=") else str(number)
 
 
+def _has_values(channel: Channel) -> bool:
+    import numpy as np
+
+    return bool(np.isfinite(channel.values).any())
+
+
 def _road(measurement: Measurement, file: str) -> tuple[str, str] | None:
     """Return the command line that drives over a road profile, and a reason if there is none; None for other files."""
     from vehicle.signals.excitation.measured_road import read_road
 
-    profile = measurement.format in ("crg", "erd")
+    profile = any(channel.function == ROAD_PROFILE for channel in measurement.channels)
     if not profile and not any(channel.name.strip().lower() == "distance" for channel in measurement.channels):
         return None
     try:
         read_road(measurement.path, 1.5)
     except VehicleError as error:
         return ("", f"no road for a car of 1.5 m track: {error}") if profile else None
-    return _line(
-        "shaker", "--vehicle", "focus_road", "--road", file, "--speed", "80"
-    ), "drives over the road at 80 km/h"
+    arguments = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", "80"]
+    command, why = _first(measurement, [arguments])
+    return command, "drives over the road at 80 km/h" if command else f"a road, but: {why}"
 
 
-def _clock(channel: Channel) -> tuple[str, ...]:
+def _clock(*channels: Channel) -> tuple[str, ...]:
+    """Return the options that make the times of channels usable and common, in the longest part with all values."""
+    import numpy as np
+
     from vehicle.signals.records.clock import clock_options
+    from vehicle.signals.records.common_span import blocks_of, cut, resampling_rate
 
-    return () if channel.axis is None else clock_options(channel.axis)
+    if any(channel.axis is None for channel in channels):
+        return ()
+    try:
+        (block, *others), _ = cut("", blocks_of({str(number): channel for number, channel in enumerate(channels)}))
+    except VehicleError:
+        return ()  # the command reports it
+    time = block.time
+    valid = np.all([np.isfinite(channel.values) for channel in block.channels.values()], axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], valid, [False]]).astype(int))).reshape(-1, 2)
+    if valid.all() or not edges.size:
+        options = clock_options(time)
+    else:
+        begin, end = edges[int(np.argmax(edges[:, 1] - edges[:, 0]))].tolist()
+        options = clock_options(time[begin:end])
+        if "--from" not in options:
+            options = ("--from", f"{time[begin]:.9g}", "--to", f"{time[end - 1]:.9g}", *options)
+    if others and "--resample" not in options:
+        options = (*options, "--resample", resampling_rate([block, *others]))
+    return options
 
 
 def _plates(
-    measurement: Measurement, file: str, moves: list[tuple[int, Channel]], speeds: list[tuple[int, Channel]]
+    measurement: Measurement, files: list[str], moves: list[Numbered], speeds: list[Numbered]
 ) -> tuple[str, str]:
     """Return the command for displacements: shaker plates, or a road with a recorded speed."""
     from vehicle.signals.excitation.recorded_road import NAMES
+    from vehicle.signals.records.common_span import overlap
 
     plain = {channel.name.strip().rstrip(".").lower() for _, channel in moves}
     if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
         speed = _pick(measurement, speeds[0][0])
-        arguments = ["shaker", "--vehicle", "focus_road", "--road", file, "--speed", f"channel:{speed}"]
-        return _line(*arguments, *_clock(moves[0][1])), "drives over the recorded road at the recorded speed"
+        arguments = ["shaker", "--vehicle", "focus_road", "--road", *files, "--speed", f"channel:{speed}"]
+        heights = [channel for _, channel in moves if channel.name.strip().rstrip(".").lower() in
+                   {name for names in NAMES.values() for name in names}]  # fmt: skip
+        same = [channel for _, channel in speeds if channel.axis is heights[0].axis]  # others are interpolated
+        command, why = _first(measurement, [[*arguments, *_clock(*heights, *same)]])
+        return command, "drives over the recorded road at the recorded speed" if command else f"a road, but: {why}"
     wheels: dict[str, int] = {}
     for number, channel in moves:
         wheel = wheel_of(channel.name)
-        if wheel and wheel not in wheels:
+        together = [measurement.channels[other - 1] for other in wheels.values()]
+        if wheel and wheel not in wheels and all(overlap(channel, other) for other in together):
             wheels[wheel] = number
     addition = ""
     if not wheels:
@@ -134,54 +238,31 @@ def _plates(
     if any(roles.get(name) != wheel for name, wheel in names.items()) or len(moves) > len(wheels):
         for wheel, number in wheels.items():
             picks += ["--channel", f"{wheel}={_pick(measurement, number)}"]
-    arguments = [
-        "shaker",
-        *car,
-        "--input",
-        file,
-        *picks,
-        *_clock(measurement.channels[next(iter(wheels.values())) - 1]),
-    ]
-    command, why = _tried(measurement.path, arguments, (["--detrend"],))
+    clock = _clock(*(measurement.channels[number - 1] for number in wheels.values()))
+    arguments = ["shaker", *car, "--input", *files, *picks, *clock]
+    command, why = _first(measurement, [arguments, [*arguments, "--detrend"]])
     purpose = "puts the displacement on the plate of wheel" + ("s " if len(wheels) > 1 else " ") + ", ".join(wheels)
-    return (command, purpose + addition) if command else ("", why)
+    return (command, purpose + addition) if command else ("", f"a displacement, but: {why}")
 
 
-def _tried(path: Path, arguments: list[str], more: Sequence[list[str]]) -> tuple[str, str]:
-    """Return the first shaker command whose signal is readable, or the reason why the signals are not."""
-    from vehicle.commands.input_options import record_choice
-    from vehicle.commands.shaker import parser
-    from vehicle.signals.excitation.signal_file import read_signal
-
-    reason = ""
-    if path.stat().st_size > LARGEST_CHECKED:
-        return _line(*arguments), ""
-    for extra in ([], *more):
-        options = parser().parse_args([*arguments, *extra][1:])
-        try:
-            read_signal(path, wheel=SHAKER_WHEEL, choice=record_choice(options, SHAKER_WHEEL))
-        except VehicleError as error:
-            reason = reason or f"a displacement, but: {error}"
-            continue
-        return _line(*arguments, *extra), ""
-    return "", reason
-
-
-def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, Channel]]) -> tuple[str, str]:
+def _accelerations(measurement: Measurement, files: list[str], those: list[Numbered]) -> tuple[str, str]:
     """Return the comfort command for the accelerations of one point."""
     import numpy as np
+
+    from vehicle.signals.records.common_span import overlap
 
     seats = [pair for pair in those if {"seat", "sitz"} & set(words_of(pair[1].name + " " + pair[1].place))]
     axes: dict[str, int] = {}
     for number, channel in seats or those:
         axis = axis_of(channel)
-        if axis and axis not in axes:
+        together = [measurement.channels[other - 1] for other in axes.values()]
+        if axis and axis not in axes and all(overlap(channel, other) for other in together):
             axes[axis] = number
     if not axes:
         axes = {"z": (seats or those)[0][0]}
-    channel = measurement.channels[next(iter(axes.values())) - 1]
-    rate = channel.rate or 0.0
-    length = 0.0 if channel.axis is None else float(channel.axis[-1] - channel.axis[0])
+    chosen = [measurement.channels[number - 1] for number in axes.values()]
+    rate = chosen[0].rate or 0.0
+    length = chosen[0].values.size / rate if rate else 0.0
     if length < SHORTEST or rate < 25.0:
         return "", f"an acceleration of {length:.3g} s at {rate:.4g} Hz: comfort needs {SHORTEST:g} s at 25 Hz or more"
     picks = [
@@ -190,9 +271,13 @@ def _accelerations(measurement: Measurement, file: str, those: list[tuple[int, C
         if axis in axes
         for word in ("--channel", f"{axis}={_pick(measurement, axes[axis])}")
     ]
-    values = [np.real(measurement.channels[number - 1].values) for number in axes.values()]
+    values = [np.real(channel.values) for channel in chosen]
     still = all(abs(float(np.nanmean(each))) < 1e-3 * float(np.nanstd(each)) for each in values)
-    arguments = ["comfort", "--input", file, *picks, *_clock(channel), *([] if still else ["--offset", "remove"])]
+    arguments = ["comfort", "--input", *files, *picks, *_clock(*chosen)]
+    removed = [*arguments, "--offset", "remove"]
+    command, why = _first(measurement, [arguments, removed] if still else [removed])
     which = "the seat" if seats else "the point"
     more = "" if len(those) == len(axes) else f"; {len(those) - len(axes)} more accelerations"
-    return _line(*arguments), f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"
+    if not command:
+        return "", f"an acceleration, but: {why}"
+    return command, f"gives the comfort of {which} in {', '.join(sorted(axes))}{more}"

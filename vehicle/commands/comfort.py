@@ -97,8 +97,11 @@ def _picked(options: argparse.Namespace, picks: Sequence[str]) -> tuple[str | No
     return (points[0] if points else None), record_choice(channels, "")
 
 
-def _evaluate(options: argparse.Namespace) -> RecordComfort:
+def evaluated(options: argparse.Namespace) -> RecordComfort:
     """Evaluate the file of the options.
+
+    Args:
+        options: parsed options of the command; `input` is the file.
 
     Raises:
         ConfigurationError: `--rail` names another axis than z.
@@ -167,7 +170,7 @@ def _job(options: argparse.Namespace) -> None:
     """Evaluate the records of --input and print the results."""
 
     def one(name: str) -> dict[str, Any]:
-        return dict(_evaluate(argparse.Namespace(**{**vars(options), "input": name})).summary)
+        return dict(evaluated(argparse.Namespace(**{**vars(options), "input": name})).summary)
 
     names, several = expanded(options.inputs)
     if several:
@@ -175,7 +178,7 @@ def _job(options: argparse.Namespace) -> None:
         print(json.dumps(results, indent=2, allow_nan=False) if options.json else _overview(results), flush=True)
         raise_worst(errors, len(results))
         return
-    result = _evaluate(argparse.Namespace(**{**vars(options), "input": names[0]}))
+    result = evaluated(argparse.Namespace(**{**vars(options), "input": names[0]}))
     print(json.dumps(result.summary, indent=2, allow_nan=False) if options.json else result.text(), flush=True)
     for remark in result.notices:
         print(f"notice: {remark}", file=sys.stderr)

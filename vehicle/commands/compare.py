@@ -8,6 +8,7 @@ from collections.abc import Container
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.clock_options import clock_of, delay_option, drift_option
 from vehicle.commands.command_line import ProgressLine, command
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
@@ -49,9 +50,6 @@ def parser() -> Parser:
     )
     measured_options(parser, required=True, several=True)
     records = parser.scoped_group(RECORDS, needs="measured time histories; the file holds none", active=None)
-    records.add_argument(
-        "--delay", type=float, default=0.0, metavar="S", help="the measurement began this long after the run [s]; 0"
-    )
     drift_option(records)
     responses = parser.scoped_group(RESPONSES, needs="measured responses; the file holds none", active=None)
     responses.add_argument(
@@ -74,11 +72,9 @@ def parser() -> Parser:
         default="stuck",
         help="state of the dampers, for modes; stuck by default",
     )
-    record_options(
-        parser.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None),
-        "",
-        channel=False,
-    )
+    channels = parser.scoped_group(CHANNELS, needs="measured channels; the file holds mode shapes", active=None)
+    record_options(channels, "", channel=False)
+    delay_option(channels)
     vehicle_options(
         parser.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
     )
@@ -90,35 +86,6 @@ def parser() -> Parser:
     parser.add_argument("--json", action="store_true", help="print the content of compare.json")
     message_options(parser, quiet=True)
     return parser
-
-
-def drift_option(parser: argparse._ActionsContainer) -> None:
-    """Add --drift, the drift of the clock of a measurement against that of the run."""
-    parser.add_argument(
-        "--drift",
-        type=float,
-        default=0.0,
-        metavar="PPM",
-        help="the clock of the measurement is slow by so many parts per million: its times are multiplied by 1 + PPM / "
-        "1e6, then --delay is added; 0",
-    )
-
-
-def clock_of(options: argparse.Namespace) -> tuple[float, float]:
-    """Return --delay [s] and --drift [-].
-
-    Args:
-        options: parsed options of a command with both.
-
-    Raises:
-        ConfigurationError: a value is not finite, or the drift exceeds 0.1.
-    """
-    from vehicle.runs.comparison.compared_run import require_clock
-    from vehicle.signals.records.counterpart import PARTS
-
-    drift = options.drift / PARTS
-    require_clock(options.delay, drift)
-    return options.delay, drift
 
 
 def measured_options(parser: Parser, *, required: bool = False, several: bool = False) -> None:
@@ -162,8 +129,8 @@ def mapping_options(parser: argparse._ActionsContainer) -> None:
         default=[],
         metavar="CHANNEL=NAME",
         help='channel of the model and its measured channel, as knuckle_fr_acc_z="Dof 12 +Z": number, exact name, '
-        "pattern with *, or place and direction; for mode shapes PLACE=NODE; by default equal names, and for modes "
-        "nodes at the places of the car; may be repeated",
+        "pattern with *, or place and direction; a response may name its plate, as knuckle_fr_acc_z/plate_fl=3; for "
+        "mode shapes PLACE=NODE; by default equal names, and for modes nodes at the places of the car; may be repeated",
     )
     parser.add_argument(
         "--turn",
@@ -186,6 +153,7 @@ def measured_choice(options: argparse.Namespace, input_names: Container[str] = (
         ConfigurationError: a channel twice, an unknown unit, a number out of range.
     """
     from vehicle.signals.records.choice import Choice, pairs
+    from vehicle.signals.records.delays import parsed_delays, split_delay
 
     channels = pairs("--map", options.mapping, "")
     if "" in channels:
@@ -193,7 +161,9 @@ def measured_choice(options: argparse.Namespace, input_names: Container[str] = (
     units = {name: unit for name, unit in pairs("--unit", options.units, "").items() if name not in input_names}
     settings = {name: getattr(options, name) for name in ("rate", "first", "last", "detrend", "highpass", "resample")}
     settings["databases"] = tuple(options.databases)
-    return Choice(channels=channels, units=units, **(settings if hasattr(options, "delay") else {}))
+    if not hasattr(options, "delay"):
+        return Choice(channels=channels, units=units)
+    return Choice(channels=channels, units=units, delays=split_delay(parsed_delays(options.delay))[1], **settings)
 
 
 def _job(options: argparse.Namespace) -> None:
@@ -233,11 +203,13 @@ def _overview(results: list[dict[str, Any]]) -> str:
             continue
         summary = result["summary"]
         keys = (("responses", "frac", ""), ("records", "rms_ratio", "correlation"))
+        several = len({response.get("plate") for response in summary.get("responses", ())}) > 1
         for section, first, second in keys:
             for channel in summary.get(section, ()):
                 values = [channel.get(key) if key else None for key in (first, second)]
                 cells = ["-" if value is None else f"{value:.4g}" for value in values]
-                rows.append((result["input"], channel["channel"], section[:-1], *cells))
+                plate = f"/{channel['plate']}" if several and channel.get("plate") else ""
+                rows.append((result["input"], channel["channel"] + plate, section[:-1], *cells))
     return table_of(("file", "channel", "of", "FRAC or RMS ratio", "correlation"), rows)
 
 

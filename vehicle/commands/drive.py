@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.commands.clock_options import delay_option
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_choice, record_options
@@ -34,11 +35,13 @@ def parser() -> Parser:
     parser.add_argument(
         "--target", type=Path, required=True, metavar="FILE", help="measured accelerations, of any format of `inspect`"
     )
+    channels = parser.add_argument_group("channels of the target")
     record_options(
-        parser.add_argument_group("channels of the target"),
+        channels,
         'an acceleration of the car, as knuckle_fr_acc_z="Dof 12 +Z"; the name alone where the file has it, or has '
         "one channel; at least as many channels as plates",
     )
+    delay_option(channels)
     vehicle_options(parser).add_argument(
         "--wheel",
         dest="wheels",
@@ -84,6 +87,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.car import Car
+    from vehicle.signals.records.delays import parsed_delays
     from vehicle.studies.replication.drive_files import save_drive
     from vehicle.studies.replication.drive_search import replicate_drive, require_iteration
 
@@ -102,6 +106,7 @@ def _job(options: argparse.Namespace) -> None:
         iterations=options.iterations,
         gain=options.gain,
         target_error=target_error,
+        delay=parsed_delays(options.delay),
         engine=options.engine,
         progress=lambda step: None if options.quiet else _say(step, options.iterations),
     )

@@ -42,8 +42,8 @@ def _job(options: argparse.Namespace) -> None:
 
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
-        command, reason = command_for(measurement, name)
-        comparison = comparison_for(measurement, name) or None
+        command, reason = command_for(measurement, name, options.databases)
+        comparison = comparison_for(measurement, name, command) or None
         return {
             **contents(measurement),
             "command": command or None,
@@ -95,6 +95,7 @@ def overview(results: list[dict[str, Any]]) -> str:
 def contents(measurement: Measurement) -> dict[str, Any]:
     """Return the content of a file as plain numbers and texts; levels in SI units, or in the file's if unknown."""
     from vehicle.signals.records.clock import time_remarks
+    from vehicle.signals.records.common_span import different_spans
 
     axes = {
         id(channel.axis): channel.axis
@@ -102,6 +103,7 @@ def contents(measurement: Measurement) -> dict[str, Any]:
         if channel.kind == "time" and channel.axis is not None
     }
     remarks = [text for axis in axes.values() for text in time_remarks(axis)]
+    spans = different_spans(measurement.channels)
     return {
         "file": measurement.path.name,
         "format": measurement.format,
@@ -123,7 +125,7 @@ def contents(measurement: Measurement) -> dict[str, Any]:
         ],
         "points": {name: list(at) for name, at in measurement.geometry.points.items()},
         "lines": len(measurement.geometry.lines),
-        "notices": [*measurement.notices, *dict.fromkeys(remarks)],
+        "notices": [*measurement.notices, *dict.fromkeys(remarks), *([spans] if spans else [])],
     }
 
 

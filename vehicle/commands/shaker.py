@@ -43,6 +43,7 @@ from vehicle.signals.records.formats import TABLES, WRITTEN
 
 if TYPE_CHECKING:
     from vehicle.signals.excitation.signal import Signal
+    from vehicle.signals.records.choice import Choice
 
 
 def parser() -> Parser:
@@ -124,7 +125,6 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import output_folder
     from vehicle.signals.excitation.evaluation_start import evaluation_start
     from vehicle.signals.excitation.input_files import find_input
-    from vehicle.signals.excitation.signal_file import read_signal
 
     drive, overrides = None, list(options.overrides)
     if drives_on_road(options):
@@ -161,30 +161,18 @@ def _job(options: argparse.Namespace) -> None:
 
     from vehicle.errors import SimulationError
     from vehicle.runs.car import Car
-    from vehicle.runs.output.run_files import require_plates, save_last_state, write_run
+    from vehicle.runs.output.run_files import save_last_state, write_run
 
     car = Car.load(options.vehicle, overrides)
     wheel = CORNERS[options.wheel] if options.wheel else car.vehicle.shaker_wheel
     choice = record_choice(options, wheel) if drive is None else None
-    if drive is None:
-        signal = read_signal(
-            source,
-            wheel=wheel,
-            interpolate=options.interpolate,
-            remove_mean=options.remove_mean,
-            accept_implausible=options.any_level,
-            choice=choice,
-        )
-    else:
-        signal = drive.signal()
+    signal = drive.signal() if drive is not None else plate_signal(options, wheel, choice)
     _check_signal(options, signal)
     skip = evaluation_start({stem: signal.duration}, options.skip, 0.0 if drive is None else drive.skip)
     channels = None if options.recorded is None else recorded_channels(options.recorded, car.vehicle)
     measured = measured_beside(options, channels or car.vehicle.channels, choice.units if choice else ())
-    # A car that cannot be run, and plates whose FRFs cannot be separated, are refused before anything is written.
+    # A car that cannot be run is refused before anything is written.
     car.check(engine)
-    if drive is None and not options.any_level:
-        require_plates(signal)
     road = None if drive is None else drive.summary(signal)
     signal = signal if drive is None else replace(signal, source=drive.name)
     with output_folder(output, force=options.force, protect=inputs) as folder:
@@ -232,7 +220,33 @@ def _job(options: argparse.Namespace) -> None:
             command=shlex.join(["python", "-m", "vehicle.shaker", *options.words]),
         )
     if not options.quiet:
-        print(summary_text(summary, output))
+        from vehicle.runs.report.general_notices import without_general
+
+        print(summary_text({**summary, "notices": without_general(summary["notices"], car.vehicle)}, output))
+
+
+def plate_signal(options: argparse.Namespace, wheel: str, choice: Choice | None) -> Signal:
+    """Return the plate signals of --input; reject plates whose FRFs cannot be estimated.
+
+    Args:
+        options: parsed options of the command.
+        wheel: wheel of a displacement that names none.
+        choice: channels and preprocessing of the options.
+    """
+    from vehicle.runs.output.run_files import require_plates
+    from vehicle.signals.excitation.input_files import find_input
+    from vehicle.signals.excitation.signal_file import read_signal
+
+    signal = read_signal(
+        find_input(options.input),
+        wheel=wheel,
+        interpolate=options.interpolate,
+        remove_mean=options.remove_mean,
+        accept_implausible=options.any_level,
+        choice=choice,
+    )
+    require_plates(signal, separable=not options.any_level)
+    return signal
 
 
 def _check_signal(options: argparse.Namespace, signal: Signal) -> None:

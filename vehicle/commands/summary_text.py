@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vehicle.names import side_of
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.run_summary import ComfortSummary, RunSummary, SolverSummary
+    from vehicle.signals.records.run_summary import ComfortSummary, Peaks, RunSummary, SolverSummary
 
 
 def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = ", ") -> str:
@@ -42,12 +42,14 @@ def summary_text(summary: RunSummary, output: Path) -> str:
         f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
         f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
     ]
-    for channel in (f"knuckle_{summary['input']['wheel']}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
-        if channel not in summary["peaks"]:
-            continue
-        strongest = sorted(summary["peaks"][channel], key=lambda peak: -peak["magnitude"])[:4]
-        text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in sorted(strongest, key=lambda p: p["frequency_hz"]))
-        lines.append(f"resonances  {channel}: {text + ' Hz' if text else 'none found'}")
+    for wheel, plate, peaks in _peaks(summary):
+        for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
+            if channel not in peaks:
+                continue
+            strongest = sorted(peaks[channel], key=lambda peak: -peak["magnitude"])[:4]
+            by_frequency = sorted(strongest, key=lambda peak: peak["frequency_hz"])
+            text = ", ".join(f"{peak['frequency_hz']:.1f}" for peak in by_frequency)
+            lines.append(f"resonances  {channel}{plate}: {text + ' Hz' if text else 'none found'}")
     lines += _comfort(summary) + _obstacle(summary)
     lines += [
         f"static      tyre loads {_each(load, lambda w, side: f'{load[w]:.0f} N ({side})', ' and ')}",
@@ -109,6 +111,14 @@ def _weighted(comfort: dict[str, ComfortSummary], point: str) -> float:
 def _balance(solver: SolverSummary) -> str:
     """Return the energy residual; empty for an engine without an energy balance."""
     return "" if solver["energy_residual"] is None else f", energy residual {solver['energy_residual']:.1e}"
+
+
+def _peaks(summary: RunSummary) -> list[tuple[str, str, Peaks]]:
+    """Return the resonances to each input: its first wheel, "/plate_fr" if there are several inputs, the resonances."""
+    inputs = summary["frf"].get("to", []) if summary["frf"] is not None else []
+    if len(inputs) < 2:
+        return [(summary["input"]["wheel"], "", summary["peaks"])]
+    return [(next(iter(each["plates"])), f"/{each['input']}", each["peaks"]) for each in inputs]
 
 
 def _time(value: float | None) -> str:

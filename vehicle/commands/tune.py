@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from vehicle.commands.clock_options import drift_option
 from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.compare import drift_option
 from vehicle.commands.destination import output_folder_of
 from vehicle.commands.options import (
     CAR_HELP,
@@ -83,13 +83,6 @@ def parser() -> Parser:
     )
     records = parser.scoped_group(
         "time histories", needs="--record", active=lambda options: has_files(options, "record")
-    )
-    records.add_argument(
-        "--delay",
-        type=float,
-        default=0.0,
-        metavar="S",
-        help="time between the start of --signal and the start of the record [s]; 0 by default",
     )
     drift_option(records)
     records.add_argument(

@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from vehicle.commands.compare import clock_of, mapping_options, measured_choice
+from vehicle.commands.clock_options import clock_of, delay_option
+from vehicle.commands.compare import mapping_options, measured_choice
 from vehicle.commands.input_options import record_options, speed_value
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
@@ -83,7 +84,8 @@ def measurement_options(parser: Parser) -> None:
         "--signal",
         action=_OfMeasurement,
         metavar="FILE",
-        help="plate displacement of the files of the preceding --frf or --record; the plate in each file by default",
+        help="plate displacement of the files of the preceding --frf or --record, in any format of `inspect`; --map "
+        "plate_fl_displacement=NAME names its channels too; the plate in each file by default",
     )
     files.add_argument(
         "--stuck",
@@ -127,6 +129,7 @@ def measurement_options(parser: Parser) -> None:
     )
     mapping_options(files)
     record_options(files, "", channel=False)
+    delay_option(files, "; groups without it are fitted")
     files.add_argument(
         "--channels",
         metavar="NAME,...",

@@ -356,14 +356,17 @@ def test_the_section_says_what_the_slider_did(browser, reported):
     state = {"front-coulomb_friction": 40.0}
     signal = page_input(run.car, recorded_signal(run)).at_ratio()
     now = car_of(run.car, state).run(signal, engine="reduced").comfort().weighted.overall
-    change = 100.0 * abs(now / total - 1.0)
+    change = 100.0 * (now / total - 1.0)
+    effect, rating, sign = ("falls", "better", "−") if now < total else ("rises", "worse", "+")
     late = time.monotonic() + HANG
     while time.monotonic() < late:
         words = browser.find_element("id", "trial-words").text
         if "100 N → 40 N" in words:
             break
         time.sleep(0.1)
-    assert words.startswith(f"{change:.2g} % {'more' if now < total else 'less'} comfort"), words
+    percent = f"{sign}{abs(change):.{1 if abs(change) < 10.0 else 0}f} %"
+    expected = f"The weighted acceleration {effect} from {total:.3g} to {now:.3g} m/s² ({percent}, {rating});"
+    assert words.startswith(expected), words
     table = browser.find_element("id", "trial-table").text
     assert f"{now:.4g}" in table and f"{total:.4g}" in table
 

@@ -6,7 +6,7 @@ import pytest
 from tests.benchmarks.frf_accuracy import banded_input
 from tests.signals.analysis.single_input import local_rational_response
 from tests.validation import validated
-from vehicle.signals.analysis.input_floor import rounding_step, tapered_power
+from vehicle.signals.analysis.input_floor import cause_messages, rounding_step, tapered_power
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
 
@@ -46,7 +46,7 @@ def test_a_bump_at_the_beginning_cannot_be_separated_from_the_transient():
     bump = 0.02 * np.where(TIME < 0.02, 0.5 - 0.5 * np.cos(2.0 * np.pi * TIME / 0.02), 0.0)
     found, told = estimate(bump)
     assert not told.any()
-    assert any("the spectrum of the input is smooth, as of a bump" in text for text in found.reasons)
+    assert any("the spectrum of the input is smooth, as that of a bump" in text for text in found.reasons)
 
 
 def test_the_skirt_of_a_strong_band_is_silent():
@@ -80,3 +80,16 @@ def test_a_random_record_has_no_holes():
     """A stretch around 6.2 Hz of this one has fewer than five effective lines by chance."""
     plate = read_signal(find_input("low.csv"), wheel="fr").displacement["fr"]
     assert np.isfinite(local_rational_response(1e-3, plate, plate).response).all()
+
+
+def test_a_few_lines_without_input_are_said_as_few():
+    frequency = np.linspace(1.0, 100.0, 100)
+    silent = np.zeros(100, dtype=int)
+    silent[41] = 5
+    (text,) = cause_messages(frequency, silent)
+    assert text.startswith("no FRF at 42.00 Hz (1 of 100 lines): ") and text.endswith("; the other lines are good")
+    silent[10:60] = 1
+    text, *_ = cause_messages(frequency, silent)
+    assert text.startswith("no FRF at 11.00 to 60.00 Hz (50 of 100 lines): ") and text.endswith(
+        "; give the input more power there"
+    )

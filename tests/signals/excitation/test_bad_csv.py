@@ -326,7 +326,10 @@ def test_17_too_large_is_refused_before_it_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"time [s],displacement [m]\n0.0,\xe9\n", ":2:5: byte 0xe9 is not UTF-8; save the file as UTF-8 text"),
+        (
+            b"time [s],displacement [m]\n0.0,\xe9\n",
+            ":2:2: column 'displacement [m]' holds 'é'; allowed is a number with a decimal point, such as -1.25e-4",
+        ),
         (
             b"time [s],displacement [m]\n0.0,0\0\n",
             ":2:6: NUL byte; allowed is UTF-8 text; this is a binary or damaged file",

@@ -58,7 +58,7 @@ def test_structures_of_testlab(tmp_path):
     with path.open("wb") as file:
         savemat(file, {"Signal": exported(label="g", unit_transformation={"factor": 1.0})})
     (channel,) = read_record(path).channels
-    assert channel.unit == "" and channel.remark.endswith("its factor to SI 1: a contradiction")
+    assert channel.unit == "" and channel.remark.endswith("the factor from SI to it 1: a contradiction")
 
 
 @pytest.mark.parametrize("version", ["4", "5"])
@@ -166,6 +166,14 @@ def test_rpc_in_integers_and_groups(tmp_path, order):
 def test_damaged_rpc_is_refused(tmp_path, changes, message):
     with pytest.raises(DataError, match=message):
         read_record(rpc(tmp_path, **changes))
+
+
+def test_rpc_of_ncode_has_limits_of_one_and_its_extremes_elsewhere(tmp_path):
+    limits = {"UPPER_LIMIT.CHAN_2": "1.0", "LOWER_LIMIT.CHAN_2": "-1.0"}
+    found = read_record(rpc(tmp_path, **limits, NCODE_STAT1_CHAN_2="508.5,500.0,504.25,2.6,504.3"))
+    np.testing.assert_allclose(found.channels[1].values, 0.5 * (1000 + np.arange(18)))
+    with pytest.raises(DataError, match=r"channel 2 reaches 508\.5, its limits in the header are 1"):
+        read_record(rpc(tmp_path, **limits, NCODE_STAT1_CHAN_2="5.085,5.0,5.04,0.026,5.04"))
 
 
 def test_rpc_of_and_for_the_foreign_library(tmp_path):

@@ -38,7 +38,7 @@ def test_what_the_shaker_command_writes_comes_back(tmp_path):
         reasons=(),
     )
     path = tmp_path / "frf.csv"
-    write_frf(path, clean, CHANNELS, "frame")
+    write_frf(path, {"plate_fr": clean}, CHANNELS, "frame")
     data = read_frf(path)
     assert data.channels == CHANNELS
     # Nine digits are written.

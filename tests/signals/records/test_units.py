@@ -10,7 +10,7 @@ from tests.validation import validated
 from vehicle.signals.records.units import QUANTITIES, UNITS
 
 EXPECTED = {
-    "time": {"s": 1.0, "sec": 1.0, "ms": c.milli, "us": c.micro, "min": c.minute, "h": c.hour},
+    "time": {"s": 1.0, "sec": 1.0, "ms": c.milli, "us": c.micro, "ns": c.nano, "min": c.minute, "h": c.hour},
     "frequency": {"Hz": 1.0, "kHz": c.kilo},
     "displacement": {
         "m": 1.0, "cm": c.centi, "mm": c.milli, "um": c.micro, "nm": c.nano, "in": c.inch, "mil": c.mil, "ft": c.foot,

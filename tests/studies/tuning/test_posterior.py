@@ -10,6 +10,7 @@ import scipy
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.model.parameters.ranges import Range
+from vehicle.signals.analysis.response_name import parsed_name
 from vehicle.signals.records.frf_file import FrfData
 from vehicle.studies.tuning.convergence import effective_samples, r_hat
 from vehicle.studies.tuning.emulator import Emulator, fitted_emulator, legendre_terms
@@ -211,12 +212,12 @@ def frf_target(coherence):
     blank = np.full(response.shape, np.nan)
     data = FrfData(
         frequency=frequency,
-        channels=("seat_rail_acc_z",),
+        names=(parsed_name("seat_rail_acc_z/plate_fl"),),
         response=response,
         coherence=np.full(response.shape, coherence),
         random_error=blank,
     )
-    return FrfTarget(name="level", data=data, signal=None, wheel="fl", averages=9.0)
+    return FrfTarget(name="level", data=data, signal=None, averages=9.0)
 
 
 def test_cells_and_their_noise():

@@ -9,6 +9,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
+from vehicle.signals.analysis.response_name import parsed_name
 from vehicle.signals.excitation.bump import bump
 from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.table import Record
@@ -18,6 +19,7 @@ from vehicle.studies.tuning.least_squares import fit
 from vehicle.studies.tuning.record_target import RecordTarget
 
 CHANNELS = ("knuckle_fr_acc_z", "seat_rail_acc_z")
+NAMES = tuple(parsed_name(f"{channel}/plate_fr") for channel in CHANNELS)
 FREQUENCY = np.arange(5.0, 41.0)
 MOUNT = Range(path="bushings.suspension_mount.stiffness.z", low=2e5, high=3e6, start=8.2e5)
 VISCOUS = Range(path="damper.viscous", low=3e2, high=8e3, start=1500.0)
@@ -36,7 +38,7 @@ def frf_data(response, seed):
     coherence = np.full(response.shape, 1.0 / (1.0 + 16.0 * NOISE**2))
     return FrfData(
         frequency=FREQUENCY,
-        channels=CHANNELS,
+        names=NAMES,
         response=noisy,
         coherence=coherence,
         random_error=np.full(noisy.shape, np.nan),
@@ -45,9 +47,7 @@ def frf_data(response, seed):
 
 def target_of(car, signal, seed=1):
     """Return FRFs of the car on a signal (None: stuck dampers) with added noise as a target."""
-    blank = FrfTarget(
-        name="synthetic", data=frf_data(np.ones((2, FREQUENCY.size)), 0), signal=signal, wheel="fr", averages=8.0
-    )
+    blank = FrfTarget(name="synthetic", data=frf_data(np.ones((2, FREQUENCY.size)), 0), signal=signal, averages=8.0)
     return dataclasses.replace(blank, data=frf_data(blank.model_response(car), seed))
 
 
@@ -134,15 +134,21 @@ def test_a_run_and_its_target_have_the_same_residuals(build, car, high_piece):
 def test_bad_targets_are_rejected(car, high_piece):
     data = frf_data(np.ones((2, FREQUENCY.size)), 0)
     with pytest.raises(ConfigurationError, match="low: found 0 averages"):
-        FrfTarget(name="low", data=data, signal=None, wheel="fr", averages=0.0)
-    with pytest.raises(ConfigurationError, match="low: found wheel 'zz'"):
-        FrfTarget(name="low", data=data, signal=None, wheel="zz")
+        FrfTarget(name="low", data=data, signal=None, averages=0.0)
+
+    def of_plate(plate):
+        return data.renamed([parsed_name(f"{channel}{plate}") for channel in CHANNELS])
+
+    with pytest.raises(ConfigurationError, match="low: the FRF of knuckle_fr_acc_z names no plate; name it as "):
+        FrfTarget(name="low", data=of_plate(""), signal=None)
     with pytest.raises(ConfigurationError, match=r"wheel rl \(rear_left\): focus does not have it"):
-        FrfTarget(name="low", data=data, signal=None, wheel="rl").residuals(car)
-    with pytest.raises(ConfigurationError, match="the signal must drive the plate fl alone"):
-        FrfTarget(name="low", data=data, signal=high_piece, wheel="fl")
+        FrfTarget(name="low", data=of_plate("/plate_rl"), signal=None).residuals(car)
+    with pytest.raises(
+        DataError, match="low: knuckle_fr_acc_z/plate_fl: is an FRF to plate_fl, but the signal drives "
+    ):
+        FrfTarget(name="low", data=of_plate("/plate_fl"), signal=high_piece)
     with pytest.raises(DataError, match="low: no FRF value has a coherence of "):
-        FrfTarget(name="low", data=dataclasses.replace(data, coherence=0.01 * data.coherence), signal=None, wheel="fr")
+        FrfTarget(name="low", data=dataclasses.replace(data, coherence=0.01 * data.coherence), signal=None)
     time: np.ndarray = np.arange(4001) * 1e-3
     good = {"name": "bump", "signal": high_piece, "window": (1.0, 2.0)}
     ones = np.ones(4001)

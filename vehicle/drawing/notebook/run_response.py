@@ -70,8 +70,10 @@ class RunResponse(FrequencyResponse):
         return plain(axes)
 
     def to_dataframe(self) -> Any:
-        """Return a pandas table; see `response_frame`."""
-        return response_frame(self, self.names)
+        """Return a pandas table; see `response_frame`. `attrs["input"]` contains the input."""
+        frame = response_frame(self, self.names)
+        frame.attrs["input"] = self.plate
+        return frame
 
 
 def named(response: FrequencyResponse, names: tuple[str, ...], plate: str) -> RunResponse:
@@ -122,12 +124,10 @@ def responses(
         raise DataError(
             f"{signal.source}: no plate moves (displacement constant), so there is no FRF; give a signal that moves one"
         )
-    plates = {wheel_name: f"plate_{wheel_name}_displacement" for wheel_name in moving}
     return motion_responses(
         recording.timestep,
-        {wheel_name: recording[plate] for wheel_name, plate in plates.items()},
+        {wheel_name: recording[f"plate_{wheel_name}_displacement"] for wheel_name in moving},
         [recording[name] for name in names],
-        labels=plates,
         names=names,
         band=band,
         rounding={wheel_name: rounding_step(signal.displacement[wheel_name]) for wheel_name in moving},

@@ -87,6 +87,10 @@ class CarMatrices:
     sides: SideRows = field(default_factory=no_side_forces)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"CarMatrices({len(self.system.mass)} coordinates, {len(self.dampers)} dampers)"
+
 
 def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = True) -> CarMatrices:
     """Read the matrices of a trimmed car from its model.

@@ -45,6 +45,10 @@ class Mode:
     description: str
     modal_a: complex
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Mode({self.frequency:.4g} Hz, damping {100.0 * self.damping_ratio:.3g} %, {self.description})"
+
 
 def car_modes(matrices: CarMatrices, *, stuck: bool, highest: float = 60.0, names: Sequence[str] = ()) -> list[Mode]:
     """Return the modes of the car up to a frequency.

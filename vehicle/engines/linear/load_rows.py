@@ -57,6 +57,10 @@ class LoadRows:
     law: Vector
     slope: Vector
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"LoadRows({len(self.names)} loads over {self.displacement.shape[1]} coordinates)"
+
     def only(self, names: Sequence[str]) -> LoadRows:
         """Select the loads among the given channels, in their order."""
         selected = [self.names.index(name) for name in names if name in self.names]

@@ -87,6 +87,10 @@ class PoleModel:
     scalar_force: Complex
     laws: tuple[DisplacementLaw, ...] = ()
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"PoleModel({len(self.poles)} poles, {self.pairs} of them complex, {self.slip.shape[0]} dampers)"
+
     @property
     def groups(self) -> int:
         """Return the number of groups of Jenkins elements, which come before the laws over displacement."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import mujoco
 
+from vehicle.engines.simulation.damper_force import fill_sensors
 from vehicle.engines.simulation.rows import Rows
 from vehicle.errors import MissingPartError, SimulationError
 
@@ -39,9 +40,15 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
         if model is rows.model or model._address == rows.model._address:
             rows(model, data)
 
+    # A run switches sensors off, so that its steps never enter Python.
+    def sensors(model: mujoco.MjModel, data: mujoco.MjData, stage: int) -> None:
+        if model is rows.model or model._address == rows.model._address:
+            fill_sensors(rows, data, stage)
+
     mujoco.set_mjcb_control(control if compiled is None else compiled.control)
     mujoco.set_mjcb_act_gain(rows.actuator_gain if compiled is None else compiled.gain)
     mujoco.set_mjcb_act_bias(rows.actuator_bias if compiled is None else compiled.bias)
+    mujoco.set_mjcb_sensor(sensors)
     log = mujoco.MjLogConfig.get()
     written = (log.logto_console, log.logto_file)
     # MuJoCo would print warnings and append them to a file in the working folder; the run reads the counters instead.
@@ -53,6 +60,7 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
         mujoco.set_mjcb_control(None)
         mujoco.set_mjcb_act_gain(None)
         mujoco.set_mjcb_act_bias(None)
+        mujoco.set_mjcb_sensor(None)
         if compiled is not None:
             compiled.detach()
 

@@ -40,6 +40,10 @@ class CarModel:
     model: mujoco.MjModel
     static: StaticTrim
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"CarModel({self.vehicle.name}, {self.model.nbody} bodies, {self.model.nv} coordinates)"
+
 
 def build_model(vehicle: Vehicle, trimmed_body: Superelement) -> CarModel:
     """Assemble and compile a car, and compute its static equilibrium.

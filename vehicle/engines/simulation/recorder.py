@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.damper_force import damper_forces
 from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.plate_arrays import PlateArrays
@@ -233,12 +234,7 @@ class Recorder:
         self.new_poses.clear()
         e, bushings = self.rows.layout, self.rows.layout.bushings
         total = b.solved + b.explicit
-        damper_force = -(b.actuator + total[:, e.dampers.rows] + total[:, e.dampers.frictions])
-        for row, damper in e.dampers.valves:
-            damper_force[:, damper] -= total[:, row]
-        for row, damper in zip(e.presliding.rows, e.presliding.dampers, strict=True):
-            if row != e.dampers.frictions[damper]:
-                damper_force[:, damper] -= total[:, row]
+        damper_force = damper_forces(b.actuator, total, e)
         velocity = motion.velocity[steps]
         tyre = total[:, bushings.rows[e.tyres][:, 2]]
         for column, damper in enumerate(self.dampers):
@@ -362,7 +358,7 @@ class Recorder:
             time=time,
             channels=self.channels,
             units=channel_units(self.channels),
-            excited=tuple(wheel for wheel in self.wheels if np.ptp(signal.displacement.get(wheel, np.zeros(1))) > 0.0),
+            excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
             pose_time=time[self.pose_index],
             poses=self.poses,
             statistics=statistics,

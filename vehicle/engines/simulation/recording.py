@@ -83,6 +83,10 @@ class Recording:
     poses: Vector
     statistics: Statistics
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Recording({len(self.time)} samples, {len(self.channels)} channels, {self.statistics.engine})"
+
     def __getitem__(self, channel: str) -> Vector:
         """Return the time history of a channel."""
         try:

@@ -162,7 +162,8 @@ def wheels_of(model: mujoco.MjModel) -> tuple[str, ...]:
 
 def places_of(model: mujoco.MjModel) -> tuple[str, ...]:
     """Return the names of the output points of a car, in the order of their sensors."""
-    return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in range(model.nsensor))
+    points = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_FRAMELINACC)
+    return tuple(str(model.sensor(index).name).removesuffix("_acc") for index in points)
 
 
 def _triples(first: Index) -> Indices:

@@ -58,6 +58,10 @@ class StaticTrim:
     support_load: dict[str, float]
     residual: float
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"StaticTrim({', '.join(f'tyre {name} {load:.0f} N' for name, load in self.tyre_load.items())})"
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class AtRest:

@@ -239,6 +239,16 @@ class ElementBuilder:
         actuator.biasprm = parameters[: len(actuator.biasprm)]
         if len(parameters) > len(actuator.biasprm):
             self._numerics({f"actuator/{placed.name}": parameters})
+        # The forces of MuJoCo's actuator and rows are parts of it; the callback of a run writes their sum.
+        self.spec.add_sensor(
+            name=f"{placed.name}_force",
+            type=mujoco.mjtSensor.mjSENS_USER,
+            datatype=mujoco.mjtDataType.mjDATATYPE_REAL,
+            needstage=mujoco.mjtStage.mjSTAGE_ACC,
+            dim=1,
+            objtype=mujoco.mjtObj.mjOBJ_ACTUATOR,
+            objname=placed.name,
+        )
         if damper.controlled is not None:
             for end, part, at in zip(("lower", "upper"), placed.sensors, placed.at, strict=True):
                 self._site(f"sensor/{placed.name}/{end}", part, at)

@@ -69,6 +69,10 @@ class Superelement:
     derived: bool = field(default=False, repr=False)
     """true: derived from a checked body; skips the checks, which would cost time for every car of a sweep"""
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Superelement({self.name}, {len(self.nodes)} nodes, {len(self.mode_names)} modes)"
+
     def __post_init__(self) -> None:
         def put(name: str, value: object) -> None:
             object.__setattr__(self, name, value)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.optional_keys import optional_paths
-from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.paths import Optional, meant, value_at
 from vehicle.model.parameters.value_sources import value_sources
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.names import AXES, SIDE_SIGN
 
 DEFAULT = "default"
 """Source of a parameter that the vehicle file leaves out."""
@@ -55,6 +58,8 @@ class Parameter:
 
 def value_text(value: Any) -> str:
     """Return a value as in a vehicle file; numbers with at most six digits."""
+    if value is None:
+        return "not set"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):
@@ -75,15 +80,9 @@ def parameter_list(vehicle: Vehicle, file: Path | None, folder: Path | None = No
     Raises:
         ConfigurationError: the file cannot be read.
     """
-    original: Mapping[str, Any] = {}
-    sources: Mapping[str, str] = {}
-    if file is not None:
-        original, sources = with_curve_files(vehicle_table(file), file.parent), value_sources(file)
     parameters = []
     for path, value in flattened(vehicle.table):
-        same = file is None or value_at(original, path) == value
-        source = sources.get(path) or sources.get(path.rpartition(".")[0], "") if same else CHANGED
-        parameters.append(_parameter(vehicle, path, value, source))
+        parameters.append(_parameter(vehicle, path, value, _source(file, path, value)))
     home = folder or (Path() if file is None else file.parent)
     for path in _single(optional_paths(vehicle.table, home)):
         declared = vehicle.quantity_of(path)
@@ -92,6 +91,75 @@ def parameter_list(vehicle: Vehicle, file: Path | None, folder: Path | None = No
         if present and declared.get("default") not in (None, ()):
             parameters.append(_parameter(vehicle, path, declared["default"], DEFAULT))
     return tuple(parameters)
+
+
+def parameter_at(vehicle: Vehicle, path: str, file: Path | None, optional: Optional) -> Parameter:
+    """Return the parameter that a path sets, as `override` understands it.
+
+    A parameter that the file leaves out has its default, or the value None; one of a single side has the value of both
+    sides, on the left mirrored where it is a point or a table along y.
+
+    Args:
+        vehicle: parameters of the car.
+        path: whole path or its end, of a parameter or of a component of a vector; with a leading "*." of all parameters
+            with this end, if their values are equal.
+        file: see `parameter_list`.
+        optional: see `meant`.
+
+    Raises:
+        ConfigurationError: no parameter has this path (with the nearest path), it is a table, or several parameters
+            that differ have it.
+    """
+    whole_paths = [path] if value_at(vehicle.table, path) is not None else meant(vehicle.table, path, optional)
+    found = [_settable(vehicle, whole, file) for whole in whole_paths]
+    if any(each.value != found[0].value for each in found):
+        values = ", ".join(f"{each.path} = {value_text(each.value)}" for each in found)
+        raise ConfigurationError(f"parameter {path} has several values: {values}; give the path of one of them")
+    return found[0] if len(found) == 1 else replace(found[0], path=path)
+
+
+def _settable(vehicle: Vehicle, path: str, file: Path | None) -> Parameter:
+    """Return the parameter with a whole path, which the file need not contain."""
+    value, sideless = value_at(vehicle.table, path), ".".join(key for key in path.split(".") if key not in SIDE_SIGN)
+    if isinstance(value, Mapping):
+        raise ConfigurationError(f"{path} is a table or a component; car.search({path!r}) lists its parameters")
+    if value is not None:
+        return _parameter(vehicle, path, value, _source(file, path, value))
+    if (value := value_at(vehicle.table, sideless)) is not None:
+        return _parameter(vehicle, path, _on_side(path, value), _source(file, sideless, value))
+    default = vehicle.quantity_of(path).get("default")
+    return _parameter(vehicle, path, default, DEFAULT)
+
+
+def _on_side(path: str, value: Any) -> Any:
+    """Return a value of both sides as the path of a single side would set it: mirrored on the left."""
+    keys = path.split(".")
+    if "left" in keys and isinstance(value, list):
+        if "hardpoints" in keys and len(value) == len(AXES):
+            return [-number if axis == "y" else number for axis, number in zip(AXES, value, strict=True)]
+        if "table_y" in keys:
+            return [-number for number in reversed(value)]
+    return value
+
+
+def _source(file: Path | None, path: str, value: Any) -> str:
+    """Return the source of a value: the comment behind it in the vehicle file, or that it was changed."""
+    if file is None:
+        return ""
+    original, sources = _original(file, file.stat().st_mtime_ns)
+    if value_at(original, path) != value:
+        return CHANGED
+    vector, _, last = path.rpartition(".")
+    return (
+        sources.get(path) or sources.get(vector) or sources.get(vector.rpartition(".")[0] if last in AXES else "", "")
+    )
+
+
+# Read once for all looks at the parameters of a car, and of its variants.
+@lru_cache(maxsize=4)
+def _original(file: Path, modified: int) -> tuple[Mapping[str, Any], Mapping[str, str]]:
+    """Return the values of a vehicle file and their sources; `modified`: time of its last change [ns]."""
+    return with_curve_files(vehicle_table(file), file.parent), value_sources(file)
 
 
 def flattened(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

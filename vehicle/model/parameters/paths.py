@@ -39,16 +39,20 @@ def full_path(table: Mapping[str, Any], path: str) -> str:
     Raises:
         ConfigurationError: the path does not exist (with the nearest path), or is ambiguous.
     """
+    if not (matches := _existing(table, path)):
+        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, paths(table))}")
+    return _only(matches, path)
+
+
+def _existing(table: Mapping[str, Any], path: str) -> list[str]:
+    """Return the whole paths in a table with this path or this end; an alias counts as its path."""
     if value_at(table, path) is not None:
-        return path
+        return [path]
     if isinstance(other := table.get("alias", {}).get(path), str):
-        return full_path({**table, "alias": {}}, other)
+        return [full_path({**table, "alias": {}}, other)]
     every_path = paths(table)
     groups = [candidate.rpartition(".")[0] for candidate in every_path]
-    matches = [candidate for candidate in dict.fromkeys([*every_path, *groups]) if candidate.endswith(f".{path}")]
-    if not matches:
-        raise ConfigurationError(f"no parameter {path}; the nearest is {nearest(path, every_path)}")
-    return _only(matches, path)
+    return [candidate for candidate in dict.fromkeys([*every_path, *groups]) if candidate.endswith(f".{path}")]
 
 
 def _only(matches: Sequence[str], path: str) -> str:
@@ -94,12 +98,8 @@ def meant(table: Mapping[str, Any], path: str, optional: Optional = list) -> lis
         ConfigurationError: the path does not exist (with the nearest path), or is ambiguous.
     """
     every = path.startswith("*.")
-    if not every:
-        try:
-            return [full_path(table, path)]
-        except ConfigurationError as error:
-            if not str(error).startswith("no parameter"):
-                raise
+    if not every and (matches := _existing(table, path)):
+        return [_only(matches, path)]
     # A path without a side means both sides.
     sided = bool({"right", "left"} & set(path.split(".")))
     existing = paths(table)

@@ -52,6 +52,14 @@ class Range:
         """Return the value at u = ln(value / start) [-], in the unit of the parameter."""
         return self.start * math.exp(logarithm)
 
+    def coordinate(self, value: float) -> float:
+        """Return u = ln(value / start) of a value [-]."""
+        return math.log(value / self.start)
+
+    def slope(self, value: float) -> float:
+        """Return d value / d u at a value, in the unit of the parameter."""
+        return value
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Variation:

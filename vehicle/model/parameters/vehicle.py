@@ -101,6 +101,10 @@ class Vehicle:
     driving: Driving = field(compare=False)
     composition: Composition = field(compare=False)
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"Vehicle({self.name}, wheels {', '.join(self.wheels)})"
+
     @property
     def points(self) -> Mapping[str, Point]:
         """Hardpoints by name, as "strut_top_fr" [m]."""
@@ -291,8 +295,22 @@ def overridden(file: Path, overrides: Iterable[str]) -> dict[str, Any]:
             f"body.superelement: found {name!r}, must be a name of letters, digits, '_', '.', '-'; set a file in "
             f"another folder with --set body.superelement={name}"
         )
+    return varied_file(table, overrides, file.parent)
+
+
+def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path) -> dict[str, Any]:
+    """Return a vehicle file after one variation, see `varied_table`, with the absolute path of a given body model.
+
+    Args:
+        table: vehicle file; not changed.
+        overrides: texts "path.to.parameter=value".
+        folder: folder of the file.
+
+    Raises:
+        ConfigurationError: an override is wrong.
+    """
     texts = list(overrides)
-    merged = varied_table(table, texts, lambda: [*optional_paths(table, file.parent), *new_loads(texts)])
+    merged = varied_table(table, texts, lambda: [*optional_paths(table, folder), *new_loads(texts)])
     if "/" in (name := _body_file(merged)):
         model_file = Path(name).expanduser()
         if not model_file.is_absolute():  # workers of a sweep may run elsewhere
@@ -323,9 +341,19 @@ def load_vehicle(path: Path | None = None, overrides: Iterable[str] = ()) -> Veh
     Raises:
         ConfigurationError: the file, a name or a value is wrong.
     """
+    return load_file(path, overrides)[1]
+
+
+def load_file(path: Path | None = None, overrides: Iterable[str] = ()) -> tuple[Mapping[str, Any], Vehicle]:
+    """Read and validate a vehicle file; arguments and errors as in `load_vehicle`.
+
+    Returns:
+        The file with the overrides, in which `curve` still names files of force laws, and the vehicle.
+    """
     file = FOCUS_FILE if path is None else vehicle_file(path)
     try:
-        return vehicle_of(overridden(file, overrides), file.parent)
+        table = overridden(file, overrides)
+        return table, vehicle_of(table, file.parent)
     except ConfigurationError as error:
         if path is None:
             raise

@@ -5,8 +5,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -31,30 +29,29 @@ class VehicleVariants:
     Args:
         vehicle: vehicle that the variants start from.
         folder: folder of its file.
-        compose_anew: function that reads and composes the vehicle with overrides.
+        compose_anew: function that composes the vehicle with overrides.
     """
 
     def __init__(self, vehicle: Vehicle, folder: Path, compose_anew: Callable[[Iterable[str]], Vehicle]) -> None:
         self.vehicle, self.folder, self._compose_anew = vehicle, folder, compose_anew
         self._numbers: dict[str, list[tuple[str, str]] | None] = {}
 
-    def variant(self, overrides: Sequence[str], before: Sequence[str] = ()) -> Vehicle:
-        """Return the vehicle with other values.
+    def variant(self, overrides: Sequence[str]) -> Vehicle:
+        """Return the vehicle after one variation.
 
         Args:
             overrides: texts "path=value".
-            before: overrides of the start vehicle; what they set does not follow mass and CoG of the body.
 
         Raises:
             ConfigurationError: a name or a value is wrong.
         """
         # The complete composition raises the error with its full message.
         with contextlib.suppress(ConfigurationError):
-            if (vehicle := self._local_variant(overrides, before)) is not None:
+            if (vehicle := self._local_variant(overrides)) is not None:
                 return vehicle
         return self._compose_anew(overrides)
 
-    def _local_variant(self, overrides: Sequence[str], before: Sequence[str]) -> Vehicle | None:
+    def _local_variant(self, overrides: Sequence[str]) -> Vehicle | None:
         """Return the vehicle with other values; None if more than single numbers of elements change."""
         table, changed = dict(self.vehicle.table), dict[str, None]()
         copies: set[int] = {id(table)}
@@ -72,12 +69,8 @@ class VehicleVariants:
                 _put(table, path, value, copies)
                 changed[owner] = None
         if body_moves(self.vehicle.table, table):
-            optional = partial(optional_paths, table, self.folder)
-            earlier = [meant(table, text.partition("=")[0].strip(), optional) for text in before]
-            set_paths = [path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()]
-            for path, value in followers(
-                self.vehicle.table["body"], table["body"], {*chain(*earlier), *set_paths}
-            ).items():
+            given = {path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()}
+            for path, value in followers(self.vehicle.table["body"], table["body"], given).items():
                 _put(table, path, value, copies)
         return self._with_tables(table, changed)
 

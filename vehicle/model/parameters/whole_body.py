@@ -3,8 +3,10 @@
     body.mass = f m:     I = f I about any point (CoG and radii of gyration stay); masses of the elastic model times f
     body.cog = c':       I about the CoG stays; about the origin I' = I + m (|c'|^2 1 - c' c''^T) - m (|c|^2 1 - c c^T)
 
-Values that the same variation sets are kept; the others follow. `body.model_mass` stores the mass to which the elastic
-model belongs, also in `vehicle.toml` of a run (`TrimmedBody.model_factor`).
+Values that the same variation sets are kept; the others follow, also those that a variation before has set: each
+variation acts on the car that the one before it has made. `body.model_mass` stores the mass to which the elastic model
+belongs, also in `vehicle.toml` of a run (`TrimmedBody.model_factor`); a model that a variation sets belongs to the mass
+of the body after it.
 """
 
 from __future__ import annotations
@@ -20,26 +22,46 @@ from vehicle.names import AXES
 _PRODUCTS = {"ixy": (0, 1), "izx": (2, 0), "iyz": (1, 2)}
 
 
-def varied_table(
-    table: Mapping[str, Any], overrides: Sequence[str], optional: Optional = list, before: Iterable[str] = ()
-) -> dict[str, Any]:
-    """Return a vehicle file with other values, and with the changes that follow from mass and CoG of the body.
+def varied_table(table: Mapping[str, Any], overrides: Sequence[str], optional: Optional = list) -> dict[str, Any]:
+    """Return a vehicle file after one variation: with other values, and with the changes that follow for the body.
 
     Args:
         table: vehicle file, see `read_table`; not changed.
         overrides: texts "path=value".
         optional: see `meant`.
-        before: overrides that the table already contains; values that they set do not follow either.
 
     Raises:
         ConfigurationError: see `override`.
     """
     varied = override(table, overrides, optional)
     if body_moves(table, varied):
-        texts = (text.partition("=")[0].strip() for text in (*before, *overrides))
-        set_paths = {path for text in dict.fromkeys(texts) for path in meant(varied, text, optional)}
-        put(varied, followers(table["body"], varied["body"], set_paths))
+        given = {path for text in overrides for path in meant(varied, text.partition("=")[0].strip(), optional)}
+        put(varied, followers(table["body"], varied["body"], given))
     return varied
+
+
+def restated(
+    before: Mapping[str, Any], after: Mapping[str, Any], earlier: Iterable[str], optional: Optional = list
+) -> list[str]:
+    """Return texts that set the values which followed in a variation after others.
+
+    With them, one variation with the texts of all steps makes the same car, bit for bit.
+
+    Args:
+        before: vehicle file before the variation.
+        after: vehicle file after it.
+        earlier: texts "path=value" of the variations before; if none sets a value of the body, the list is empty.
+        optional: see `meant`.
+    """
+    names = dict.fromkeys(text.partition("=")[0].strip() for text in earlier)
+    if not body_moves(before, after) or not any(
+        path.startswith("body.") for name in names for path in meant(after, name, optional)
+    ):
+        return []
+    body = after["body"]
+    values = {f"inertia.{name}": body["inertia"][name] for name in MOMENTS if name in body["inertia"]}
+    values |= {"model_mass": body["model_mass"]} if "model_mass" in body else {}
+    return [f"body.{path}={float(value)!r}" for path, value in values.items()]
 
 
 def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
@@ -59,9 +81,9 @@ def put(table: dict[str, Any], values: Mapping[str, float]) -> None:
 
 
 def body_moves(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
-    """Return True if the mass or the CoG of the body of two vehicle files differs."""
+    """Return True if mass, CoG or model of the body of two vehicle files differs."""
     first, second = (table["body"] if isinstance(table.get("body"), Mapping) else {} for table in (before, after))
-    return any(first.get(key) != second.get(key) for key in ("mass", "cog"))
+    return any(first.get(key) != second.get(key) for key in ("mass", "cog", "superelement"))
 
 
 def followers(before: Mapping[str, Any], after: Mapping[str, Any], given: Collection[str]) -> dict[str, float]:
@@ -84,7 +106,9 @@ def followers(before: Mapping[str, Any], after: Mapping[str, Any], given: Collec
             values[path] = values.get(path, 0.0) + more - _of_point(new_mass, cog)[name]
     elif factor == 1.0:
         values = {}
-    if factor != 1.0 and "superelement" in after and "body.superelement" not in given:
+    if "body.superelement" in given and "model_mass" in before:
+        values["body.model_mass"] = new_mass
+    elif factor != 1.0 and "superelement" in after and "body.superelement" not in given:
         values["body.model_mass"] = float(before.get("model_mass", mass))
     return {path: value for path, value in values.items() if path not in given}
 

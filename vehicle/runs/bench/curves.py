@@ -1,4 +1,4 @@
-"""Curves of the plots of the bench: the present car A over the reference B on the same axes."""
+"""Curves of the plots of the bench: the present car B over the reference A on the same axes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ the 1.96 of a known error the band would contain 90 %."""
 
 
 def frf_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
-    """Return frequency [Hz], |H| of A, lower and upper end of its 95 % band, and |H| of B [m/s2 per m]; seat rail."""
+    """Return frequency [Hz], |H| of B, lower and upper end of its 95 % band, and |H| of A [m/s2 per m]; seat rail."""
     frf, other = present.frf, reference.frf
     size, error = np.abs(frf.response[0]), BAND * frf.random_error[0]
     # The axis is logarithmic: a band that reaches zero ends far below it.
@@ -30,7 +30,7 @@ def frf_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, 
 
 
 def density_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vector, ...]:
-    """Return frequency [Hz] and density of the vertical seat rail, A and B [(cm/s2)^2/Hz]; small powers of ten."""
+    """Return frequency [Hz] and density of the vertical seat rail, B and A [(cm/s2)^2/Hz]; small powers of ten."""
     frequency, other = present.spectra[0].frequency, reference.spectra[0]
     # Another rate of the samples has other lines.
     before = np.interp(frequency, other.frequency, other.density)
@@ -38,10 +38,10 @@ def density_curves(present: BenchNumbers, reference: BenchNumbers) -> tuple[Vect
 
 
 def damper_curves(present: BenchNumbers, reference: BenchNumbers, wheel: str) -> tuple[Vector, ...]:
-    """Return velocity [m/s], and lowest and highest force [N] in each class of it, of A and of B; NaN in empty classes.
+    """Return velocity [m/s], and lowest and highest force [N] in each class of it, of B and of A; NaN in empty classes.
 
     Args:
-        present, reference: numbers of A and B.
+        present, reference: numbers of B and A.
         wheel: wheel of the damper.
     """
     both = present, reference

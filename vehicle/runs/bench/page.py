@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.engines.reduced.validity import REMEDY
 from vehicle.errors import VehicleError
 from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
 from vehicle.runs.bench.results import write_car, write_comparison, write_run
@@ -19,12 +20,13 @@ from vehicle.runs.bench.setting import Setting
 from vehicle.runs.bench.stage import Stage
 from vehicle.runs.bench.state import BenchState, LatestOnly
 from vehicle.runs.bench.view import View
+from vehicle.runs.report.differences import parameter_words
 
 FIRST = ("coulomb_friction", "damper.viscous", "main_spring.stiffness", "tyre.stiffness.z", "body.mass")
 """Ends of the paths of the sliders at the start; the first path with each."""
 
 RED, PALE, GREY = "#c0392b", "rgba(192,57,43,0.35)", "#888888"
-"""Colours of A, of its band, and of B."""
+"""Colours of B, of its band, and of A."""
 
 DECADES = 3e4
 """Highest over lowest value of a logarithmic axis."""
@@ -78,7 +80,7 @@ class Page:
             self.view = View(gui, self.stage, self.state.drive)
         self._plots = self._add_plots()
         with gui.add_folder("Reference and files"):
-            keep, reset = gui.add_button("Keep as B"), gui.add_button("Undo all changes")
+            keep, reset = gui.add_button("Keep as A"), gui.add_button("Undo all changes")
             files = [
                 (gui.add_button("Write vehicle file"), write_car),
                 (gui.add_button("Write run"), write_run),
@@ -132,7 +134,8 @@ class Page:
         low, high, step, value = (number / scale for number in (setting.low, setting.high, setting.step, setting.value))
 
         def add() -> Any:
-            return self.server.gui.add_slider(f"{path}{unit}", low, high, step, value, hint=setting.meaning)
+            hint = f"{path}: {setting.meaning}"
+            return self.server.gui.add_slider(f"{parameter_words(path)}{unit}", low, high, step, value, hint=hint)
 
         if more:
             with self._added:
@@ -193,7 +196,7 @@ class Page:
                     self._say(f"picture: {error}")
 
     def _show_picture(self) -> None:
-        """Compute and show the moving picture of A."""
+        """Compute and show the moving picture of B."""
         with self.state.computing:
             self.view.show(self.state.present[0])
 
@@ -208,14 +211,17 @@ class Page:
         base = len(state.car.overrides)
         texts = ["; ".join(shown.overrides[base:]) or "unchanged" for shown in (car, other)]
         label = f"{_escaped(state.drive.label)}; computed in {1e3 * present.seconds:.0f} ms"
-        lines.append(f"\n**A** {texts[0]} · **B** {texts[1]}\n\n{label}")
+        lines.append(f"\n**A** {texts[1]} · **B** {texts[0]}\n\n{label}")
         with self.server.atomic():
             self._table.content = "\n".join(lines)
             for plot, curves in self._plots:
                 plot.data = curves(present, reference)
             self._note.content = ""
             if present.warnings:
-                self._say("outside the valid range: " + "; ".join(present.warnings))
+                warnings = "; ".join(text.removesuffix(REMEDY) for text in present.warnings)
+                self._say(
+                    f"outside the valid range: {warnings}; write the vehicle file and run it with --engine mujoco"
+                )
 
     def _add_plots(self) -> list[tuple[Any, Callable[..., Any]]]:
         """Add the plots; return each with the function of its curves."""
@@ -241,13 +247,13 @@ class Page:
             (
                 "FRF seat rail z [m/s² per m] over f [Hz], 95 % band",
                 frf_curves,
-                (axis, line("A", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("B", GREY, 1)),
+                (axis, line("B", RED, 2), line("low", PALE, 1), line("high", PALE, 1), line("A", GREY, 1)),
                 logarithmic(frf_curves(*both)[1]),
             ),
             (
                 "PSD seat rail z [(cm/s²)²/Hz] over f [Hz]",
                 density_curves,
-                (axis, line("A", RED, 2), line("B", GREY, 1)),
+                (axis, line("B", RED, 2), line("A", GREY, 1)),
                 logarithmic(density_curves(*both)[1]),
             ),
             (
@@ -255,8 +261,8 @@ class Page:
                 lambda a, b: damper_curves(a, b, wheel),
                 (
                     uplot.Series(label="v [m/s]"),
-                    *(line(f"A {end}", RED, 2) for end in ("low", "high")),
-                    *(line(f"B {end}", GREY, 1) for end in ("low", "high")),
+                    *(line(f"B {end}", RED, 2) for end in ("low", "high")),
+                    *(line(f"A {end}", GREY, 1) for end in ("low", "high")),
                 ),
                 {"x": uplot.Scale(time=False), "y": uplot.Scale(range=(-force, force))},
             ),

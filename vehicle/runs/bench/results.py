@@ -18,7 +18,7 @@ from vehicle.runs.report.report_file import write_report
 
 
 def write_car(state: BenchState, folder: Path) -> Path:
-    """Write the vehicle file of A, with its templates and body model, into the first free folder `car`, `car-2` ...
+    """Write the vehicle file of B, with its templates and body model, into the first free folder `car`, `car-2` ...
 
     Args:
         state: state of the bench.
@@ -39,7 +39,7 @@ def write_car(state: BenchState, folder: Path) -> Path:
 
 
 def write_run(state: BenchState, folder: Path) -> Path:
-    """Write the run of A with all channels into the first free folder `run`, `run-2` ...; see `write_car`."""
+    """Write the run of B with all channels into the first free folder `run`, `run-2` ...; see `write_car`."""
     with ExitStack() as held:
         path = free_folder(held, folder / "run")
         save_run(_run(state.present[0], state.drive), path)
@@ -47,16 +47,16 @@ def write_run(state: BenchState, folder: Path) -> Path:
 
 
 def write_comparison(state: BenchState, folder: Path) -> Path:
-    """Write the report of A, compared with B if B is another car; see `write_car`.
+    """Write the report of B, compared with A if A is another car; see `write_car`.
 
     Returns:
         The first free file of `report.html`, `report-2.html` ...
     """
     with ExitStack() as held, TemporaryDirectory() as work:
         path = free_file(held, folder / "report.html")
-        cars = {"A": state.present[0]}
+        cars = {"A": state.reference[0]}
         if state.reference[0].overrides != state.present[0].overrides:
-            cars = {"B": state.reference[0], **cars}
+            cars["B"] = state.present[0]
         runs = [save_run(_run(car, state.drive), Path(work) / name) for name, car in cars.items()]
         write_report(runs, path)
     return path

@@ -86,6 +86,7 @@ def _range(parameter: Parameter, path: str, value: float, declared: Mapping[str,
     """Yield the setting of a number; a number whose range has no extent has no setting."""
     is_point = isinstance(parameter.value, list | tuple) and parameter.unit == "m"
     low, high = sorted((value / FACTOR, value * FACTOR)) if not is_point else (value - SHIFT, value + SHIFT)
+    low, high = (round(end, 4) if is_point else float(f"{end:.2g}") for end in (low, high))
     if value == 0.0 and not is_point:
         high = FROM_ZERO.get(parameter.unit, 1.0)
         low = 0.0 if declared.get("at_least") is not None else -high

@@ -1,4 +1,4 @@
-"""State of the bench: base car, changed parameters, and the numbers of the present car A and of the reference B."""
+"""State of the bench: base car, changed parameters, and the numbers of the reference A and of the present car B."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_FOUND = 50
 
 
 class BenchState:
-    """Car under sliders, its numbers A, and those of the reference B.
+    """Car under sliders, its numbers B, and those of the reference A.
 
     Args:
         car: the car; the numbers are relative to it.
@@ -27,7 +27,7 @@ class BenchState:
         drive: input of the bench.
         settings: all numbers that a slider can change, by path; without those that the input sets, as the speed.
         changes: path to value of the changed parameters.
-        present, reference: car and numbers of A and B.
+        present, reference: car and numbers of B and A.
         message: error of the last change; empty without an error.
         computing: lock of all computations: the callbacks of MuJoCo belong to the process.
 
@@ -113,7 +113,7 @@ class BenchState:
         return True
 
     def keep(self) -> None:
-        """Keep the present numbers as the reference B."""
+        """Keep the present numbers as the reference A."""
         self.reference = self.present
 
     def reset(self) -> None:
@@ -124,7 +124,7 @@ class BenchState:
         """Return name, A, B, relative change [%] (None from zero) and unit of each number."""
         before = self.reference[1].table()
         return [
-            (name, value, before[name][0], 100.0 * (value / before[name][0] - 1.0) if before[name][0] else None, unit)
+            (name, before[name][0], value, 100.0 * (value / before[name][0] - 1.0) if before[name][0] else None, unit)
             for name, (value, unit) in self.present[1].table().items()
         ]
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -21,24 +22,24 @@ from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
-from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.car_model import CarModel, build_model
-from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.static_trim import StaticTrim
-from vehicle.engines.simulation.stepping import Progress, simulate
+from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
+from vehicle.model.parameters.additions import new_loads
 from vehicle.model.parameters.optional_keys import optional_paths
-from vehicle.model.parameters.paths import assignments, full_path
+from vehicle.model.parameters.parameter_list import parameter_at
+from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import vehicle_file
-from vehicle.model.parameters.vehicle import Vehicle, load_vehicle, vehicle_of
+from vehicle.model.parameters.vehicle import Vehicle, load_file, load_vehicle, varied_file, vehicle_of
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
-from vehicle.model.parameters.whole_body import varied_table
-from vehicle.names import ENGINES
+from vehicle.model.parameters.whole_body import restated
 from vehicle.runs.car.road import Road
 from vehicle.runs.car.run import Run
+from vehicle.runs.car.simulated_run import simulated_run
 from vehicle.signals.excitation.evaluation_start import evaluation_start
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
@@ -76,7 +77,7 @@ class Car:
         self._checked: set[str] = set()
         self._stepped: Car | None = None
         self._base: Car | None = None
-        self._compose_anew: Callable[[Iterable[str]], Vehicle] | None = None
+        self._step: tuple[str, ...] = ()
 
     @classmethod
     def load(cls, path: Path | str | None = None, overrides: Overrides = ()) -> Car:
@@ -94,14 +95,19 @@ class Car:
         """
         file = None if path is None else vehicle_file(Path(path))
         changes = assignments(overrides)
-        car = cls(load_vehicle(file, changes), folder=None if file is None else file.parent)
+        table, vehicle = load_file(file, changes)
+        car = cls(vehicle, folder=None if file is None else file.parent)
         car.origin = {"file": None if file is None else str(file), "overrides": changes}
         car.overrides = tuple(changes)
-        car._compose_anew = lambda more: load_vehicle(file, [*changes, *more])
+        car._table = table
         return car
 
     def with_(self, overrides: Overrides) -> Car:
         """Return a variant of this car with changed parameters; fast for many variants.
+
+        The variation acts on this car as it is: what follows the mass or the CoG of the body follows from its values,
+        also from those that a variation before has set (docs/vehicle-file.md). `overrides` of the variant lists the
+        values of all steps, so that `Car.load(file, variant.overrides)` loads the same car.
 
         If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
         terms of this car, computed once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built at
@@ -114,23 +120,52 @@ class Car:
             ConfigurationError: a name or a value is wrong.
         """
         more = assignments(overrides)
-        car = Car(self._variants.variant(more, self.overrides), folder=self.folder)
+        vehicle = self._variants.variant(more)
+        optional = partial(optional_paths, vehicle.table, self._home)
+        more += restated(self.vehicle.table, vehicle.table, self.overrides, optional)
+        car = Car(vehicle, folder=self.folder)
         car.overrides = (*self.overrides, *more)
         car.origin = {"file": self.origin["file"], "overrides": list(car.overrides)}
-        car._base = self
+        car._base, car._step = self, tuple(more)
         return car
 
     # Made by the first variant of this car: the reference back to the car is a cycle, and the thousands of cars of a
     # sweep, a megabyte each, must be freed without waiting for the garbage collector.
     @cached_property
     def _variants(self) -> VehicleVariants:
-        return VehicleVariants(self.vehicle, self.folder or Path(), self._compose_anew or self._anew)
+        return VehicleVariants(self.vehicle, self._home, self._anew)
+
+    @property
+    def _home(self) -> Path:
+        return self.folder or Path()
+
+    @cached_property
+    def _table(self) -> Mapping[str, Any]:
+        """Vehicle file of this car; if it is a variant of a loaded car, `curve` still names files of force laws."""
+        if self._base is None:
+            return self.vehicle.table
+        try:
+            return varied_file(self._base._table, self._step, self._home)
+        except ConfigurationError:  # the variation sets numbers that a file has given
+            return self.vehicle.table
 
     def _anew(self, overrides: Iterable[str]) -> Vehicle:
         """Return the parameters of this car with other values, composed again from the vehicle table."""
-        table, folder = self.vehicle.table, self.folder
-        optional = partial(optional_paths, table, folder or Path())
-        return vehicle_of(varied_table(table, list(overrides), optional, self.overrides), folder)
+        return vehicle_of(varied_file(self._table, overrides, self._home), self.folder)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the parameters, which make the same car in another process; models and matrices are built there."""
+        state = dict.fromkeys(("vehicle", "folder", "origin", "overrides", "_base", "_step", "_table"))
+        return {name: self.__dict__[name] for name in state if name in self.__dict__}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make a car of its parameters."""
+        self.__dict__ |= {"_checked": set(), "_stepped": None, **state}
+
+    def save(self, file: Path | str, *, force: bool = False) -> Path:
+        """Write the car as a vehicle file, from which `Car.load` makes the same car; see `vehicle.save_car`."""
+        path: Path = import_module("vehicle").save_car(self, file, force=force)
+        return path
 
     def show(self) -> CarData:
         """Return masses, loads, stiffnesses, frequencies, geometry and parameters of the car; `print` shows them.
@@ -153,19 +188,22 @@ class Car:
         return [parameter for parameter in car_parameters(self) if parameter.matches(words)]
 
     def __getitem__(self, path: str) -> Parameter:
-        """Return a parameter with value, unit, range and source.
+        """Return a parameter with value, unit, range and source; every path that `with_` sets has one.
 
         Args:
-            path: whole path or its end, as "front.damper.viscous" or "damper.viscous"; a parameter, not a table.
+            path: whole path or its end, as "front.damper.viscous" or "damper.viscous", or of a component of a vector,
+                as "tyre.stiffness.z"; with a leading "*." of all parameters with this end, if they are equal.
 
         Raises:
-            ConfigurationError: no parameter has this path (with the nearest path), or several have.
+            ConfigurationError: no parameter has this path (with the nearest path), several have, or it is a table.
         """
-        whole = full_path(self.vehicle.table, path)
-        parameter = next((parameter for parameter in self.search() if parameter.path == whole), None)
-        if parameter is None:
-            raise ConfigurationError(f"{whole} is a table or a component; car.search({path!r}) lists its parameters")
-        return parameter
+        from vehicle.runs.car.car_data import source_file
+
+        return parameter_at(self.vehicle, path, source_file(self), lambda: [*self._optional, *new_loads([path])])
+
+    @cached_property
+    def _optional(self) -> list[str]:
+        return optional_paths(self.vehicle.table, self._home)
 
     def __repr__(self) -> str:
         """One line."""
@@ -344,49 +382,8 @@ class Car:
             source if isinstance(source, Signal) else read_signal(find_input(source), wheel=self.vehicle.shaker_wheel)
         )
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
-        run = self._simulated(signal, progress, engine, channels)
-        return replace(run, skip=start) if start else run
-
-    def _simulated(self, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None) -> Run:
-        """Return the run on a signal; arguments and errors like `run`."""
-        if engine not in ENGINES:
-            raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
-        defaults = self.vehicle.channels
-        if isinstance(channels, str):
-            raise ConfigurationError(
-                f"channels: found the text {channels!r}, must be a list of names; for loads, set "
-                "[*car.vehicle.channels, *car.vehicle.load_channels]"
-            )
-        self.vehicle.require_channels(channels or (), (*defaults, *self.vehicle.requested_channels))
-        self.vehicle.require_wheels(signal.wheels)
-        names = defaults if channels is None else channels
-        more = [name for name in names if name not in defaults]
-        loads = [name for name in more if name in self.vehicle.load_channels]
-        require_samples(signal.duration * self.vehicle.solver.record_rate, len(names))
-        reason = "asked for"
-        if engine != "mujoco":
-            self.check("reduced")
-            recording = simulate_reduced(
-                self.poles,
-                signal,
-                dampers=[damper.law for damper in self.vehicle.composition.dampers],
-                record_rate=self.vehicle.solver.record_rate,
-                tyre_load=self.static.tyre_load,
-                channels=channels,
-                loads=self.load_rows if loads else None,
-            )
-            require_finite(recording)
-            if engine == "reduced" or recording.statistics.within_validity:
-                if engine == "auto":
-                    reason = "the motion stayed within the validity of the reduced engine"
-                return Run(car=self, signal=signal, recording=recording, engine_reason=reason)
-            reason = "; ".join(recording.statistics.warnings)
-        car = self.stepped()
-        recording = simulate(car.model, signal, progress=progress, requested=more)
-        require_finite(recording)
-        if channels is not None:
-            recording = recording.only(channels)
-        return Run(car=car, signal=signal, recording=recording, engine_reason=reason)
+        car, recording, reason = simulated_run(self, signal, progress, engine, channels)
+        return Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start)
 
 
 def _is_stuck(damper: str) -> bool:

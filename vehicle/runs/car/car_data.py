@@ -183,9 +183,15 @@ def car_data(car: Any) -> CarData:
 
 def car_parameters(car: Any) -> tuple[Parameter, ...]:
     """Return all parameters of a car, see `parameter_list`."""
+    return parameter_list(car.vehicle, source_file(car), car.folder)
+
+
+def source_file(car: Any) -> Path | None:
+    """Return the vehicle file with the sources of the values of a car; None without one, as on another machine."""
     origin = car.origin["file"]
-    default = FOCUS_FILE if car.vehicle.name == FOCUS_FILE.parent.name and FOCUS_FILE.is_file() else None
-    return parameter_list(car.vehicle, default if origin is None else Path(origin), car.folder)
+    default = FOCUS_FILE if car.vehicle.name == FOCUS_FILE.parent.name else None
+    file = default if origin is None else Path(origin)
+    return file if file is not None and file.is_file() else None
 
 
 def _inertia(car: Any, cog: npt.NDArray[np.float64]) -> tuple[float, float, float, float]:

@@ -70,6 +70,17 @@ class Run:
     def _repr_html_(self) -> str:
         return run_card(self)
 
+    @classmethod
+    def load(cls, folder: Path | str) -> Run:
+        """Read a saved run from its folder; see `vehicle.load_run`."""
+        run: Run = _public("load_run")(folder)
+        return run
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the recorded channels; their units are in `recording.units`."""
+        return tuple(self.recording.channels)
+
     def plot(self, channels: str | Sequence[str] | None = None, ax: Any = None) -> Any:
         """Plot time histories.
 
@@ -249,7 +260,7 @@ class Run:
             progress: called with the finished fraction.
 
         Raises:
-            ConfigurationError: the reduced engine made the run, which stores no poses.
+            ConfigurationError: the run has no poses: the reduced engine stores none, nor does a saved run.
             MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
             OutputError: the file cannot be written.
         """
@@ -257,7 +268,10 @@ class Run:
         from vehicle.drawing.rendering.shot import Take
 
         if not self.recording.poses.size:
-            raise ConfigurationError(f"{file}: the reduced engine stores no poses; run the car with engine='mujoco'")
+            raise ConfigurationError(
+                f"{file}: the run has no poses, which neither the reduced engine nor a saved run stores; run the car "
+                "with engine='mujoco'"
+            )
         speed = (self.road or {}).get("speed_kmh")
         profile = (self.signal.time, self.signal.profile) if self.signal.profile else None
         driven = Take(speed=float(speed) / 3.6 if isinstance(speed, int | float) else None, profile=profile)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,17 +11,36 @@ import numpy as np
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Run
 from vehicle.runs.comparison.comparison import Comparison
-from vehicle.runs.comparison.frf_comparison import BANDS, FrfComparison, checked_edges, compare_responses
+from vehicle.runs.comparison.frf_comparison import (
+    BANDS,
+    FrfComparison,
+    checked_edges,
+    compare_responses,
+    other_plates,
+)
 from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
+from vehicle.signals.analysis.phase_delay import phase_delay
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.counterpart import PARTS, clock_advice, response_faults, run_times, sign_and_unit
+from vehicle.signals.records.counterpart import (
+    PARTS,
+    SAME_MOTION,
+    clock_advice,
+    response_faults,
+    run_times,
+    sign_and_unit,
+)
+from vehicle.signals.records.delays import PLATES, Delay, group_of, split_delay
+from vehicle.signals.records.group_delays import ChannelLag, channel_lags, group_delays
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.threads import one_blas_thread
 
 LARGEST_DRIFT = 0.1
 """Maximum drift of a clock [-]; a larger value means a wrong sampling rate."""
+
+PHASE_STEP = 0.05
+"""Time by which lags of FRFs count as equal, in periods of the highest line [-]: 18 degrees of phase there."""
 
 
 def compare(
@@ -32,7 +50,7 @@ def compare(
     *,
     choice: Choice | None = None,
     inverted: Collection[str] = (),
-    delay: float = 0.0,
+    delay: Delay = 0.0,
     drift: float = 0.0,
     window: float | None = None,
     bands: tuple[float, ...] | None = None,
@@ -47,7 +65,8 @@ def compare(
             pattern with *, or place and direction; by default equal names.
         choice: units, rate and excerpt of the file.
         inverted: channels measured with the opposite sign.
-        delay: the measurement began this long after the run [s].
+        delay: the measurement began this long after the run [s]; or delays that are taken out, as
+            {"accelerations": 0.0123, "record": 0.5}: a group, channel or pattern, and the start of the record.
         drift: the clock of the measurement is slow by this share [-].
         window: length of the Hann windows that the measured responses were averaged over [s]; by default the local
             rational model of the whole record.
@@ -61,7 +80,8 @@ def compare(
             units or signs are chosen for a run.
         DataError: bad data, or no common channel.
     """
-    require_clock(delay, drift)
+    begin, delays = split_delay(delay)
+    require_drift(drift)
     edges = None if bands is None else checked_edges(bands, f"bands {bands}")
     if isinstance(run, Simulated):
         simulated = run
@@ -76,12 +96,17 @@ def compare(
         if isinstance(run, Run):
             simulated = replace(simulated, name=run_words(run))
         measured = reference_of(measured, window)
+    if isinstance(measured, Measured) and delays:
+        raise ConfigurationError(
+            f"delay {delays}: delays of groups are taken out of a file as it is read; give the file, or "
+            "Choice(delays=...) to read_measured"
+        )
     if not isinstance(measured, Measured):
         asked = choice or Choice()
-        asked = replace(asked, channels={**asked.channels, **(channels or {})})
+        asked = replace(asked, channels={**asked.channels, **(channels or {})}, delays={**asked.delays, **delays})
         names = tuple(simulated.record.channels)
         measured = read_measured(Path(measured), names, asked, inverted=inverted, window=window)
-    return comparison_of(measured, simulated, edges=edges, delay=delay, drift=drift, window=window)
+    return comparison_of(measured, simulated, edges=edges, delay=begin, drift=drift, window=window)
 
 
 def run_words(run: Run) -> str:
@@ -146,21 +171,32 @@ def comparison_of(
     responses: tuple[FrfComparison, ...] = ()
     signatures, notices = None, list(measured.notices)
     if measured.frf is not None:
-        names = [name for name in measured.frf.channels if name in simulated.record.channels]
+        outputs = set(measured.frf.channels)
+        names = [name for name in simulated.record.channels if name in outputs]
         other = simulated.responses(names, window) if names else None
         if other is None:
             notices.append("the run has no responses to compare with")
         else:
             responses, signatures = compare_responses(measured.frf, other, edges or BANDS)
+            notices += other_plates(measured.frf, other)
     records: tuple[RecordComparison, ...] = ()
     judged: set[str] = set()
+    lags, step, reference = list[ChannelLag](), 0.0, ""
     if measured.record is not None:
         times = run_times(measured.record, delay, drift, measured.start)
         records, parts = compare_records(measured.record, simulated.record, times)
-        step = records[0].time[1] - records[0].time[0] if records else 0.0
-        notices += clock_advice(parts, float(step), delay, drift, command)
+        step = float(records[0].time[1] - records[0].time[0]) if records else 0.0
+        lags = channel_lags(parts, measured.delays)
+    elif responses:
+        lags, reference = response_lags(responses, measured.delays), PLATES
+        step = PHASE_STEP / float(responses[0].frequency[-1])
+    delays = group_delays(lags, step, reference)
+    if measured.record is not None:
+        clock = [part for part in parts if not delays or group_of(part.channel) == delays[0].group]
+        notices += clock_advice(clock, step, delay, drift, command)
         notices += [*sign_and_unit(parts), *unlike_copies(records)]
         judged = {part.channel for part in parts if part.reliable_shift}
+    notices += [text for group in delays for text in group.advice(step, command)]
     for response in responses:
         if response.channel not in judged:
             weight = np.nan_to_num(response.measured_coherence, nan=1.0) * np.nan_to_num(
@@ -178,23 +214,38 @@ def comparison_of(
         responses=responses,
         signatures=signatures,
         records=records,
+        delays=delays,
         notices=tuple(notices),
         tyres=simulated.tyres,
     )
 
 
-def require_clock(delay: float, drift: float) -> None:
-    """Check the clock of a measurement against that of the run.
+def response_lags(responses: Sequence[FrfComparison], taken_out: Mapping[str, float]) -> list[ChannelLag]:
+    """Return the lags of measured FRFs against those of the run, where their phases agree after it.
 
     Args:
-        delay: the measurement began this long after the run [s].
+        responses: compared FRFs.
+        taken_out: channel -> delay that was taken out [s].
+    """
+    lags = []
+    for each in responses:
+        weight = np.nan_to_num(each.measured_coherence, nan=1.0) * np.nan_to_num(each.simulated_coherence, nan=1.0)
+        found = phase_delay(each.frequency, each.simulated, each.measured, weight)
+        if found is not None and found.agreement >= SAME_MOTION:
+            out = taken_out.get(each.channel, 0.0)
+            lags.append(ChannelLag(channel=each.channel, lag=found.delay + out, error=found.error, taken_out=out))
+    return lags
+
+
+def require_drift(drift: float) -> None:
+    """Check the drift of the clock of a measurement against that of the run.
+
+    Args:
         drift: the clock of the measurement is slow by this share [-].
 
     Raises:
         ConfigurationError: a number that is not finite, or a drift of more than a tenth.
     """
-    if not math.isfinite(delay):
-        raise ConfigurationError(f"--delay {delay:g}: must be a finite number of seconds")
     if not abs(drift) <= LARGEST_DRIFT:
         raise ConfigurationError(
             f"--drift {PARTS * drift:g}: must be -100000 to 100000 parts per million; for another rate give --rate HZ"

@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
 from vehicle.signals.records.counterpart import PARTS
+from vehicle.signals.records.group_delays import GroupDelay
 
 SHOWN = 12
 """Maximum number of rows of a table on the console."""
@@ -22,7 +23,7 @@ BAND_HEADS = ("error", "magnitude_db", "magnitude_rms_db", "phase_deg", "weight"
 
 HEADS = (
     *("kind", "channel", "low_hz", "high_hz", *BAND_HEADS, "frac", "scaled_frac", "frequency_scale", "rms_ratio"),
-    *("correlation", "iso18571", "corridor", "phase", "magnitude", "slope", "lag_s", "drift_ppm", "window_s"),
+    *("correlation", "iso18571", "corridor", "phase", "magnitude", "slope", "lag_s", "drift_ppm", "window_s", "plate"),
 )
 """Columns of `compare.csv`."""
 
@@ -36,6 +37,7 @@ class Comparison:
         responses: comparisons of frequency responses.
         signatures: agreement of all responses together.
         records: comparisons of time histories.
+        delays: delay of each group of channels; the first is the reference of the others.
         notices: notices on the measurement.
         tyres: state of the tyres in the run, "standing" or "rolling at ..."; empty if unknown.
     """
@@ -45,8 +47,18 @@ class Comparison:
     responses: tuple[FrfComparison, ...] = ()
     signatures: Signatures | None = None
     records: tuple[RecordComparison, ...] = ()
+    delays: tuple[GroupDelay, ...] = ()
     notices: tuple[str, ...] = ()
     tyres: str = ""
+
+    @property
+    def plates(self) -> tuple[str, ...]:
+        """Inputs of the responses, as "plate_fr"; without unknown ones."""
+        return tuple(dict.fromkeys(item.plate for item in self.responses if item.plate))
+
+    def label(self, channel: str, plate: str) -> str:
+        """Return the name of a response in tables and figures: the output, with its plate if there are several."""
+        return f"{channel}/{plate}" if plate and len(self.plates) > 1 else channel
 
     @property
     def run(self) -> str:
@@ -95,6 +107,7 @@ class Comparison:
             {
                 "kind": "frf",
                 "channel": item.channel,
+                "plate": item.plate or None,
                 "low_hz": band.low,
                 "high_hz": band.high,
                 **{name: getattr(band, name) for name in BAND_HEADS},
@@ -144,6 +157,7 @@ class Comparison:
             "responses": [
                 {
                     "channel": item.channel,
+                    "plate": item.plate or None,
                     "frac": _plain(item.frac),
                     "scaled_frac": _plain(item.scaled_frac),
                     "frequency_scale": item.scale,
@@ -170,6 +184,7 @@ class Comparison:
                 }
                 for item in self.records
             ],
+            "delays": [each.summary() for each in self.delays],
             "table": [{name: _plain(value) for name, value in row.items()} for row in self.rows()],
             "notices": list(self.notices),
         }
@@ -177,8 +192,9 @@ class Comparison:
     def csv(self) -> str:
         """Return the content of `compare.csv`; columns of the other kind of row are empty."""
         header = (
-            f"# measured {self.measured}, simulated {self.run}; worst first; error: root of the mean of "
-            "|ln(simulated / measured)|^2 weighted by both coherences; magnitude positive where simulated is larger; "
+            f"# measured {self.measured}, simulated {self.run}; worst first; plate: input of the response; "
+            "error: root of the mean of |ln(simulated / measured)|^2 weighted by both coherences; magnitude positive "
+            "where simulated is larger; "
             "iso18571: ISO/TS 18571, 0 to 1, mean over windows of window_s at the full rate, weighted by their RMS; "
             "lag: positive where simulated is late, in the middle of the record; drift: its change per time"
         )
@@ -191,20 +207,21 @@ class Comparison:
         bands, times = ([row for row in rows if row["kind"] == section] for section in ("frf", "time"))
         lines = [f"measured {self.measured}, simulated {self.run}"]
         if bands:
-            worst = bands[0]
+            worst, named = bands[0], [self.label(row["channel"], row["plate"] or "") for row in bands]
+            width = max(28, 2 + max(len(name) for name in named[:SHOWN]))
             lines.append(
-                f"largest error of a response: {worst['channel']}, {worst['low_hz']:g} to {worst['high_hz']:g} Hz: "
+                f"largest error of a response: {named[0]}, {worst['low_hz']:g} to {worst['high_hz']:g} Hz: "
                 f"{worst['magnitude_db']:+.1f} dB, {worst['phase_deg']:.0f} deg"
             )
             lines.append(
-                f"{'channel':<28}{'band [Hz]':>12}{'error':>8}{'mean [dB]':>11}{'RMS [dB]':>10}{'phase [deg]':>13}"
+                f"{'channel':<{width}}{'band [Hz]':>12}{'error':>8}{'mean [dB]':>11}{'RMS [dB]':>10}{'phase [deg]':>13}"
                 f"{'weight':>8}{'FRAC':>8}{'scaled':>8}{'at':>8}"
             )
             lines += [
-                f"{row['channel']:<28}{_band(row):>12}{row['error']:>8.3f}{row['magnitude_db']:>+11.2f}"
+                f"{name:<{width}}{_band(row):>12}{row['error']:>8.3f}{row['magnitude_db']:>+11.2f}"
                 f"{row['magnitude_rms_db']:>10.2f}{row['phase_deg']:>13.1f}{row['weight']:>8.2f}{row['frac']:>8.4f}"
                 f"{row['scaled_frac']:>8.4f}{row['frequency_scale']:>8.3f}"
-                for row in bands[:SHOWN]
+                for name, row in zip(named, bands[:SHOWN], strict=False)
             ]
             lines += _left(bands)
         if self.signatures is not None:
@@ -230,6 +247,13 @@ class Comparison:
                 + ", ".join(f"{count} window{'s' if count > 1 else ''} of {length:.4g} s" for length, count in windows)
                 + " at the full rate, weighted by their RMS"
             )
+        told = [
+            f"{each.group} {1e3 * each.delay:.3f} +- {1e3 * each.error:.1g} ms after the {each.against}"
+            + (f" ({1e3 * each.taken_out:.5g} ms taken out)" if each.taken_out else "")
+            for each in self.delays
+            if math.isfinite(each.delay)
+        ]
+        lines += [f"delays: {'; '.join(told)}"] if told else []
         return "\n".join([*lines, *(f"notice: {text}" for text in self.notices)])
 
 

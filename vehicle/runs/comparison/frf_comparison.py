@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf_agreement import BandError, band_errors, csac, csf, frac, scaled_frac
+from vehicle.signals.analysis.response_name import row_of
 from vehicle.signals.records.frf_file import FrfData
 
 Vector = npt.NDArray[np.float64]
@@ -25,7 +26,8 @@ class FrfComparison:
     """Comparison of one response.
 
     Attributes:
-        channel: name in the model.
+        channel: output, a channel of the model.
+        plate: input, as "plate_fr"; empty if unknown.
         frequency: lines of the measurement [Hz], (m,).
         measured, simulated: [m/s2 per m], (m,); NaN where undefined.
         measured_coherence, simulated_coherence: [-], (m,); NaN if unknown.
@@ -36,6 +38,7 @@ class FrfComparison:
     """
 
     channel: str
+    plate: str
     frequency: Vector
     measured: Complex
     simulated: Complex
@@ -55,7 +58,7 @@ class Signatures:
         frequency: [Hz], (m,).
         csac: CSAC, agreement of the shape [-], (m,).
         csf: CSF, agreement of shape and amplitude [-], (m,).
-        channels: number of responses.
+        channels: number of responses, each an output to an input.
     """
 
     frequency: Vector
@@ -92,10 +95,40 @@ def checked_edges(edges: Sequence[float], where: str) -> tuple[float, ...]:
     return tuple(edges)
 
 
+def paired(measured: FrfData, simulated: FrfData) -> list[tuple[int, float] | None]:
+    """Return the row and the factor of the simulated response of each measured one, see `row_of`; None without one.
+
+    Plates that move apart in the measurement and as one in the simulation have no common response.
+    """
+    pairs = [row_of(name, simulated.names) for name in measured.names]
+    rows = [pair and pair[0] for pair in pairs]
+    return [None if pair is None or rows.count(pair[0]) > 1 else pair for pair in pairs]
+
+
+def other_plates(measured: FrfData, simulated: FrfData) -> list[str]:
+    """Return a notice for inputs that only the measurement or only the simulation has."""
+    pairs = paired(measured, simulated)
+    unpaired = [name.input for name, pair in zip(measured.names, pairs, strict=True) if pair is None and name.motion]
+    compared = {pair[0] for pair in pairs if pair is not None}
+    driven = [name.input for row, name in enumerate(simulated.names) if name.motion and row not in compared]
+    notices = []
+    if left_out := list(dict.fromkeys(unpaired)):
+        notices.append(
+            f"measured responses to {', '.join(left_out)} are left out: the run has "
+            f"{', '.join(simulated.inputs) or 'none'}; drive the same plates"
+        )
+    if driven := [plate for plate in dict.fromkeys(driven) if plate not in measured.inputs]:
+        notices.append(
+            f"the run also drives {', '.join(driven)}, which the measured responses lack: a plate that moved there "
+            "counts as noise, or as a part of the response if it moved with another; map its displacement too"
+        )
+    return notices
+
+
 def compare_responses(
     measured: FrfData, simulated: FrfData, edges: Sequence[float] = BANDS
 ) -> tuple[tuple[FrfComparison, ...], Signatures | None]:
-    """Compare all common responses.
+    """Compare all responses with the same output and the same input, see `row_of`.
 
     Real and imaginary parts of the simulated responses are interpolated to the measured lines. The weight of a line is
     the product of both coherences; an unknown coherence counts as 1.
@@ -108,7 +141,7 @@ def compare_responses(
         A comparison for each response, and the agreement of all together, None for a single response.
 
     Raises:
-        DataError: no common line.
+        DataError: no common line, or a measured response without a plate beside those of several plates.
     """
     inside = (measured.frequency >= simulated.frequency[0]) & (measured.frequency <= simulated.frequency[-1])
     frequency = measured.frequency[inside]
@@ -120,12 +153,12 @@ def compare_responses(
         )
     bands = list(pairwise(edges))
     comparisons = []
-    for row, name in enumerate(measured.channels):
-        if name not in simulated.channels:
+    for row, (name, pair) in enumerate(zip(measured.names, paired(measured, simulated), strict=True)):
+        if pair is None:
             continue
-        other = simulated.channels.index(name)
+        other, factor = pair
         top = measured.response[row, inside]
-        bottom = np.interp(frequency, simulated.frequency, simulated.response[other])
+        bottom = factor * np.interp(frequency, simulated.frequency, simulated.response[other])
         coherences = (
             measured.coherence[row, inside],
             np.interp(frequency, simulated.frequency, simulated.coherence[other]),
@@ -134,7 +167,8 @@ def compare_responses(
         stretched, scale = scaled_frac(frequency, top, bottom)
         comparisons.append(
             FrfComparison(
-                channel=name,
+                channel=name.output,
+                plate=name.input or simulated.names[other].input,
                 frequency=frequency,
                 measured=top,
                 simulated=bottom,

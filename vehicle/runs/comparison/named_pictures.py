@@ -41,13 +41,18 @@ class NamedPicture:
 
 
 def pictures_of(comparison: Comparison) -> dict[str, NamedPicture]:
-    """Return the name of each picture, as "compare_frf_seat_rail", to the picture."""
+    """Return the name of each picture, as "compare_frf_seat_rail", to the picture.
+
+    Responses to several plates have a picture for each, as "compare_frf_seat_rail_plate_fr".
+    """
     caption = f"measured: {comparison.measured}; simulated: {comparison.run}"
     pictures: dict[str, NamedPicture] = {}
-    for point in dict.fromkeys(_point_of(item.channel) for item in comparison.responses):
-        responses = [item for item in comparison.responses if _point_of(item.channel) == point]
-        pictures[f"compare_frf_{point}"] = NamedPicture(
-            write=partial(plot_responses, point=point, responses=responses, caption=caption),
+    several = len(comparison.plates) > 1
+    for point, plate in dict.fromkeys((_point_of(item.channel), item.plate) for item in comparison.responses):
+        responses = [item for item in comparison.responses if (_point_of(item.channel), item.plate) == (point, plate)]
+        title = f"{point} to {plate}" if several else point
+        pictures[f"compare_frf_{point}" + (f"_{plate}" if several else "")] = NamedPicture(
+            write=partial(plot_responses, point=title, responses=responses, caption=caption),
             draw=partial(draw_responses, responses=responses),
             rows=3,
             columns=len(responses),

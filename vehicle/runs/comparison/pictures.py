@@ -65,10 +65,9 @@ def draw_responses(axes: npt.NDArray[Any], responses: Sequence[FrfComparison]) -
             phase.plot(response.frequency, wrapped_phase(values.copy()), **LOOKS[label])
             if np.isfinite(beside).any():
                 coherence.plot(response.frequency, beside, label=label, **LOOKS[label])
-        magnitude.set_title(
-            f"{response.channel}\nFRAC {response.frac:.3f}; {response.scaled_frac:.3f} with frequencies times "
-            f"{response.scale:.3f}"
-        )
+        to_plate = f" to {response.plate}" if response.plate else ""
+        scaled = f"{response.scaled_frac:.3f} with frequencies times {response.scale:.3f}"
+        magnitude.set_title(f"{response.channel}{to_plate}\nFRAC {response.frac:.3f}; {scaled}")
         magnitude.legend(loc="best")
     frf_axes(axes[0, 0].figure, axes, (0, 0.25, 0.5, 0.75, 1))
     lines = np.concatenate([response.frequency for response in responses])

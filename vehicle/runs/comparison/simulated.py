@@ -8,9 +8,10 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Run
-from vehicle.signals.records.frf_file import FrfData, read_frf
+from vehicle.signals.records.frf_file import FrfData, frf_data
 from vehicle.signals.records.measured import estimated_frf
 from vehicle.signals.records.reader import read_columns
+from vehicle.signals.records.run_frf import run_frf
 from vehicle.signals.records.run_summary import available_summary
 from vehicle.signals.records.table import Record
 
@@ -25,7 +26,7 @@ class Simulated:
         name: name of the input.
         record: all time histories; the first sample is at time 0.
         responses: function of names of accelerations and of the length of Hann windows [s] or None; returns the
-            responses to the plate, or None.
+            responses to each independent motion of the plates, or None.
         tyres: state of the tyres, "standing" or "rolling at ..."; empty if unknown.
     """
 
@@ -39,14 +40,7 @@ def of_run(run: Run) -> Simulated:
     """Return the simulated data of a run."""
 
     def responses(names: Sequence[str], window: float | None) -> FrfData:
-        response = run.frf(names, window=window)
-        return FrfData(
-            frequency=response.frequency,
-            channels=tuple(names),
-            response=response.response,
-            coherence=response.coherence,
-            random_error=response.random_error,
-        )
+        return frf_data(run.frfs(names, window=window), names)
 
     record = Record(time=run.time, channels=run.recording.channels, units=run.recording.units)
     return Simulated(name=run.signal.source, record=record, responses=responses, tyres=run.car.vehicle.driving.words)
@@ -63,13 +57,13 @@ def of_folder(folder: Path) -> Simulated:
     if file is None:
         raise ConfigurationError(f"{folder}: holds no time.npz or time.csv; give the folder of a run, or an input")
     record = read_columns(file)
+    summary = available_summary(folder)
 
     def responses(names: Sequence[str], window: float | None) -> FrfData | None:
         if window is not None:
             estimate = estimated_frf(record, window)
             return None if estimate is None else estimate[0]
-        return read_frf(folder / "frf.csv") if (folder / "frf.csv").is_file() else None
+        return run_frf(folder / "frf.csv", summary) if (folder / "frf.csv").is_file() else None
 
-    summary = available_summary(folder)
     tyres = summary.get("tyre", "") if summary else ""
     return Simulated(name=folder.name, record=record, responses=responses, tyres=tyres)

@@ -45,5 +45,7 @@ def write_own_files(folder: Path, car: Car) -> dict[str, str]:
     for name, file in files.items():
         (folder / name).parent.mkdir(exist_ok=True)
         text = file.read_bytes()
+        if (folder / name).is_file() and (folder / name).read_bytes() == text:
+            continue  # the car is saved beside its own file
         write_whole(folder / name, lambda path, text=text: path.write_bytes(text))  # type: ignore[misc]
     return {("template_" if "/" in name else "body_") + file.stem: name for name, file in files.items()}

@@ -24,13 +24,16 @@ from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, sea
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.dependence import DependentInputsError, common_motions, what_moves
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.local_rational import shortest_record
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.peaks import resonances
+from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.analysis.spectra import power_spectral_density
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.formats import write_record
 from vehicle.signals.records.frf_file import write_frf
 from vehicle.signals.records.measured import Measured
+from vehicle.signals.records.run_frf import CHANNEL
 from vehicle.signals.records.run_summary import (
     SUMMARY_FILE,
     FrfSummary,
@@ -54,23 +57,30 @@ LOADS = (
 """Addition to the header of time histories with loads."""
 
 
-def require_plates(signal: Signal) -> None:
-    """Check that no plate repeats the motion of another with a delay; FRFs cannot separate such plates.
+def require_plates(signal: Signal, *, separable: bool = True) -> None:
+    """Check that the FRFs to the plates can be estimated: long enough, and no plate repeats another with a delay.
 
     Args:
         signal: plate displacement.
+        separable: False accepts plates that repeat another with a delay; their run has no FRFs.
 
     Raises:
-        DataError: the message contains the plates and the delay.
+        DataError: the message contains the shortest length, or the plates and the delay.
     """
     moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
-    if len(moving) < 2:
-        return
-    plates = np.array([signal.displacement[wheel] for wheel in moving])
+    plates, band = np.array([signal.displacement[wheel] for wheel in moving]), signal.band(FRF_BAND)
+    names = [f"plate {wheel}" for wheel in moving]
+    motions = [{n: 1.0} for n in range(len(moving))]
     try:
-        common_motions(signal.timestep, plates, [f"plate {wheel}" for wheel in moving], signal.band(FRF_BAND))
+        if len(moving) > 1:
+            motions = common_motions(signal.timestep, plates, names, band)
     except DependentInputsError as error:
-        raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
+        if separable:
+            raise DataError(f"{error}; or give --any-level for a run without FRFs") from None
+        return
+    if motions and signal.duration < shortest_record(len(motions), band[1]):
+        plates = plates[[min(group) for group in motions]]
+        whole_record_responses(signal.timestep, plates, plates, band=band)  # accepts a short record if it is periodic
 
 
 def write_run(
@@ -107,8 +117,9 @@ def write_run(
         VehicleError: a file cannot be made or written.
     """
     channels = run.car.vehicle.acceleration_channels
-    # On a road, FRFs that cannot be estimated are left out with a notice.
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
+    if run.road is not None:
+        missing = []  # on every road the rear plates repeat the front ones, which no user can change
     files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
         files["frf"] = "frf.csv"
@@ -126,15 +137,11 @@ def write_run(
     frame = FRAME + LOADS if set(run.car.vehicle.load_channels) & set(record.channels) else FRAME
     write_whole(folder / files["time"], lambda path: write_record(path, time_format, record, frame))
     if responses:
-        first, *others = responses
-        further = {other.first: other.response for other in others}
+        by_input = {response.input: response.response for response in responses}
         motions = what_moves([response.motion for response in responses])
-        write_whole(
-            folder / "frf.csv",
-            lambda path: write_frf(path, first.response, channels, FRAME, further=further, inputs=motions),
-        )
+        write_whole(folder / "frf.csv", lambda path: write_frf(path, by_input, channels, FRAME, motions))
         if figures:
-            caption = _caption(run, first.response)
+            caption = _caption(run, responses[0].response)
             write_whole(folder / "frf.png", lambda path: plot_frfs(path, run, responses, caption))
     for file_format in dict.fromkeys(formats):
         if file_format != time_format:
@@ -248,7 +255,7 @@ def summarise(
     """
     statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
     energies, wheels = statistics.energies, vehicle.wheels
-    response, channels = (responses[0].response if responses else None), vehicle.acceleration_channels
+    channels = vehicle.acceleration_channels
     motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
     body = rigid_body(vehicle.body)
     return {
@@ -279,7 +286,7 @@ def summarise(
         "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
         "saturated_velocity": SATURATED_VELOCITY,
-        "peaks": _peaks(response, channels),
+        "peaks": _peaks(responses[0].response if responses else None, channels),
         "comfort": comfort_values(run),
         "seat_value": seat_values(run),
         "obstacle": obstacle_values(run),
@@ -304,20 +311,25 @@ def summarise(
             "stored_j": energies.stored if energies else None,
             "engine_reason": engine_reason,
         },
-        "frf": None if response is None else _frf_summary(responses, channels),
-        "notices": [
-            *([body.report] if body.repaired else []),
-            *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
-            *idle_parameters(vehicle, run.car.overrides),
-            *body_notices(vehicle, run.car.overrides),
-            *run.signal.notices,
-            *([motion_notice] if motion_notice else []),
-            *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
-            *comfort_notices(run),
-            *statistics.notices,
-            *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
-            *notices,
-        ],
+        "frf": _frf_summary(responses, channels) if responses else None,
+        # A run that was read from its folder has all of its notices, and makes most of them again.
+        "notices": list(
+            dict.fromkeys(
+                [
+                    *([body.report] if body.repaired else []),
+                    *mass_difference(run.car.trimmed_body, vehicle.body, body_loads(vehicle)),
+                    *idle_parameters(vehicle, run.car.overrides),
+                    *body_notices(vehicle, run.car.overrides),
+                    *run.signal.notices,
+                    *([motion_notice] if motion_notice else []),
+                    *dict.fromkeys(reason for motion in responses for reason in motion.response.reasons),
+                    *comfort_notices(run),
+                    *statistics.notices,
+                    *([f"{measured['file']}: {text}" for text in measured["notices"]] if measured else []),
+                    *notices,
+                ]
+            )
+        ),
         "files": files,
         "measured": measured,
         "tyre": vehicle.driving.words,
@@ -333,10 +345,17 @@ def _frf_summary(responses: Sequence[MotionResponse], channels: Sequence[str]) -
     response = responses[0].response
     averages = response.averages[np.isfinite(response.averages)]
     motions: list[MotionSummary] = []
-    for number, independent in enumerate(responses):
-        motion: MotionSummary = {"plates": dict(independent.motion), "columns": "<channel>"}
-        if number:
-            motion |= {"columns": f"<channel>_to_{independent.first}", "peaks": _peaks(independent.response, channels)}
+    for independent in responses:
+        motion: MotionSummary = {
+            "plates": dict(independent.motion),
+            "input": independent.input,
+            "columns": CHANNEL,
+        }
+        if len(responses) > 1:
+            motion |= {
+                "columns": f"{CHANNEL}/{independent.input}",
+                "peaks": _peaks(independent.response, channels),
+            }
         motions.append(motion)
     return {
         "estimator": response.estimator,

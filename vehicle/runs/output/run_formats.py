@@ -39,8 +39,8 @@ def response_channels(responses: Sequence[MotionResponse], channels: Sequence[st
     """
     result = []
     for motion, (row, name) in product(responses, enumerate(channels)):
-        plate, response = f"plate_{motion.first}", motion.response
-        attributes = _point(name) | {"reference": f"{plate}+Z"}
+        plate, response = motion.input, motion.response
+        attributes = _point(name) | {"reference": f"plate_{motion.first}+Z"}
         result.append(
             Channel(
                 name=f"{name} / {plate}",

@@ -1,14 +1,21 @@
-"""Folder of a run, with the same files as the command `shaker`."""
+"""Folder of a run, with the same files as the command `shaker`: written from a run, and read as a run."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from vehicle.errors import ConfigurationError
-from vehicle.runs.car import Run
+import numpy as np
+
+from vehicle.engines.simulation.recording import Energies, Recording, Statistics
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.names import in_order
+from vehicle.runs.car import Car, Run
 from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
+from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.records.reader import read_columns
+from vehicle.signals.records.run_summary import SUMMARY_FILE, RunSummary, read_summary
 
 
 def save_run(
@@ -47,3 +54,97 @@ def save_run(
     with output_folder(Path(folder), force=force) as work:
         write_run(work, run, time_format=time_format, formats=formats, figures=figures)
     return Path(folder)
+
+
+def load_run(folder: Path | str) -> Run:
+    """Read the folder of a run, written by `save_run` or by the command `shaker`, as a run.
+
+    The car is that of `vehicle.toml` in the folder, with all values as used; the signal is the recorded displacement of
+    the plates, at the rate of the recording. Channels, FRFs, comfort and slip are those of the run that was saved.
+    Poses for a film are not saved, nor is the road behind the displacements.
+
+    Args:
+        folder: the folder.
+
+    Returns:
+        The run.
+
+    Raises:
+        ConfigurationError: the folder is not of a run, or its car is wrong.
+        DataError: a file of it is missing or damaged.
+    """
+    folder = Path(folder)
+    summary = read_summary(folder)
+    car, recording = Car.load(file_of_run(folder, summary, "vehicle")), read_recording(folder, summary)
+    excitation = summary["input"]
+    signal = Signal(
+        time=recording.time,
+        displacement={
+            wheel: recording[f"plate_{wheel}_displacement"] for wheel in recording.excited or (excitation["wheel"],)
+        },
+        source=excitation["file"],
+        sha256=excitation["sha256"],
+        highest=excitation["highest_hz"],
+    )
+    begin, _ = summary.get("evaluated_s") or (0.0, 0.0)
+    return Run(
+        car=car,
+        signal=signal,
+        recording=recording,
+        engine_reason=summary["solver"]["engine_reason"],
+        skip=begin,
+        road=excitation["road"],
+    )
+
+
+def file_of_run(folder: Path, summary: RunSummary, purpose: str) -> Path:
+    """Return the path of a file in the folder of a run.
+
+    Args:
+        folder: the folder.
+        summary: content of its summary.
+        purpose: key of the file in the summary, as "vehicle".
+
+    Raises:
+        DataError: the summary does not name the file, or it is missing.
+    """
+    if purpose not in summary["files"]:
+        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{purpose}: missing); run the simulation again")
+    path = folder / summary["files"][purpose]
+    if not path.is_file():
+        raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
+    return path
+
+
+def read_recording(folder: Path, summary: RunSummary) -> Recording:
+    """Read the time histories in the folder of a run; without poses.
+
+    Args:
+        folder: the folder.
+        summary: content of its summary.
+
+    Raises:
+        DataError: the file is missing or damaged.
+    """
+    record, solver = read_columns(file_of_run(folder, summary, "time")), summary["solver"]
+    work, lost, stored = solver["work_in_j"], solver["dissipated_j"], solver["stored_j"]
+    return Recording(
+        time=record.time,
+        channels=record.channels,
+        units=record.units,
+        excited=in_order(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
+        pose_time=np.empty(0),
+        poses=np.empty((0, 0)),
+        statistics=Statistics(
+            engine=solver["engine"],
+            callback=solver["callback"],
+            timestep=solver["timestep_s"],
+            steps=solver["steps"],
+            wall_time=solver["wall_s"],
+            warnings=tuple(solver["warnings"]),
+            energies=None
+            if work is None or lost is None or stored is None
+            else Energies(work_in=work, dissipated=lost, stored=stored),
+            notices=tuple(summary["notices"]),
+        ),
+    )

@@ -112,7 +112,7 @@ def _input_words(run: FinishedRun) -> str:
 
 def _is_within(band: MainBand) -> str:
     """Return direction and frequencies of a band as the end of a sentence."""
-    return f"is {DIRECTIONS[band.axis]} between {band.low:.2g} and {band.high:.2g} Hz"
+    return f"is {DIRECTIONS[band.axis]} between {number(band.low, 2)} and {number(band.high, 2)} Hz"
 
 
 def _damper_words(run: FinishedRun) -> str:
@@ -123,13 +123,13 @@ def _damper_words(run: FinishedRun) -> str:
     low, high = (100.0 * limit(shares.values()) for limit in (min, max))
     if high < 1.0:
         return "; the dampers stick, so they dissipate almost no energy"
-    same = f"{low:.2g}" == f"{high:.2g}"
-    return f"; the dampers slip for {f'{high:.2g}' if same else f'{low:.2g} to {high:.2g}'} % of the time"
+    ends = dict.fromkeys(number(share, 2) for share in (low, high))
+    return f"; the dampers slip for {' to '.join(ends)} % of the time"
 
 
 def mode_words(mode: Mode) -> str:
     """Return a mode in words: frequency, largest motion, damping ratio."""
-    return f"{mode.frequency:.1f} Hz ({_motion(mode)}, damping ratio {100.0 * mode.damping_ratio:.2g} %)"
+    return f"{mode.frequency:.1f} Hz ({_motion(mode)}, damping ratio {number(100.0 * mode.damping_ratio, 2)} %)"
 
 
 def _motion(mode: Mode) -> str:
@@ -236,10 +236,10 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
         before, after = (100.0 * slip[wheel] for slip in slips)
-        if abs(after - before) >= SLIP and f"{after:.2g}" != f"{before:.2g}":
+        if abs(after - before) >= SLIP and number(after, 2) != number(before, 2):
             return (
-                f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper slips for {after:.2g} % of the time "
-                f"instead of {before:.2g} %."
+                f"{', '.join(parts)}; the {side_of(wheel, slips[0])} damper slips for {number(after, 2)} % of the time "
+                f"instead of {number(before, 2)} %."
             )
     return f"{', '.join(parts)}."
 
@@ -249,7 +249,7 @@ def _moved(mode: Mode, other: Mode | None) -> str:
     if other is None or mode_words(other) == mode_words(mode):
         return f"of {mode_words(mode)}"
     frequencies = [f"{each.frequency:.3g}" for each in (mode, other)]
-    ratios = [f"{100.0 * each.damping_ratio:.2g}" for each in (mode, other)]
+    ratios = [number(100.0 * each.damping_ratio, 2) for each in (mode, other)]
     parts = [f"which moves from {frequencies[0]} to {frequencies[1]} Hz"] if frequencies[0] != frequencies[1] else []
     parts += [f"whose damping ratio changes from {ratios[0]} to {ratios[1]} %"] if ratios[0] != ratios[1] else []
     return f"of {_motion(mode)}, {' and '.join(parts)}" if parts else f"of {mode_words(mode)}"

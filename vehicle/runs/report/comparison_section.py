@@ -8,10 +8,10 @@ from pathlib import Path
 
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.several_runs import plot_responses, shared_channels
-from vehicle.names import wheel_words
+from vehicle.names import side_of, wheel_words
 from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.general_notices import notices_of
+from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
@@ -64,7 +64,7 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
 
 def _notices(runs: Sequence[FinishedRun]) -> Markup:
     """Return the notices of all runs; those that are not of all runs name theirs."""
-    of_runs = {run.name: notices_of(run) for run in runs}
+    of_runs = {run.name: without_general(run.summary["notices"], run.car.vehicle) for run in runs}
     texts = dict.fromkeys(text for notices in of_runs.values() for text in notices)
     if not texts:
         return Markup()
@@ -78,16 +78,25 @@ def _notices(runs: Sequence[FinishedRun]) -> Markup:
 def curves_over_each_other(runs: Sequence[FinishedRun]) -> Markup:
     """Return the plot of all FRFs, and the spectra of all runs."""
     parts = []
-    with_response = {run.name: (run, run.response) for run in runs if run.response is not None}
-    wheel = runs[0].wheel
-    wanted = {
-        f"knuckle_{wheel}_acc_z": f"Knuckle, {wheel_words(wheel, runs[0].car.vehicle.wheels)}",
-        "seat_rail_acc_z": "Seat rail",
-        "engine_acc_z": "Engine",
-    }
-    if len(with_response) > 1:
+    for motion in runs[0].responses:
+        with_response = {
+            run.name: (run, response.response)
+            for run in runs
+            for response in run.responses
+            if response.input == motion.input
+        }
+        if len(with_response) < 2:
+            continue
+        wheel, wheels = motion.first, runs[0].car.vehicle.wheels
+        wanted = {
+            f"knuckle_{wheel}_acc_z": f"Knuckle, {wheel_words(wheel, wheels)}",
+            "seat_rail_acc_z": "Seat rail",
+            "engine_acc_z": "Engine",
+        }
         channels = shared_channels([run for run, _ in with_response.values()], wanted)
-        title = "Vertical frequency responses of all runs"
+        several = any(len(run.responses) > 1 for run, _ in with_response.values())
+        plates = " and ".join(side_of(each, wheels) for each in motion.motion)
+        title = "Vertical frequency responses of all runs" + (f" to the plate {plates}" if several else "")
         parts.append(
             drawing(partial(plot_responses, runs=with_response, channels=channels, title=title, size=SIZE), title)
         )

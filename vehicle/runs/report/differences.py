@@ -98,11 +98,13 @@ def key_figures(run: FinishedRun) -> dict[tuple[str, str], float | None]:
     for wheel, share in shares.items():
         figures[f"{side_of(wheel, shares)} damper: time in slip", "%"] = 100.0 * share
         figures[f"{side_of(wheel, shares)} damper: first slip", "s"] = summary["first_slip_s"][wheel]
-    for channel in (f"knuckle_{run.wheel}_acc_z", "seat_rail_acc_z"):
-        peaks = summary["peaks"].get(channel)
-        if peaks:
+    for wheel, plate, resonances in run.peaks:
+        for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z"):
+            peaks = resonances.get(channel)
+            if not peaks:
+                continue
             top = max(peaks, key=lambda peak: peak["magnitude"])
-            point = point_words(channel.removesuffix("_acc_z"))
+            point = point_words(channel.removesuffix("_acc_z")) + (f" to the {plate}" if plate else "")
             figures[f"{point}, z: frequency of the highest resonance", "Hz"] = top["frequency_hz"]
             figures[f"{point}, z: its height", "m/s² per m"] = top["magnitude"]
     return figures

@@ -56,7 +56,7 @@ def _dampers(summary: RunSummary) -> list[str]:
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]
         times = "never exceeds" if first is None else "exceeds"
-        share_text = "" if first is None else f" for {100 * share:.2g} % of the time, first at {first:.3f} s"
+        share_text = "" if first is None else f" for {number(100 * share, 2)} % of the time, first at {first:.3f} s"
         if share <= STICKS:
             state = "sticks: it dissipates almost no energy, and the strut acts as a rigid link"
         elif share >= WORKS:
@@ -69,9 +69,11 @@ def _dampers(summary: RunSummary) -> list[str]:
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[str]:
     sentences = []
-    for channel, point in main_points(run).items():
-        peaks = run.summary["peaks"].get(channel)
-        if peaks:
+    for wheel, plate, resonances in run.peaks:
+        for channel, point in main_points(run, wheel).items():
+            peaks = resonances.get(channel)
+            if not peaks:
+                continue
             top = max(peaks, key=lambda peak: peak["magnitude"])
             state, nearest = nearest_mode(run, top["frequency_hz"], modes)
             mode = (
@@ -81,22 +83,20 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
             )
             sentences.append(
                 f"The highest vertical resonance at the {point} is at {top['frequency_hz']:.1f} Hz{mode}: "
-                f"{number(top['magnitude'])} m/s² per m{of_plate(run)}."
+                f"{number(top['magnitude'])} m/s² per m{f' of the {plate}' if plate else ''}."
             )
     return sentences or ["No resonance was identified: the input excites none, or there are no FRFs."]
 
 
-def main_points(run: FinishedRun) -> dict[str, str]:
-    """Return the channels with the most important resonances, and their names in sentences."""
-    return {f"knuckle_{run.wheel}_acc_z": "knuckle", "seat_rail_acc_z": "seat rail"}
+def main_points(run: FinishedRun, wheel: str) -> dict[str, str]:
+    """Return the channels with the most important resonances, and their names in sentences.
 
-
-def of_plate(run: FinishedRun) -> str:
-    """Return words for the plate of the FRFs; empty if only one motion of the plates is independent."""
-    if len(run.responses) < 2:
-        return ""
-    wheel = next(iter(run.responses[0].motion))
-    return f" of the plate {side_of(wheel, run.car.vehicle.wheels)}"
+    Args:
+        run: the run.
+        wheel: wheel of the plate of the FRFs; its knuckle is named with the side if several plates move apart.
+    """
+    side = f"{side_of(wheel, run.car.vehicle.wheels)} " if len(run.responses) > 1 else ""
+    return {f"knuckle_{wheel}_acc_z": f"{side}knuckle", "seat_rail_acc_z": "seat rail"}
 
 
 def nearest_mode(run: FinishedRun, frequency: float, modes: Mapping[str, Sequence[Mode]]) -> tuple[str, Mode | None]:
@@ -144,22 +144,24 @@ def _comfort(run: FinishedRun) -> list[str]:
 
 
 def _linearity(run: FinishedRun) -> list[str]:
-    response, sentences = run.response, []
-    if response is None:
+    sentences: list[str] = []
+    if not run.responses:
         return ["There are no FRFs: see the notices." if run.summary["notices"] else "There are no FRFs."]
     rows = {name: row for row, name in enumerate(run.car.vehicle.acceleration_channels)}
-    for channel, point in ((f"knuckle_{run.wheel}_acc_z", "knuckle"), ("seat_rail_acc_z", "seat rail")):
+    multiple = "multiple coherence, with all plates," if len(run.responses) > 1 else "coherence"
+    points = {channel: point for wheel, _, _ in run.peaks for channel, point in main_points(run, wheel).items()}
+    for channel, point in points.items():
         if channel not in rows:
             continue
-        coherence = response.coherence[rows[channel]]
+        coherence = run.responses[0].response.coherence[rows[channel]]  # the same for every plate
         finite = coherence[np.isfinite(coherence)]
         if finite.size:
             low = float(np.mean(finite < COHERENT))
             sentences.append(
-                f"At the {point} the median of the coherence is {np.median(finite):.3f}"
+                f"At the {point} the median of the {multiple} is {np.median(finite):.3f}"
                 + (
-                    f"; it is below {COHERENT:g} on {100 * low:.2g} % of the lines: there the response is nonlinear "
-                    "or very small."
+                    f"; it is below {COHERENT:g} on {number(100 * low, 2)} % of the lines: there the response is "
+                    "nonlinear or very small."
                     if low > 0.0
                     else f"; it is never below {COHERENT:g}: the response is linear."
                 )

@@ -9,17 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.engines.simulation.recording import Recording, Statistics
+from vehicle.engines.simulation.recording import Recording
 from vehicle.errors import DataError
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.names import wheel_words
+from vehicle.names import side_of, wheel_words
 from vehicle.runs.car import Car
+from vehicle.runs.output.saved_run import file_of_run, read_recording
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.analysis.response_name import PLATE, ResponseName
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.frf_file import read_frf
-from vehicle.signals.records.reader import read_columns
-from vehicle.signals.records.run_summary import SUMMARY_FILE, ComfortSummary, FrfSummary, RunSummary, read_summary
+from vehicle.signals.records.run_frf import run_frf
+from vehicle.signals.records.run_summary import ComfortSummary, FrfSummary, Peaks, RunSummary, read_summary
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -62,9 +63,19 @@ class FinishedRun:
     responses: tuple[MotionResponse, ...]
 
     @property
-    def response(self) -> FrequencyResponse | None:
-        """FRFs to the first motion of the plates, or None."""
-        return self.responses[0].response if self.responses else None
+    def peaks(self) -> list[tuple[str, str, Peaks]]:
+        """Resonances to each motion of the plates: wheel of its first plate, plates in words, peaks by channel.
+
+        The words are empty for a single motion.
+        """
+        estimate, wheels = self.summary["frf"], self.car.vehicle.wheels
+        if len(self.responses) < 2 or estimate is None:
+            return [(self.wheel, "", self.summary["peaks"])]
+        each = [motion.get("peaks", self.summary["peaks"]) for motion in estimate.get("to", ())]
+        return [
+            (motion.first, " and ".join(f"plate {side_of(wheel, wheels)}" for wheel in motion.motion), peaks)
+            for motion, peaks in zip(self.responses, each, strict=True)
+        ]
 
     @property
     def comfort(self) -> dict[str, ComfortSummary]:
@@ -92,7 +103,7 @@ class FinishedRun:
     def caption(self) -> str:
         """Caption of a plot: input, level, tyres and engine."""
         excitation, solver = self.summary["input"], self.summary["solver"]
-        estimator = f"; estimator: {self.response.estimator}" if self.response is not None else ""
+        estimator = f"; estimator: {self.responses[0].response.estimator}" if self.responses else ""
         return (
             f"{Path(excitation['file']).name}, RMS {1e3 * excitation['rms_m']:.3g} mm at the "
             f"{wheel_words(excitation['wheel'], self.car.vehicle.wheels)}, "
@@ -138,38 +149,13 @@ def read_run(
         DataError: a file of it is missing or damaged.
     """
     summary = read_summary(folder)
-    names, solver = summary["files"], summary["solver"]
-    paths = {purpose: folder / names[purpose] for purpose in ("vehicle", "time", "frf") if purpose in names}
-    if missing := next((purpose for purpose in ("vehicle", "time") if purpose not in paths), None):
-        raise DataError(f"{folder / SUMMARY_FILE}: is damaged (files.{missing}: missing); run the simulation again")
-    for purpose, path in paths.items():
-        if not path.is_file():
-            raise DataError(f"{path}: missing, though summary.json lists it as {purpose}; run it again")
-    if recording is None:
-        record = read_columns(paths["time"])
-        recording = Recording(
-            time=record.time,
-            channels=record.channels,
-            units=record.units,
-            excited=tuple(wheel for wheel, rms in summary["input"]["plate_rms_m"].items() if rms > 0.0),
-            pose_time=np.empty(0),
-            poses=np.empty((0, 0)),
-            statistics=Statistics(
-                engine=solver["engine"],
-                callback=solver["callback"],
-                timestep=solver["timestep_s"],
-                steps=solver["steps"],
-                wall_time=solver["wall_s"],
-                warnings=tuple(solver["warnings"]),
-                energies=None,
-            ),
-        )
-    run_car = car or _car(paths["vehicle"], summary)
+    vehicle_file, recording = file_of_run(folder, summary, "vehicle"), recording or read_recording(folder, summary)
+    run_car = car or _car(vehicle_file, summary)
     estimate = summary["frf"]
     frfs: tuple[MotionResponse, ...] = ()
-    if estimate is not None and "frf" in paths:
-        motions = [motion["plates"] for motion in estimate.get("to", ())] or [{summary["input"]["wheel"]: 1.0}]
-        frfs = _responses(paths["frf"], run_car.vehicle.acceleration_channels, estimate, motions)
+    if estimate is not None and "frf" in summary["files"]:
+        table = file_of_run(folder, summary, "frf")
+        frfs = _responses(table, run_car.vehicle.acceleration_channels, estimate, summary)
     return FinishedRun(
         name=(final_path or folder).resolve().name,
         folder=folder,
@@ -190,7 +176,7 @@ def _car(path: Path, summary: RunSummary) -> Car:
 
 
 def _responses(
-    path: Path, channels: Sequence[str], estimate: FrfSummary, motions: Sequence[dict[str, float]]
+    path: Path, channels: Sequence[str], estimate: FrfSummary, summary: RunSummary
 ) -> tuple[MotionResponse, ...]:
     """Read the FRFs to each motion of the plates.
 
@@ -198,16 +184,16 @@ def _responses(
         path: table of FRFs.
         channels: names of the acceleration channels.
         estimate: estimate of the FRFs, from the summary.
-        motions: plates with their factors, for each motion.
+        summary: the summary.
     """
-    table = read_frf(path)
+    table = run_frf(path, summary)
     responses = []
-    for index, motion in enumerate(motions):
-        ending = f"_to_{next(iter(motion))}" if index else ""
-        missing = [name for name in channels if name + ending not in table.channels]
-        if missing:
-            raise DataError(f"{path}: no FRFs of {missing[0] + ending}, a channel of the car; run the simulation again")
-        rows = [table.channels.index(name + ending) for name in channels]
+    for motion in dict.fromkeys(name.motion for name in table.names):
+        wanted = [ResponseName(name, motion) for name in channels]
+        missing = next((str(name) for name in wanted if name not in table.names), None)
+        if missing is not None:
+            raise DataError(f"{path}: no FRFs of {missing}, a channel of the car; run the simulation again")
+        rows = [table.names.index(name) for name in wanted]
         response = FrequencyResponse(
             frequency=table.frequency,
             response=table.response[rows],
@@ -220,5 +206,6 @@ def _responses(
             resolution_hz=estimate["resolution_hz"],
             reasons=(),
         )
-        responses.append(MotionResponse(motion=motion, response=response))
+        plates = {plate.removeprefix(PLATE): factor for plate, factor in motion}
+        responses.append(MotionResponse(motion=plates, response=response))
     return tuple(responses)

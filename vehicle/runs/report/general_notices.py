@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from vehicle.model.flexbody.rigid_body import rigid_body
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.output.run_comfort import NO_SEAT
 from vehicle.runs.report.differences import shipped_origin
-from vehicle.runs.report.finished_run import FinishedRun
 
 
-def notices_of(run: FinishedRun) -> list[str]:
-    """Return the notices of a run without those of every run of the shipped car from which its car was made.
+def without_general(notices: Iterable[str], vehicle: Vehicle) -> list[str]:
+    """Return notices without those of every run of the shipped car from which a car was made.
 
     Args:
-        run: the run.
+        notices: notices of a run.
+        vehicle: car of the run.
     """
     general = {NO_SEAT}
-    origin = shipped_origin(run.car.vehicle)
+    origin = shipped_origin(vehicle)
     if origin is not None:
         general.add(rigid_body(origin.body).report)
-    return [text for text in run.summary["notices"] if text not in general]
+    return [text for text in notices if text not in general]

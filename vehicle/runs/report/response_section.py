@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.runs.report.findings import main_points, nearest_mode, of_plate
+from vehicle.runs.report.findings import main_points, nearest_mode
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.markup import Markup, joined, number, table, tag
 from vehicle.runs.report.svg_figure import drawing
@@ -40,9 +40,14 @@ def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
 
 def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Markup]:
     """Return tables of the highest resonances of the main output points with the nearest modes."""
-    tables, plate = [], of_plate(run).replace(" of", " to motion of", 1)
-    for channel, point in main_points(run).items():
-        peaks = sorted(run.summary["peaks"].get(channel, ()), key=lambda peak: -peak["magnitude"])[:STRONGEST]
+    tables = []
+    main = [
+        (f" to motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
+        for wheel, plate, resonances in run.peaks
+        for channel, point in main_points(run, wheel).items()
+    ]
+    for plate, point, all_peaks in main:
+        peaks = sorted(all_peaks, key=lambda peak: -peak["magnitude"])[:STRONGEST]
         rows = []
         for peak in sorted(peaks, key=lambda peak: peak["frequency_hz"]):
             state, mode = nearest_mode(run, peak["frequency_hz"], modes)

@@ -16,7 +16,7 @@ from vehicle.runs.report.comfort_class import reactions
 from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.general_notices import notices_of
+from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
@@ -40,13 +40,15 @@ def tiles(run: FinishedRun) -> Markup:
         label = f"weighted acceleration at the {point.replace('_', ' ')}, {' to '.join(reactions(total))}"
         values.append((f"{number(total)} m/s²", label))
     values += [
-        (f"{100 * share:.2g} %", f"of the time in slip, {side_of(wheel, shares)} damper")
+        (f"{number(100 * share, 2)} %", f"of the time in slip, {side_of(wheel, shares)} damper")
         for wheel, share in shares.items()
     ]
-    peaks = summary["peaks"].get(f"knuckle_{run.wheel}_acc_z")
-    if peaks:
-        top = max(peaks, key=lambda peak: peak["magnitude"])
-        values.append((f"{top['frequency_hz']:.1f} Hz", "highest resonance of the vertical motion of the knuckle"))
+    for wheel, plate, resonances in run.peaks[:1]:
+        if peaks := resonances.get(f"knuckle_{wheel}_acc_z"):
+            top = max(peaks, key=lambda peak: peak["magnitude"])
+            to_plate = f", FRF to the {plate}" if plate else ""
+            label = f"highest resonance of the vertical motion of the knuckle{to_plate}"
+            values.append((f"{top['frequency_hz']:.1f} Hz", label))
     plate = side_of(run.wheel, run.car.vehicle.wheels)
     values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
     boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]
@@ -64,7 +66,7 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
         for part in (tag("dt", topic), tag("dd", *(tag("p", text) for text in texts)))
     ]
     parts = [tag("dl", *rows, class_="findings")]
-    if notices := notices_of(run):
+    if notices := without_general(run.summary["notices"], run.car.vehicle):
         said = [tag("li", text) for text in notices]
         parts += [tag("h3", "Notices"), tag("ul", *said, class_="notices")]
     return joined(parts)
@@ -175,9 +177,13 @@ def tables(run: FinishedRun) -> Markup:
         numbers = (float(np.sqrt(np.mean(values**2))), float(values.min()), float(values.max()))
         levels.append((name, recording.units[name], *(number(value, 4) for value in numbers)))
     peaks = [
-        (channel, ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in resonances))
-        for channel, resonances in summary["peaks"].items()
-        if resonances
+        (
+            channel + (f" to the {plate}" if plate else ""),
+            ", ".join(f"{peak['frequency_hz']:.2f} ({number(peak['magnitude'])})" for peak in peaks),
+        )
+        for _, plate, resonances in run.peaks
+        for channel, peaks in resonances.items()
+        if peaks
     ]
     static = summary["static"]
     wheels = run.car.vehicle.wheels

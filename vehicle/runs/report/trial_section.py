@@ -59,7 +59,7 @@ def _content(run: FinishedRun) -> Markup:
         "time": "Acceleration of the seat rail over a second",
     }
     canvases = [
-        tag("canvas", id=f"trial-{name}", role="img", aria_label=f"{label}: A red, B grey")
+        tag("canvas", id=f"trial-{name}", role="img", aria_label=f"{label}: A grey, B red")
         for name, label in plots.items()
     ]
     picture = [
@@ -80,19 +80,12 @@ def _content(run: FinishedRun) -> Markup:
             ),
             tag(
                 "p",
-                f"Red: A, the car with these settings; grey: B, the reference. The page runs the first {duration:g} s "
-                "with the time steps of the reduced engine. Friction, Stribeck parameters, level and road class are "
-                "exact. A class of ISO 8608 is the same profile, twice as high as that of the class before. Other "
-                "speeds and stiffnesses are sets of poles that the page contains, so they change one at a time: "
-                "channels exact to 0.02 % of their peaks. Another speed is the same road from its beginning, up to its "
-                "end or the same time. A factor on the damper curve acts as a force beside the poles of the car: exact "
-                "to about 0.1 %. With Stribeck friction, which enlarges small differences, single peaks of both are "
-                "exact to 0.2 % and 4 %, comfort to 0.002 %. Comfort is the weighted acceleration of the seat rail, "
-                "vector sum of ISO 2631-1; less is more comfort. The FRF is the mean of four multisines of random "
-                "phase with the density of this "
-                "input. On a road all wheels follow the same height, the rear wheels later by their distance over the "
-                "speed, so its ripples are those of the wheelbase. The picture shows heave, roll and pitch of the body "
-                "and the lift of the wheels; between them the parts take their static shape."
+                "Grey: A, the reference; red: B, the car with these settings. The page computes the first "
+                f"{duration:g} s. Friction, Stribeck parameters, level and road class recompute exactly. Stiffness and "
+                "speed are stored in steps; change one of them at a time (histories within 0.02 % of their peaks). "
+                "The damper curve is within 0.1 %; with Stribeck friction single peaks may differ by up to 4 %, "
+                "comfort by 0.002 %. Comfort is the weighted acceleration of the seat rail (vector sum, ISO 2631-1); "
+                "lower is better."
                 f"{other} ",
                 tag("span", id="trial-time-used"),
                 class_="about",

@@ -43,7 +43,7 @@
       box.append(label, input);
     }
     place();
-    box.append(button("Back to the car of the run", () => move(start)), button("Keep as B", () => {
+    box.append(button("Back to the car of the run", () => move(start)), button("Keep as A", () => {
       if (!now) return;
       before = now;
       show();
@@ -108,6 +108,8 @@
 
   const same = (a, b) => Object.keys(a).every((key) => a[key] === b[key]);
   const percent = (a, b) => 100 * (a / b - 1);
+  const signed = (value, digits) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)}`;
+  const difference = (change) => `${signed(change, Math.abs(change) < 10 ? 1 : 0)} %`;
 
   function sentence() {
     const changed = data.sliders.filter((slider) => acting(slider, now.settings) !== acting(slider, before.settings));
@@ -116,14 +118,16 @@
     if (!changed.length) return `Move a slider. Now the weighted acceleration${data.shortened ? ` of the first ${short(now.record.seconds)} s` : ""} is ${short(now.record.comfort)} m/s², and ${slipping}.`;
     const list = changed.map((slider) => `${slider.words} ${words(slider, acting(slider, before.settings))} → ${words(slider, acting(slider, now.settings))}`);
     const change = percent(now.record.comfort, before.record.comfort);
-    const comfort = Math.abs(change) < 0.05 ? "Comfort as before" : `${short(Math.abs(change), 2)} % ${change < 0 ? "more" : "less"} comfort`;
-    return `${comfort}: weighted acceleration ${short(before.record.comfort)} → ${short(now.record.comfort)} m/s²; ${slipping}, before ${short(100 * slip(before), 2)} %. Changed: ${list.join(", ")}.`;
+    const effect = Math.abs(change) < 0.05 ? "stays" : `${change > 0 ? "rises" : "falls"} from ${short(before.record.comfort)} to`;
+    const rating = Math.abs(change) < 0.05 ? "" : ` (${difference(change)}, ${change > 0 ? "worse" : "better"})`;
+    return `The weighted acceleration ${effect} ${Math.abs(change) < 0.05 ? "at " : ""}${short(now.record.comfort)} m/s²${rating}; ${slipping}, before ${short(100 * slip(before), 2)} %. Changed: ${list.join(", ")}.`;
   }
 
+  // Rows: text, value of a run, digits, and true for a share, whose change is a difference in points.
   function table() {
     const rows = [["a_v, weighted (ISO 2631-1) [m/s²]", (run) => run.record.comfort, 4]];
     ["x", "y", "z"].forEach((axis, k) => rows.push([`a_w ${axis} [m/s²]`, (run) => run.record.axes[k], 4]));
-    data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.slips[k], 3]));
+    data.dampers.forEach(({ name }, k) => rows.push([`slip, ${name} [%]`, (run) => 100 * run.record.slips[k], 3, true]));
     data.dampers.forEach(({ name }, k) => rows.push([`highest force, ${name} [N]`, (run) => run.record.highest[k], 4]));
     const row = (name, cells) => {
       const line = document.createElement("tr");
@@ -131,11 +135,12 @@
       return line;
     };
     const head = document.createElement("thead"), body = document.createElement("tbody");
-    head.append(row("th", ["seat rail and dampers", "B, before", "A, now", "change"]));
-    for (const [text, value, digits] of rows) {
+    head.append(row("th", ["seat rail and dampers", "A, before", "B, now", "change"]));
+    for (const [text, value, digits, share] of rows) {
       // The table has its size before the first record.
-      const [a, b] = now ? [value(now), value(before)] : [NaN, NaN];
-      body.append(row("td", now ? [text, short(b, digits), short(a, digits), b ? `${percent(a, b).toFixed(1)} %` : "–"] : [text, "–", "–", "–"]));
+      const [a, b] = now ? [value(before), value(now)] : [NaN, NaN];
+      const change = share ? `${signed(b - a, 1)} points` : a ? difference(percent(b, a)) : "–";
+      body.append(row("td", now ? [text, short(a, digits), short(b, digits), change] : [text, "–", "–", "–"]));
     }
     byId("table").replaceChildren(head, body);
   }

@@ -58,6 +58,13 @@ class FrequencyResponse:
     reasons: tuple[str, ...]
     """one message per cause of NaN; empty if all values are defined"""
 
+    def __repr__(self) -> str:
+        """One line."""
+        return (
+            f"FrequencyResponse({len(self.response)} responses, {len(self.frequency)} lines, {self.estimator}, "
+            f"resolution {self.resolution_hz:.3g} Hz)"
+        )
+
 
 def frequency_response(
     time_step: float,

@@ -60,10 +60,16 @@ CAUSES = (
     "the input has less than 3 % of the power of the adjacent lines, at the edge of its band",
     "fewer than five lines of the input are driven, as by a sine: FRF and transient cannot be separated",
     "the input has at most 1e-4 of the power within an octave: it is leakage",
-    "the spectrum of the input is smooth, as of a bump: FRF and transient cannot be separated; drive the car with a "
-    "random signal",
+    "the spectrum of the input is smooth, as that of a bump: FRF and transient cannot be separated",
 )
 """Causes of an undefined FRF at a line, for messages."""
+
+TRANSIENT = (CAUSES[2], CAUSES[4])
+"""Causes of an input that is no random signal."""
+
+FEW = 0.05
+"""Maximum share of lines without FRF below which the input is good, for messages: a random input may miss single lines.
+"""
 
 
 def rounding_step(samples: Real) -> float:
@@ -202,7 +208,12 @@ def cause_messages(frequency: Real, silent: NDArray[np.int_], causes: Sequence[s
         affected = np.flatnonzero(silent == number)
         if affected.size:
             runs = np.split(affected, np.flatnonzero(np.diff(affected) > 1) + 1)
-            spans = [f"{frequency[run[0]]:.2f} to {frequency[run[-1]]:.2f}" for run in runs[:4]]
+            ends = [(f"{frequency[run[0]]:.2f}", f"{frequency[run[-1]]:.2f}") for run in runs[:4]]
+            spans = ", ".join(low if low == high else f"{low} to {high}" for low, high in ends)
             more = f" and {len(runs) - 4} more ranges" if len(runs) > 4 else ""
-            messages.append(f"no FRF at {affected.size} frequencies, {', '.join(spans)}{more} Hz: {cause}")
+            few = affected.size <= FEW * frequency.size
+            remedy = "drive the car with a random signal" if cause in TRANSIENT else "give the input more power there"
+            advice = "the other lines are good" if few else remedy
+            lines = f"{affected.size} of {frequency.size} lines"
+            messages.append(f"no FRF at {spans} Hz{more} ({lines}): {cause}; {advice}")
     return messages

@@ -73,6 +73,16 @@ SAME = "the inputs are fully correlated there, so that their responses cannot be
 
 
 @one_blas_thread()
+def shortest_record(inputs: int, highest: float) -> float:
+    """Return the length of the shortest record for an FRF [s]: eight windows of lines up to the highest frequency.
+
+    Args:
+        inputs: number of simultaneous inputs.
+        highest: highest frequency [Hz].
+    """
+    return 8 * (LEAST_HALF_WIDTH + LINES_OF_AN_INPUT * (inputs - 1)) / highest
+
+
 def local_rational_responses(
     time_step: float,
     excitations: ArrayLike,
@@ -115,10 +125,11 @@ def local_rational_responses(
     samples = inputs.shape[1]
     line = 1.0 / (samples * step)
     least_half = LEAST_HALF_WIDTH + LINES_OF_AN_INPUT * (len(inputs) - 1)
-    if band[1] < 8 * least_half * line:
+    shortest = shortest_record(len(inputs), band[1])
+    if samples * step < shortest:
         raise DataError(
             f"record: {samples * step:g} s is too short for an FRF up to {band[1]:g} Hz; record at least "
-            f"{8 * least_half / band[1]:.3g} s"
+            f"{shortest:.3g} s"
         )
     for number in np.flatnonzero(is_constant(inputs)):
         raise DataError(

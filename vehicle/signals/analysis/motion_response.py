@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.names import in_order
 from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf import FrequencyResponse, frequency_responses
 from vehicle.signals.analysis.periodic_record import whole_record_responses
+from vehicle.signals.analysis.response_name import ResponseName, plates_of
 
 Real = NDArray[np.float64]
 
@@ -20,18 +22,31 @@ class MotionResponse:
     """FRFs to an independent motion of the inputs.
 
     Attributes:
-        motion: inputs of the motion to their factors; 1 for the first input. The FRFs refer to the first input, while
-            the others move by their factors.
+        motion: wheels of the plates that move together to their factors; 1 for the first. The FRFs refer to the first
+            plate, while the others move by their factors.
         response: FRFs; the coherence is the multiple coherence with all motions.
     """
 
     motion: Mapping[str, float]
     response: FrequencyResponse
 
+    def __repr__(self) -> str:
+        """One line."""
+        return f"MotionResponse({', '.join(self.motion)}; {self.response!r})"
+
     @property
     def first(self) -> str:
-        """Input to which the FRFs refer."""
+        """Wheel of the plate to which the FRFs refer."""
         return next(iter(self.motion))
+
+    @property
+    def input(self) -> str:
+        """Name of the input, as "plate_fr" or "plate_fr+plate_fl"."""
+        return self.named("").input
+
+    def named(self, output: str) -> ResponseName:
+        """Return the name of the FRF of an output."""
+        return ResponseName(output, plates_of(self.motion))
 
 
 def motion_responses(
@@ -39,47 +54,52 @@ def motion_responses(
     inputs: Mapping[str, Real],
     responses: Sequence[Real] | Real,
     *,
-    labels: Mapping[str, str],
     names: Sequence[str],
     band: tuple[float, float],
-    rounding: Mapping[str, float],
+    rounding: Mapping[str, float] | None = None,
     window: float | None = None,
+    resolution: float = 0.1,
+    motions: Sequence[Mapping[str, float]] | None = None,
 ) -> tuple[MotionResponse, ...]:
-    """Estimate the FRFs to every independent motion of the inputs.
+    """Estimate the FRFs to every independent motion of the plates; their order in the record changes nothing.
 
     Args:
         time_step: sampling interval [s].
-        inputs: moving inputs, name to samples (n,).
+        inputs: displacements of the moving plates, wheel to samples (n,).
         responses: k outputs, a sequence of (n,) or an array (k, n).
-        labels: names of the inputs in messages.
         names: names of the responses in messages.
         band: lowest and highest frequency [Hz].
-        rounding: rounding step of each input.
+        rounding: rounding step of each plate; estimated from the samples by default.
         window: length [s] of the Hann windows of H1; None for `whole_record_responses`.
+        resolution: see `whole_record_responses`.
+        motions: independent motions, if known; by default found in the samples.
 
     Returns:
-        FRFs of each motion, in the order of the first inputs.
+        FRFs of each motion, in the order of the wheels in files.
 
     Raises:
         DataError: the record is too short.
         DependentInputsError: an input is a delayed or filtered copy of another.
     """
-    keys = list(inputs)
-    groups = [{0: 1.0}]
-    if len(keys) > 1:
-        groups = common_motions(time_step, np.array([inputs[key] for key in keys]), [labels[k] for k in keys], band)
-    first = [keys[next(iter(group))] for group in groups]
-    driven, driven_labels = np.array([inputs[key] for key in first]), [labels[key] for key in first]
+    keys = in_order(inputs)
+    labels = [f"plate_{key}_displacement" for key in keys]
+    if motions is None:
+        groups = [{0: 1.0}]
+        if len(keys) > 1:
+            groups = common_motions(time_step, np.array([inputs[key] for key in keys]), labels, band)
+        motions = [{keys[index]: factor for index, factor in group.items()} for group in groups]
+    first = [next(iter(motion)) for motion in motions]
+    driven, driven_labels = np.array([inputs[key] for key in first]), [labels[keys.index(key)] for key in first]
     if window is not None:
         responses_to = frequency_responses(
             time_step, driven, np.array(responses), window_s=window, band=band, input_names=driven_labels, names=names
         )
     else:
-        steps = [rounding[key] for key in first]
+        steps = None if rounding is None else [rounding[key] for key in first]
         responses_to = whole_record_responses(
-            time_step, driven, responses, band=band, names=names, input_names=driven_labels, rounding=steps
-        )
+            time_step, driven, responses, band=band, resolution=resolution, names=names, input_names=driven_labels,
+            rounding=steps,
+        )  # fmt: skip
     return tuple(
-        MotionResponse(motion={keys[index]: factor for index, factor in group.items()}, response=response)
-        for group, response in zip(groups, responses_to, strict=True)
+        MotionResponse(motion=motion, response=response) for motion, response in zip(motions, responses_to, strict=True)
     )

@@ -27,8 +27,30 @@ from vehicle.signals.records.reader import read_record, read_table
 from vehicle.signals.records.table import Header, Vector, Wanted, name_and_unit
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
-TRACKS = {"left": ("left", "lelev", "lprof", "left elev", "left elevation", "left profile", "lwp"),
-          "right": ("right", "relev", "rprof", "right elev", "right elevation", "right profile", "rwp")}  # fmt: skip
+TRACKS = {
+    "left": (
+        "left",
+        "lelev",
+        "lprof",
+        "left elev",
+        "left elevation",
+        "left profile",
+        "lwp",
+        "height left",
+        "height_left",
+    ),
+    "right": (
+        "right",
+        "relev",
+        "rprof",
+        "right elev",
+        "right elevation",
+        "right profile",
+        "rwp",
+        "height right",
+        "height_right",
+    ),
+}
 """Track names in profiles of other programs, in lower case without dots."""
 UNITS = {"m": 1.0, "mm": 1e-3}
 
@@ -158,6 +180,7 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
     try:
         table = read_table(path, Wanted(needed=NEEDED, key=lambda header: _columns(header)["distance"][0]))
         columns = {name: table.values[:, column] * scale for name, (column, scale) in _columns(table.header).items()}
+        notices = tuple(f"{path.name}: {text}" for text in table.notices)
     except DataError as error:
         try:
             columns, notices = _named_tracks(path)

@@ -33,6 +33,7 @@ from vehicle.signals.excitation.road_drive import AFTER_RISE_S, SKIP_S
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, SMOOTH_RATE
 from vehicle.signals.records.channel import Measurement
+from vehicle.signals.records.channel_words import of_receiver
 from vehicle.signals.records.choice import Choice, Chosen, choose
 from vehicle.signals.records.clock import UNIFORM_TOLERANCE
 from vehicle.signals.records.integration import displacement
@@ -53,8 +54,8 @@ STANDING = 0.1
 """Speed below which the car counts as standing [m/s]."""
 
 NAMES = {
-    "left": (*TRACKS["left"], "displacement_fl", "plate_fl_displacement", "height left", "height_left"),
-    "right": (*TRACKS["right"], "displacement_fr", "plate_fr_displacement", "height right", "height_right"),
+    "left": (*TRACKS["left"], "displacement_fl", "plate_fl_displacement"),
+    "right": (*TRACKS["right"], "displacement_fr", "plate_fr_displacement"),
     "height": ("height", "profile", "road", "displacement", "elevation"),
 }
 """Default channel names, in lower case."""
@@ -209,19 +210,21 @@ class RecordedDrive:
         unknown = next((role for role in roles if role not in NAMES), None)
         if unknown is not None:
             raise ConfigurationError(f"--channel {unknown}=...: must be left, right, or height for a recorded road")
+        receiver = of_receiver(measurement.channels)
         if not roles:
             names_in_file = {channel.name.strip().rstrip(".").lower(): channel.name for channel in measurement.channels}
             for role, names in NAMES.items():
                 match = next((names_in_file[name] for name in names if name in names_in_file), None)
-                if match is not None and not (role == "height" and roles):
+                if match is not None and not (role == "height" and (roles or receiver)):
                     roles[role] = match
         if not roles or ("height" in roles and len(roles) > 1):
             listed = ", ".join(
                 f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
             )
+            above_sea = "; a height next to latitude and longitude is that of a receiver, no road" if receiver else ""
             raise DataError(
                 f"{self.road}: which channels are the heights? set --channel left=NAME --channel right=NAME, or "
-                f"--channel height=NAME for both tracks; the file has {listed}"
+                f"--channel height=NAME for both tracks; the file has {listed}{above_sea}"
             )
         return roles
 

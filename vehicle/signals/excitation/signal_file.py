@@ -20,6 +20,7 @@ from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.clock import (
     UNIFORM_TOLERANCE,
     check_increasing,
+    check_stamps,
     check_uniform,
     clock_options,
     is_uniform,
@@ -39,6 +40,10 @@ _WHEEL_COLUMN = re.compile(r"displacement_(\w+)|plate_(\w+)_displacement")
 _OF_ROAD = re.compile(r"(?:road|slope)_(\w+)")
 """Columns that `python -m vehicle road` writes beside those of the plates, which do not drive the car."""
 _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
+
+
+class ForeignTableError(DataError):
+    """A text table without a column of the time or of a plate in its first line, as an export with a head above it."""
 
 
 def read_signal(
@@ -86,7 +91,16 @@ def read_signal(
         remedy="repair the cell, or set --interpolate",
     )
     is_plain_table = (choice is None or choice == Choice(resample=resample)) and is_table(path)
-    table, band_rate = (read_table(path, wanted), math.inf) if is_plain_table else chosen_plates(path, choice, wheel)
+    try:
+        table, band_rate = (
+            (read_table(path, wanted), math.inf) if is_plain_table else chosen_plates(path, choice, wheel)
+        )
+    except ForeignTableError as error:
+        try:
+            table, band_rate = chosen_plates(path, choice, None)
+        except DataError:
+            raise error from None
+        is_plain_table = False
     plates = plate_columns(table.header, wheel)
     del plates["time"]
     units = {driven: unit for driven, (_, unit) in plates.items()}
@@ -95,6 +109,7 @@ def read_signal(
     time = table.values[:, table.key]
     if time.size < MINIMUM_SAMPLES:
         raise DataError(f"{path}: {time.size} rows, must be at least {MINIMUM_SAMPLES} rows; use a longer record")
+    check_stamps(path, time)
     check_increasing(table, time)
     columns = {}
     for driven, (column, unit) in plates.items():
@@ -148,6 +163,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         "time" and the wheels, in the order of written files, to index and unit of their columns.
 
     Raises:
+        ForeignTableError: no known column.
         DataError: no header, unit missing or not allowed, unknown, missing or duplicate columns, another quantity, a
             plain `displacement` column without `wheel`.
     """
@@ -191,7 +207,7 @@ def plate_columns(header: Header, wheel: str | None) -> dict[str, tuple[int, str
         else:
             columns[key] = index, _checked_unit(where, key, unit)
     if unknown:
-        raise DataError(
+        raise (DataError if columns else ForeignTableError)(
             f"{header.where}: unknown column {', '.join(unknown)}; found {header.found}; needed are {NEEDED}; remove "
             f"the others, or assign a column to a wheel: --channel {wheel or 'fl'}=NAME (python -m vehicle inspect "
             "FILE prints the command)"

@@ -1,60 +1,62 @@
-"""Read text logs of a CAN bus (Vector .asc, PEAK .trc, candump) and decode their frames with a DBC database.
+"""Read text logs of a CAN bus (Vector .asc, PEAK .trc, candump) into data frames, and decode them with databases.
 
-Sources: Vector, CAN ASC logging file format; PEAK, PCAN-View TRC file format; can-utils, `candump -l`.
+Every line is a data frame, a line of the header, or counted by its form: no line is dropped without a word. python-can
+reads the same formats, but drops unknown lines silently and takes relative times of .asc as absolute ones.
+
+Sources: Vector, CAN ASC logging file format; PEAK, CAN TRC file format; can-utils, `candump -L` and `candump -t a`.
 """
 
 from __future__ import annotations
 
-import io
-import logging
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-import numpy as np
-
-from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.records.channel import Channel, Measurement
-from vehicle.signals.records.reader import extra
+from vehicle.errors import DataError
+from vehicle.signals.records.can_decoder import decode
+from vehicle.signals.records.can_frames import FD_LENGTHS, IDENTIFIER_BITS, Source, frames_of
+from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.signatures import can_log_type
 from vehicle.signals.records.text import read_text
 
-_BYTES = r"(?P<data>(?:\s+[0-9A-Fa-f]{2})*)"
+_ASC_TIME = re.compile(r"\s*(?P<time>\d+\.\d+)\s+(?P<event>\S.*)")
 _ASC = re.compile(
-    r"\s*(?P<time>\d+\.\d+)\s+(?P<bus>\d+)\s+(?P<id>[0-9A-Fa-f]+)(?P<long>x?)\s+(?:Rx|Tx)\s+d\s+(?P<count>[0-9A-Fa-f]+)"
-    + _BYTES
+    r"(?P<bus>\d+)\s+(?P<id>[0-9A-Fa-f]+)(?P<long>[xX]?)\s+(?P<way>Rx|Tx)\s+d\s+(?P<code>[0-9A-Fa-f]+)"
+    r"(?P<data>(?:\s+[0-9A-Fa-f]{1,3}\b)*)"
 )
-_DUMP = re.compile(r"\((?P<time>\d+\.\d+)\)\s+(?P<bus>\S+)\s+(?P<id>[0-9A-Fa-f]{3,8})#(?P<data>[0-9A-Fa-f.]*)(?:\s.*)?")
+_ASC_FD = re.compile(
+    r"CANFD\s+(?P<bus>\d+)\s+(?P<way>Rx|Tx)\s+(?P<id>[0-9A-Fa-f]+)(?P<long>[xX]?)\s+(?:\S+\s+)??[01]\s+[01]\s+"
+    r"(?P<code>[0-9A-Fa-f]+)\s+(?P<length>\d+)(?P<data>(?:\s+[0-9A-Fa-f]{1,3}\b)*)"
+)
+_DUMP = re.compile(
+    r"\s*\((?P<time>\d+\.\d+)\)\s+(?P<bus>\S+)\s+(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})#(?:#[0-9A-Fa-f])?"
+    r"(?P<data>(?:[0-9A-Fa-f]{2}\.?)*)(?:\s+(?P<way>[RT])\S*)?\s*"
+)
+_SCREEN = re.compile(
+    r"\s*\((?P<time>\d+\.\d+)\)\s+(?P<bus>\S+)\s+(?:(?P<way>[RT])X\s\S\s\S\s+)?(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{3})\s+"
+    r"\[(?P<length>\d+)\](?P<data>(?:\s+[0-9A-Fa-f]{2}\b)*)(?:\s+'.*')?\s*"
+)
 _TRC_1 = re.compile(
-    r"\s*\d+\)\s+(?P<time>\d+(?:\.\d+)?)\s+(?:(?P<bus>\d+)\s+)?(?:(?:Rx|Tx)\s+)?(?P<id>[0-9A-Fa-f]{4,8})\s+(?:-\s+)?"
-    r"(?P<count>\d+)" + _BYTES
+    r"\s*\d+\)\s+(?P<time>\d+(?:\.\d+)?)\s+(?:(?P<bus>\d{1,2})\s+)?(?:(?P<way>Rx|Tx)\s+)?(?P<id>[0-9A-Fa-f]{8}|[0-9A-Fa-f]{4})\s+"
+    r"(?:-\s+)?(?P<length>\d+)(?P<data>(?:\s+[0-9A-Fa-f]{2}\b)*)\s*"
 )
-_TRC_2 = re.compile(
-    r"\s*\d+\s+(?P<time>\d+(?:\.\d+)?)\s+(?:DT|FD|FB|FE|BI)\s+(?:(?P<bus>\d+)\s+)?(?P<id>[0-9A-Fa-f]{4,8})\s+(?:Rx|Tx)\s+"
-    r"(?:-\s+)?(?P<count>\d+)" + _BYTES
-)
-SHOWN = 6
-"""Maximum number of identifiers in a message."""
+_ERROR_FLAG = 0x20000000
+_REMOTE = re.compile(r"#R\d?\b|\b(Rx|Tx)\s+r\b|\bRTR\b|remote request|\s(RR)\s")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Frame:
-    """Data frame of a CAN bus.
+class _Row(NamedTuple):
+    """Data frame in a line of a log: source, time [s], payload, and payload length by its header [byte]."""
 
-    Attributes:
-        time: time of reception [s].
-        identifier: arbitration ID of the message.
-        extended: True for an identifier of 29 bits.
-        data: payload bytes.
-    """
-
+    source: Source
     time: float
-    identifier: int
-    extended: bool
     data: bytes
+    length: int
+
+
+Parser = Callable[[str], "_Row | str"]
+"""Function from a line to its data frame, the form of another line, or "" for a line of the header."""
 
 
 def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
@@ -69,164 +71,140 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         DataError: no database, no frames, or no identifier of the log in the databases.
         MissingPartError: asammdf is not installed.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
+    lines = text.lines
     log_format = can_log_type(text.body[:4096])
-    frames = list(_frames(log_format, text.lines))
-    if not frames:
-        raise DataError(f"{path}: log of a CAN bus ({log_format}) without data frames; record it again")
-    if not databases:
-        raise needs_database(path, log_format, [database.identifier for database in frames])
-    loaded = [load_database(database) for database in databases]
-    try:
-        with quiet():
-            channels = tuple(decoded(frames, loaded))
-    except Exception as error:  # asammdf raises errors of any type for damaged databases
-        raise DataError(
-            f"{path}: {_names(databases)} cannot decode its frames ({error}); use another database"
-        ) from None
-    if not channels:
-        raise none_decoded(path, [database.identifier for database in frames], databases)
+    parse = {"asc": _asc_parser, "trc": _trc_parser}[log_format](lines) if log_format != "candump" else _dump_row
+    rows: dict[Source, list[tuple[float, bytes]]] = {}
+    other: Counter[str] = Counter()
+    first: float | None = None
+    for line in lines:
+        row = parse(line) if line.strip() else ""
+        if isinstance(row, str):
+            other[row] += 1
+        elif len(row.data) < row.length:
+            other["data frame with too few bytes"] += 1
+        else:
+            first = row.time if first is None else first
+            rows.setdefault(row.source, []).append((row.time - first, row.data[: row.length]))
+    del other[""]
+    forms = ", ".join(f"{form!r} {count}" for form, count in other.most_common(8))
+    if first is None:
+        found = f"; lines of other forms: {forms}" if forms else ""
+        raise DataError(f"{path}: log of a CAN bus ({log_format}) without data frames{found}; record it again")
+    log = {source: frames_of(of_source) for source, of_source in rows.items()}
+    channels, notices = decode(path, log_format, log, databases)
+    left_out = (f"{sum(other.values())} lines without a data frame are left out: {forms}",) if forms else ()
     return Measurement(
         path=path,
         format=log_format,
         channels=channels,
         sha256=text.sha256,
-        program=text.lines[0].strip(" ;")[:80],
-        start=frames[0].time.__format__(".6f") + " s after 1970" if log_format == "candump" else "",
-        notices=(*text.notices, f"log of a CAN bus: {len(frames)} frames, decoded by {_names(databases)}"),
+        program=lines[0].strip(" ;")[:80],
+        start=f"{first:.6f} s after 1970" if log_format == "candump" else "",
+        notices=(*text.notices, *notices, *left_out),
     )
 
 
-def _names(databases: Sequence[Path]) -> str:
-    return ", ".join(database.name for database in databases)
+def _row(match: re.Match[str], bus: str, extended: bool, length: int | None, scale: float = 1.0) -> _Row | str:
+    """Return the data frame of a line with hexadecimal identifier and bytes."""
+    groups = match.groupdict()
+    identifier = int(groups["id"], 16)
+    if extended and identifier > IDENTIFIER_BITS:
+        return "error frame" if identifier & _ERROR_FLAG else "identifier above 29 bits"
+    data = bytes.fromhex(re.sub(r"[\s.]", "", groups["data"]))
+    source = Source(bus, {"R": "Rx", "T": "Tx"}.get((groups["way"] or " ")[0], ""), identifier, extended)
+    return _Row(source, float(groups["time"]) * scale, data, len(data) if length is None else length)
 
 
-def needs_database(path: Path, log_format: str, identifiers: Sequence[int]) -> DataError:
-    """Return the error for a bus log that is read without a database.
-
-    Args:
-        path: bus log.
-        log_format: name of the log format.
-        identifiers: identifiers of its frames.
-    """
-    different = sorted(set(identifiers))
-    shown = ", ".join(f"0x{identifier:X}" for identifier in different[:SHOWN]) + (
-        "..." if len(different) > SHOWN else ""
-    )
-    return DataError(
-        f"{path}: log of a CAN bus ({log_format}) with {len(identifiers)} frames of {len(different)} messages "
-        f"({shown}), not channels; set --dbc FILE to the database of this bus"
-    )
+def _form(line: str, words: str) -> str:
+    """Return the form of a line without a data frame, for the count of such lines."""
+    if re.search(r"error ?frame", line, re.IGNORECASE):
+        return "error frame"
+    return "remote frame" if _REMOTE.search(line) else words
 
 
-def none_decoded(path: Path, identifiers: Sequence[int], databases: Sequence[Path]) -> DataError:
-    """Return the error for a bus log whose messages are missing from all databases.
-
-    Args:
-        path: bus log.
-        identifiers: identifiers of its frames.
-        databases: DBC files searched.
-    """
-    shown = ", ".join(f"0x{identifier:X}" for identifier in sorted(set(identifiers))[:SHOWN])
-    return DataError(f"{path}: none of its messages ({shown}) is in {_names(databases)}; use the database of this bus")
+def _dump_row(line: str) -> _Row | str:
+    """Return the frame of a line of candump."""
+    match = _DUMP.fullmatch(line) or _SCREEN.fullmatch(line)
+    if match is None:
+        return _form(line, line.strip()[:24])
+    length = int(match["length"]) if "length" in match.groupdict() else None
+    return _row(match, match["bus"], len(match["id"]) == 8, length)
 
 
-def load_database(path: Path) -> Any:
-    """Load a database of CAN messages.
+def _asc_parser(lines: Sequence[str]) -> Parser:
+    """Return the parser of Vector .asc; relative times count from the previous line of any event."""
+    head = next((line.lower() for line in lines if line.lower().startswith("base")), "")
+    base, relative = 10 if " dec" in head else 16, "relative" in head
+    clock = 0.0
 
-    Args:
-        path: DBC file, or another format of canmatrix.
-
-    Raises:
-        ConfigurationError: the file does not exist or contains no messages.
-    """
-    extra("asammdf", "mdf", "decoding a bus log")
-    if not path.is_file():
-        raise ConfigurationError(f"--dbc {path}: file not found; set the path of a database of CAN messages")
-    from asammdf.blocks.utils import load_can_database
-
-    try:
-        with quiet():
-            database = load_can_database(path)
-    except Exception as error:  # asammdf raises errors of any type for damaged files
-        raise ConfigurationError(f"--dbc {path}: cannot be read ({error}); use a DBC file") from None
-    if database is None or not list(database.frames):
-        raise ConfigurationError(f"--dbc {path}: contains no messages; use a DBC file")
-    return database
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Suppress log records and prints of asammdf; callers raise one error instead."""
-    logger = logging.getLogger("asammdf")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL + 1)
-    try:
-        with redirect_stdout(io.StringIO()):
-            yield
-    finally:
-        logger.setLevel(level)
-
-
-def decoded(frames: Sequence[Frame], databases: Sequence[Any]) -> Iterator[Channel]:
-    """Yield the signals of all frames described by a database, each over the times of its message.
-
-    Args:
-        frames: frames of a log.
-        databases: databases returned by `load_database`.
-    """
-    from asammdf.blocks.bus_logging_utils import extract_mux
-
-    groups: dict[tuple[int, bool], list[Frame]] = {}
-    for one in frames:
-        groups.setdefault((one.identifier, one.extended), []).append(one)
-    for (identifier, extended), group in groups.items():
-        for database in databases:
-            matches = [m for m in database.frames if m.arbitration_id.id == identifier
-                     and bool(m.arbitration_id.extended) == extended]  # fmt: skip
-            if not matches:
-                continue
-            size = max(matches[0].size, 1)
-            complete = [one for one in group if len(one.data) >= size]
-            if not complete:
-                continue
-            payload = np.frombuffer(b"".join(one.data[:size] for one in complete), np.uint8).reshape(-1, size)
-            times = np.array([one.time for one in complete]) - frames[0].time
-            decoded_groups = extract_mux(payload, matches[0], identifier, 0, times, ignore_value2text_conversion=True)
-            for signals in decoded_groups.values():
-                for name, signal in signals.items():
-                    values = np.asarray(signal["samples"])
-                    if values.dtype.kind in "fiub" and values.ndim == 1:
-                        yield Channel(
-                            name=name,
-                            values=values.astype(np.float64),
-                            unit=str(signal["unit"] or ""),
-                            axis=np.asarray(signal["t"], dtype=np.float64),
-                            place=f"{matches[0].name} 0x{identifier:X}",
-                        )
-            break
-
-
-def _frames(log_format: str, lines: Sequence[str]) -> Iterator[Frame]:
-    """Yield the data frames of a log; skip lines of other events."""
-    base, relative, time = 16, False, 0.0
-    new = any(line.startswith(";$FILEVERSION=2") for line in lines[:20])
-    pattern = {"asc": _ASC, "candump": _DUMP}.get(log_format, _TRC_2 if new else _TRC_1)
-    for line in lines:
-        if log_format == "asc" and line.startswith("base"):
-            base, relative = 10 if " dec" in line else 16, "relative" in line
-        match = pattern.match(line)
+    def parse(line: str) -> _Row | str:
+        nonlocal clock
+        event = _ASC_TIME.fullmatch(line)
+        if event is None:
+            return "" if not line.strip()[:1].isdigit() else _form(line, "line without a time")
+        clock = clock * relative + float(event["time"])
+        match = _ASC.match(event["event"]) or _ASC_FD.match(event["event"])
         if match is None:
-            continue
-        stamp = float(match["time"]) * (1e-3 if log_format == "trc" else 1.0)
-        time = time + stamp if relative else stamp
-        digits = match["id"]
-        extended = match["long"] == "x" if log_format == "asc" else len(digits) == 8
-        text = re.sub(r"[\s.]", "", match["data"])
-        if len(text) % 2:
-            continue
-        count = len(text) // 2 if log_format == "candump" else int(match["count"], 16 if log_format == "asc" else 10)
-        data = bytes.fromhex(text) if base == 16 or log_format != "asc" else b""
-        yield Frame(
-            time=time, identifier=int(digits, base if log_format == "asc" else 16), extended=extended, data=data[:count]
-        )
+            words = [word for word in event["event"].split() if not word[0].isdigit()]
+            if "Start" in words[:2]:
+                return ""  # start of the measurement, in the language of the program
+            symbolic = re.match(r"(CANFD\s+)?\d+\s+\w+\s+(Rx|Tx)\s+(d|[01])\s", event["event"])
+            return _form(line, "frame with a symbolic name" if symbolic else words[0] if words else "numbers")
+        try:
+            identifier = int(match["id"], base)
+            data = bytes(int(byte, base) for byte in match["data"].split())
+        except ValueError:
+            return f"number that is not of base {base}"
+        code = int(match["code"], 16)
+        length = int(match["length"]) if "length" in match.groupdict() else min(code, 8)
+        source = Source(f"CAN{match['bus']}", match["way"], identifier, bool(match["long"]))
+        return _Row(source, clock, data, length)
+
+    return parse
+
+
+def _trc_parser(lines: Sequence[str]) -> Parser:
+    """Return the parser of PEAK .trc: the columns of version 2 are named in its header."""
+    head = [line for line in lines[:100] if line.startswith(";$")]
+    version = next((line.partition("=")[2].strip() for line in head if line.startswith(";$FILEVERSION")), "1.0")
+    if not version.startswith("2"):
+        return _trc_1_row
+    usual = "N,O,T,I,d,l,D" if version == "2.0" else "N,O,T,B,I,d,R,l,D"
+    named = next((line.partition("=")[2].strip() for line in head if line.startswith(";$COLUMNS")), usual)
+    columns = named.split(",")
+
+    def parse(line: str) -> _Row | str:
+        if line.lstrip().startswith(";"):
+            return ""
+        cells = dict(zip(columns, line.split(None, len(columns) - 1), strict=False))
+        kind = cells.get("T", "")
+        if kind not in ("DT", "FD", "FB", "FE", "BI"):
+            return "remote frame" if kind == "RR" else f"type {kind}"
+        try:
+            length = int(cells["l"]) if "l" in cells else FD_LENGTHS[int(cells["L"])]
+            length = min(length, 8) if kind == "DT" else length
+            identifier = int(cells["I"], 16)
+            data = bytes.fromhex(cells.get("D", ""))
+            time = 1e-3 * float(cells["O"])
+        except (KeyError, ValueError, IndexError):
+            return "damaged line"
+        bus = f"CAN{cells['B']}" if "B" in cells else ""
+        return _Row(Source(bus, cells.get("d", ""), identifier, len(cells["I"]) == 8), time, data, length)
+
+    return parse
+
+
+def _trc_1_row(line: str) -> _Row | str:
+    """Return the frame of a line of .trc of version 1."""
+    if line.lstrip().startswith(";"):
+        return ""
+    if "FFFFFFFF" in line:
+        return "bus status"
+    match = _TRC_1.fullmatch(line)
+    if match is None:
+        words = [word for word in line.split() if word[0].isalpha()]
+        return _form(line, words[0] if words else "numbers")
+    bus = f"CAN{match['bus']}" if match["bus"] else ""
+    return _row(match, bus, len(match["id"]) == 8, min(int(match["length"]), 8), 1e-3)

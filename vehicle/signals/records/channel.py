@@ -10,12 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.records.clock import clock_of_rounded, is_uniform, longest_step
+from vehicle.signals.records.clock import clock_of_rounded, clock_of_stamps, is_uniform, longest_step, typical_rate
 from vehicle.signals.records.geometry import Geometry, ModeShape
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_ratio
 
 Values = NDArray[np.float64] | NDArray[np.complex128]
+
+ROAD_PROFILE = "road profile"
+"""Function of heights over the distance, and of the distance itself."""
+
+OVER_DISTANCE, OVER_ANGLE = "function of distance", "function of angle"
+"""Functions of other channels over a distance or an angle."""
+
+NOT_OVER_TIME = frozenset((ROAD_PROFILE, OVER_DISTANCE, OVER_ANGLE))
+"""Functions of channels without times, which are no time histories at any rate."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -73,10 +82,14 @@ class Channel:
     def rate(self) -> float | None:
         """Sampling rate [Hz] of the longest part without a pause; None without times.
 
-        Rate of the uniform or rounded clock if there is one, else the inverse of the median step.
+        Rate of the uniform or rounded clock if there is one, of the samples if their stamps do not show it, else the
+        number of samples over their span.
         """
         if self.kind != "time" or self.axis is None or self.axis.size < 2:
             return None
+        stamps = clock_of_stamps(self.axis)
+        if stamps is not None:
+            return stamps.rate
         steps = np.diff(self.axis)
         median = float(np.median(steps))
         if not (steps > 0.0).all():
@@ -87,7 +100,7 @@ class Channel:
         if axis.size > 2 and is_uniform(axis):
             return exact_rate((axis.size - 1) / float(axis[-1] - axis[0]))
         clock = clock_of_rounded(axis) if axis.size > 2 else None
-        return clock[0] if clock is not None else 1.0 / median
+        return clock[0] if clock is not None else typical_rate(axis)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)

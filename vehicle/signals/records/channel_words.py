@@ -43,6 +43,13 @@ ENGINE = {"engine", "motor", "powertrain"}
 SPRING = {"feder", "federweg", "spring", "damper", "dämpfer", "daempfer", "suspension", "travel", "einfederung"}
 """Words for the places of the model channels; displacements of springs and dampers are no plates."""
 
+LATITUDE = {"lat", "latitude", "breite", "breitengrad"}
+LONGITUDE = {"lon", "long", "lng", "longitude", "länge", "laenge", "längengrad"}
+"""Words for the position of a satellite receiver."""
+
+ROUTE = {"altitude", "alt", "distance", "odometer", "accuracy", "range", "strecke", "entfernung", "höhenmeter"}
+"""Words for lengths along or above a route, which are no motion of a plate."""
+
 
 def words_of(name: str) -> list[str]:
     """Return the words of a channel name in small letters: split at signs, digits and capitals.
@@ -84,6 +91,33 @@ def axis_of(channel: Channel) -> str:
         return channel.direction[-1].lower() if channel.direction[-1] in "XYZxyz" else ""
     parts = words_of(channel.name)
     return next((axis for axis, names in AXES.items() if any(word in names for word in parts)), "")
+
+
+def of_receiver(channels: Sequence[Channel]) -> bool:
+    """Return True if a file contains latitude and longitude: its heights are those of a satellite receiver.
+
+    A receiver gives the height above the sea in steps of 10 mm at best, with an error of metres: no road.
+
+    Args:
+        channels: channels of a measurement.
+    """
+    words = [set(words_of(channel.name)) for channel in channels]
+    return any(each & LATITUDE for each in words) and any(each & LONGITUDE for each in words)
+
+
+def may_be_plate(channel: Channel, channels: Sequence[Channel]) -> bool:
+    """Return True if a displacement may be that of a plate or a road: no altitude, no distance, no travel of a spring.
+
+    Args:
+        channel: displacement.
+        channels: all channels of its file.
+    """
+    words = set(words_of(channel.name))
+    if words & (ROUTE | SPRING):
+        return False
+    return not of_receiver(channels) or bool(
+        wheel_of(channel.name) or words & {"plate", "displacement", "left", "right"}
+    )
 
 
 def suggested_channels(channels: Sequence[Channel], model_channels: Collection[str] | None = None) -> dict[str, str]:

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.records.channel import NOT_OVER_TIME, Channel, Measurement, uniform_axis
 from vehicle.signals.records.channel_faults import MOTIONS, faults
-from vehicle.signals.records.clock import clock_options, is_uniform, longest_step, without_rounding
+from vehicle.signals.records.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
+from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
 from vehicle.signals.records.resampled import resampled
 from vehicle.signals.records.table import USABLE, Vector
 from vehicle.signals.records.units import allowed_units, find_ratio, find_unit
@@ -33,6 +34,8 @@ class Choice:
         highpass: corner frequency [Hz]; required to integrate velocities and accelerations.
         databases: DBC files that decode the log of a CAN bus.
         resample: new sampling rate [Hz]; resampling comes before trend removal and integration.
+        delays: channel of the model, pattern or group, as "accelerations", to delay in the file, which is taken out
+            [s]; see `vehicle.signals.records.delays`.
     """
 
     channels: Mapping[str, str] = field(default_factory=dict)
@@ -44,6 +47,7 @@ class Choice:
     highpass: float | None = None
     databases: tuple[Path, ...] = ()
     resample: float | None = None
+    delays: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, value in (("--rate", self.rate), ("--highpass", self.highpass), ("--resample", self.resample)):
@@ -140,28 +144,39 @@ def pick(
     Raises:
         DataError: no match or several; the message lists the channels.
     """
-    channels = [(index, one) for index, one in enumerate(measurement.channels) if allowed(one)]
-    matches = [index for index, one in channels if one.name == wanted]
-    if not matches and wanted.isdecimal() and int(wanted) - 1 in dict(channels):
-        return int(wanted) - 1
-    if not matches:
-        matches = [index for index, one in channels if fnmatch.fnmatchcase(one.name.lower(), wanted.lower())]
-    if not matches:
-        point = "".join(wanted.lower().removeprefix("dof").split())
-        matches = [index for index, one in channels if one.direction and (one.place + one.direction).lower() == point]
+    matches = matching(measurement, wanted, allowed)
     if len(matches) == 1:
         return matches[0]
+    channels = [(index, channel) for index, channel in enumerate(measurement.channels) if allowed(channel)]
     hit_text = (
         f"matches {len(matches)} channels ({', '.join(str(n + 1) for n in matches[:8])})"
         if matches
         else "matches no channel"
     )
-    listed = ", ".join(f"{index + 1} {one.name!r} [{one.unit}]" for index, one in channels[:40])
+    listed = ", ".join(f"{index + 1} {channel.name!r} [{channel.unit}]" for index, channel in channels[:40])
     more = f" and {len(channels) - 40} more" if len(channels) > 40 else ""
     raise DataError(
         f"{measurement.path}: {option} {wanted!r} {hit_text}; set a number, an exact name, or a pattern with * that "
         f"matches one of: {listed}{more}"
     )
+
+
+def matching(measurement: Measurement, wanted: str, allowed: Callable[[Channel], bool]) -> list[int]:
+    """Return the indices of all channels that match the value of an option; arguments: see `pick`."""
+    channels = [(index, channel) for index, channel in enumerate(measurement.channels) if allowed(channel)]
+    matches = [index for index, channel in channels if channel.name == wanted]
+    if not matches and wanted.isdecimal() and int(wanted) - 1 in dict(channels):
+        return [int(wanted) - 1]
+    if not matches:
+        matches = [index for index, channel in channels if fnmatch.fnmatchcase(channel.name.lower(), wanted.lower())]
+    if not matches:
+        point = "".join(wanted.lower().removeprefix("dof").split())
+        matches = [
+            index
+            for index, channel in channels
+            if channel.direction and (channel.place + channel.direction).lower() == point
+        ]
+    return matches
 
 
 def choose(measurement: Measurement, choice: Choice) -> Chosen:
@@ -188,52 +203,25 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
         if find_unit(channel.unit) is None:
             fault = f"the unknown unit {channel.unit!r}" if channel.unit else channel.remark or "no unit"
             raise DataError(f"{where} has {fault}; set --unit {role}=UNIT to one of {allowed_units()}")
-        if channel.kind != "time" or np.iscomplexobj(channel.values):
+        if channel.kind != "time" or np.iscomplexobj(channel.values) or channel.function in NOT_OVER_TIME:
             raise DataError(f"{where} is a {channel.function}, must be a time history; choose another channel")
+        if channel.direction.startswith("-"):
+            notices.append(f"{role}: measured along {channel.direction}: sign inverted")
+            channels[role] = channel = replace(channel, values=-channel.values)
         if channel.name != role or channel.unit != channel.si_unit or channel.remark:
             notices.append(
                 f"{role}: channel {index + 1} {channel.name!r} [{channel.unit}]"
                 + (f"; {channel.remark}" if channel.remark else "")
             )
-    if len({channel.values.size for channel in channels.values()}) > 1:
-        sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in channels.items())
-        raise DataError(f"{path}: channels of different length ({sizes}); choose channels of one sampling rate")
-    time = _times(measurement, choice, next(iter(channels.values())), notices)
-    uses_file_times = choice.rate is None and "time" not in choice.channels
-    tolerance = 1e-3 * float(np.median(np.diff(time)))
-    for role, channel in channels.items():
-        if uses_file_times and (channel.axis is None or not np.allclose(channel.axis, time, rtol=0.0, atol=tolerance)):
-            raise DataError(
-                f"{path}: the times of {role} differ from those of the first channel; choose channels of one rate"
-            )
-    selected = np.ones(time.size, dtype=bool)
-    if choice.first is not None or choice.last is not None:
-        selected = (time >= (-np.inf if choice.first is None else choice.first)) & (
-            time <= (np.inf if choice.last is None else choice.last)
-        )
-        if np.count_nonzero(selected) < 3:
-            raise DataError(f"{path}: the excerpt has {np.count_nonzero(selected)} samples, must have at least 3; "
-                            f"the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
-        time = time[selected]
-        notices.append(f"excerpt from {time[0]:.6g} to {time[-1]:.6g} s")
-    values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
-    for role, samples in values.items():
-        missing = np.count_nonzero(~np.isfinite(samples))
-        if missing:
-            at = time[np.flatnonzero(~np.isfinite(samples))[0]]
-            raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; exclude them with "
-                            "--from and --to, or repair the file")  # fmt: skip
-    time = _uniform(path, time, notices)
-    motions = {role: samples for role, samples in values.items() if channels[role].quantity in MOTIONS}
-    notices += faults(motions, time, moving=[role for role in motions if channels[role].quantity == "acceleration"])
-    highest = USABLE / float(np.median(np.diff(time)))
-    if choice.resample is not None and not _has_rate(time, choice.resample):
-        values, notice = resampled(
-            time, values, choice.resample, lambda row: f"{path}: sample {row + 1}", is_uniform(time)
-        )
-        notices.append(notice)
-        time = uniform_axis(next(iter(values.values())).size, 1.0 / choice.resample, float(time[0]))
+    blocks = _blocks(measurement, choice, channels, notices)
+    parts = [_part(path, block, choice, notices) for block in blocks]
+    highest = min(USABLE / float(np.median(np.diff(time))) for time, _ in parts)
+    if choice.resample is not None and not (len(parts) == 1 and _has_rate(parts[0][0], choice.resample)):
+        parts = [_resampled(path, parts, choice.resample, notices)]
         highest = min(highest, USABLE * choice.resample)
+    if len(parts) > 1:
+        raise need_resampling(path, blocks)
+    time, values = parts[0][0], {role: parts[0][1][role] for role in channels}
     for role in values:
         if choice.detrend:
             count = np.arange(time.size)
@@ -250,31 +238,100 @@ def choose(measurement: Measurement, choice: Choice) -> Chosen:
     )
 
 
-def _times(measurement: Measurement, choice: Choice, channel: Channel, notices: list[str]) -> Vector:
-    """Return the sample times [s] from the requested rate, the chosen time channel, or the file."""
-    path = measurement.path
+def _blocks(
+    measurement: Measurement, choice: Choice, channels: Mapping[str, Channel], notices: list[str]
+) -> list[Block]:
+    """Return the channels by their times: one block after a cut to the common span, several if they need resampling."""
+    path, together = measurement.path, dict(channels)
+    if "time" in choice.channels:
+        together["time"] = measurement.channels[pick(measurement, choice.channels["time"])]
+    blocks: list[Block] = []
+    if all(channel.axis is not None for channel in together.values()):
+        blocks, notice = cut(path, blocks_of(together))
+        notices += [notice] if notice else []
+        together = dict(blocks[0].channels) if len(blocks) == 1 else together
+    if choice.rate is None and "time" not in choice.channels:
+        if not blocks:
+            raise without_times(path, next(channel for channel in channels.values() if channel.axis is None))
+        return blocks
+    if len({channel.values.size for channel in together.values()}) > 1:
+        sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in together.items())
+        raise DataError(f"{path}: channels of different length ({sizes}); choose channels of one sampling rate")
+    time = _times(path, choice, together, notices)
+    return [Block(time=time, channels={role: together[role] for role in channels})]
+
+
+def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple[Vector, dict[str, Vector]]:
+    """Return times and SI values of a block after the excerpt; reject pauses and missing values, notice faults."""
+    time, channels = block.time, block.channels
+    selected = np.ones(time.size, dtype=bool)
+    if choice.first is not None or choice.last is not None:
+        selected = (time >= (-np.inf if choice.first is None else choice.first)) & (
+            time <= (np.inf if choice.last is None else choice.last)
+        )
+        if np.count_nonzero(selected) < 3:
+            raise DataError(f"{path}: the excerpt has {np.count_nonzero(selected)} samples, must have at least 3; "
+                            f"the record is from {time[0]:.6g} to {time[-1]:.6g} s")  # fmt: skip
+        time = time[selected]
+        notices.append(f"excerpt from {time[0]:.6g} to {time[-1]:.6g} s")
+    values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
+    for role, samples in values.items():
+        missing = np.count_nonzero(~np.isfinite(samples))
+        if missing == samples.size:
+            channel = channels[role]
+            raise DataError(
+                f"{path}: {role}: channel {channel.name!r} has no values"
+                f"{f' ({channel.remark})' if channel.remark else ''}; choose another channel"
+            )
+        if missing:
+            at = time[np.flatnonzero(~np.isfinite(samples))[0]]
+            raise DataError(f"{path}: {role}: {missing} missing values, the first at {at:.6g} s; exclude them with "
+                            "--from and --to, or repair the file")  # fmt: skip
+    time = _uniform(path, time, notices)
+    motions = {role: samples for role, samples in values.items() if channels[role].quantity in MOTIONS}
+    notices += faults(motions, time, moving=[role for role in motions if channels[role].quantity == "acceleration"])
+    return time, values
+
+
+def _resampled(
+    path: Path, parts: Sequence[tuple[Vector, dict[str, Vector]]], rate: float, notices: list[str]
+) -> tuple[Vector, dict[str, Vector]]:
+    """Resample all parts to uniform times of their common span."""
+    first, last = max(float(time[0]) for time, _ in parts), min(float(time[-1]) for time, _ in parts)
+    if last - first < 2.0 / rate:
+        raise DataError(
+            f"{path}: the common span of the channels, {first:.6g} to {last:.6g} s, has fewer than three samples at "
+            f"{rate:g} Hz; set another excerpt, or choose channels recorded together"
+        )
+    values: dict[str, Vector] = {}
+    for time, columns in parts:
+        new, notice = resampled(
+            time, columns, rate, lambda row: f"{path}: sample {row + 1}", is_uniform(time), (first, last)
+        )
+        values |= new
+        notices.append(
+            notice if len(parts) == 1 else f"{' and '.join(columns)}: {notice}, from {first:.6g} to {last:.6g} s"
+        )
+    return uniform_axis(next(iter(values.values())).size, 1.0 / rate, first), values
+
+
+def _times(path: Path, choice: Choice, channels: Mapping[str, Channel], notices: list[str]) -> Vector:
+    """Return the sample times [s] from the requested rate or the chosen channel of the times."""
+    first = next(iter(channels.values()))
     if choice.rate is not None:
-        file_rate = channel.rate
+        file_rate = first.rate
         if file_rate is not None and abs(file_rate / choice.rate - 1.0) > 1e-6:
             notices.append(f"rate {choice.rate:g} Hz on request; the file has {file_rate:.9g} Hz")
         else:
             notices.append(f"rate {choice.rate:g} Hz on request")
-        return np.arange(channel.values.size) / choice.rate
-    if "time" in choice.channels:
-        time_channel = measurement.channels[pick(measurement, choice.channels["time"])]
-        unit = choice.units.get("time", time_channel.unit)
-        unit_entry = find_unit(unit)
-        if unit_entry is None or unit_entry.quantity != "time":
-            raise DataError(
-                f"{path}: channel {time_channel.name!r} has the unit {unit!r}; set --unit time=s, or ms, us, min"
-            )
-        return np.asarray(time_channel.values, dtype=np.float64) * unit_entry.factor
-    if channel.axis is None:
+        return np.arange(first.values.size) / choice.rate
+    unit = choice.units.get("time", channels["time"].unit)
+    unit_entry = find_unit(unit)
+    if unit_entry is None or unit_entry.quantity != "time":
         raise DataError(
-            f"{path}: channel {channel.name!r} has no times; set --rate HZ, or --channel time=NAME and --unit time=s "
-            "for the channel of the times"
+            f"{path}: channel {channels['time'].name!r} has the unit {unit!r}; set --unit time=s, or ms, us, min"
         )
-    return channel.axis
+    return np.asarray(channels["time"].values, dtype=np.float64) * unit_entry.factor
 
 
 def _has_rate(time: Vector, rate: float) -> bool:
@@ -283,7 +340,8 @@ def _has_rate(time: Vector, rate: float) -> bool:
 
 
 def _uniform(path: object, time: Vector, notices: list[str]) -> Vector:
-    """Return times without the rounding of their stamps; reject pauses and decreasing times."""
+    """Return times without the rounding of their stamps; reject pauses, decreasing times, and unusable stamps."""
+    check_stamps(path, time)
     steps = np.diff(time)
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0]) + 1

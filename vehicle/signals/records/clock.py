@@ -6,6 +6,7 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
+from vehicle.signals.records.stamps import StampClock, stamp_clock
 from vehicle.signals.records.table import Table, Vector
 
 PAUSE = 0.5
@@ -109,6 +110,48 @@ def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
     return None
 
 
+def clock_of_stamps(time: Vector) -> StampClock | None:
+    """Return the clock of samples whose stamps do not show it, see `stamp_clock`; None for usable stamps.
+
+    Args:
+        time: stamps [s], (n,).
+    """
+    steps = np.diff(time)
+    if steps.size < 2 or ((steps > 0.0).all() and (is_uniform(time) or clock_of_rounded(time) is not None)):
+        return None
+    return stamp_clock(time)
+
+
+def check_stamps(where: object, time: Vector) -> None:
+    """Reject stamps that do not show when each sample was taken; the message contains the rate.
+
+    Args:
+        where: file, for the message.
+        time: stamps [s], (n,).
+
+    Raises:
+        DataError: `clock_of_stamps` returns a clock.
+    """
+    clock = clock_of_stamps(time)
+    if clock is not None:
+        raise DataError(f"{where}: {clock.remedy}")
+
+
+def typical_rate(time: Vector) -> float:
+    """Return the sampling rate [Hz] of jittered times: number of samples over their span.
+
+    Steps of twice the median are those over a lost sample; they are left out if there are no other long steps.
+
+    Args:
+        time: increasing times without a pause [s], (n,).
+    """
+    steps = np.diff(time)
+    multiples = steps / float(np.median(steps))
+    long = multiples > 1.5
+    lost = bool(np.all(np.abs(multiples[long] - 2.0) < 0.25)) and float(np.mean(long)) < 0.5
+    return 1.0 / float(np.mean(steps[~long] if lost else steps))
+
+
 def is_uniform(time: Vector) -> bool:
     """Return True if `check_uniform` accepts the time stamps."""
     return _worst_step(time)[0] <= UNIFORM_TOLERANCE
@@ -131,10 +174,15 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
     steps = np.diff(time)
     if steps.size < 2:
         return ()
+    stamps = clock_of_stamps(time)
+    if stamps is not None:
+        return (stamps.remedy,)
     remedy = " ".join(clock_options(time))
     if not np.isfinite(time).all() or not (steps > 0.0).all():
         at = int(np.flatnonzero(~(steps > 0.0))[0])
-        cure = f"set {remedy} for the longest increasing part" if remedy else "split the file there"
+        repeats = bool((steps >= 0.0).all())
+        cure = "set --rate HZ if the samples are uniform" if repeats else "split the file there"
+        cure = f"set {remedy} for the longest increasing part" if remedy else cure
         return (f"times do not increase after {time[at]:.9g} s: {cure}",)
     median = float(np.median(steps))
     gaps = np.flatnonzero(steps > longest_gap(median) * (1.0 + UNIFORM_TOLERANCE))
@@ -155,7 +203,8 @@ def time_remarks(time: Vector) -> tuple[str, ...]:
 def clock_options(time: Vector) -> tuple[str, ...]:
     """Return the command options that make a record with these times readable; () for uniform times.
 
-    --from and --to select the longest part without a gap; --resample at the rate of the median step removes jitter.
+    --from and --to select the longest part without a gap; --resample at the rate of the samples removes jitter; --rate
+    replaces stamps that do not show when each sample was taken.
 
     Args:
         time: sample times of a channel [s], shape (n,).
@@ -163,6 +212,9 @@ def clock_options(time: Vector) -> tuple[str, ...]:
     steps = np.diff(time)
     if steps.size < 2 or not (steps > 0.0).any():
         return ()
+    stamps = clock_of_stamps(time)
+    if stamps is not None:
+        return ("--rate", stamps.option)
     limit = longest_gap(float(np.median(steps[steps > 0.0]))) * (1.0 + UNIFORM_TOLERANCE)
     ends = np.concatenate([[0], np.flatnonzero(~((steps > 0.0) & (steps <= limit))) + 1, [time.size]])
     part = int(np.argmax(np.diff(ends)))
@@ -171,15 +223,24 @@ def clock_options(time: Vector) -> tuple[str, ...]:
         return ()
     cut: tuple[str, ...] = ()
     if longest.size < time.size:
-        first, last = f"{longest[0]:.9g}", f"{longest[-1]:.9g}"
-        inside = np.flatnonzero((time >= float(first)) & (time <= float(last)))
-        if np.any(np.diff(inside) != 1) or inside[0] < ends[part] or inside[-1] >= ends[part + 1]:
+        others = np.concatenate([time[: ends[part]], time[ends[part + 1] :]])
+        longest = _without(longest, others[np.isfinite(others)])
+        if longest.size < 3:
             return ()  # another part of the file has equal times
-        cut = ("--from", first, "--to", last)
+        cut = ("--from", f"{longest[0]:.9g}", "--to", f"{longest[-1]:.9g}")
     if is_uniform(longest) or clock_of_rounded(longest) is not None:
         return cut
-    rate = 1.0 / float(np.median(np.diff(longest)))
+    rate = typical_rate(longest)
     return (*cut, "--resample", f"{round(rate)}" if rate >= 20.0 else f"{rate:.3g}")
+
+
+def _without(part: Vector, others: Vector) -> Vector:
+    """Return the longest piece of increasing times, (n,), without other times of the file between its ends."""
+    inside = np.unique(others[(others >= part[0]) & (others <= part[-1])])
+    begins = np.concatenate([[0], np.searchsorted(part, inside, "right")])
+    ends = np.concatenate([np.searchsorted(part, inside, "left"), [part.size]])
+    longest = int(np.argmax(ends - begins))
+    return part[begins[longest] : ends[longest]]
 
 
 def longest_step(median: float) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.signals.records.channel import Channel, Measurement, check_length, uniform_axis
+from vehicle.signals.records.channel import ROAD_PROFILE, Channel, Measurement, check_length, uniform_axis
 from vehicle.signals.records.reader import digest
 from vehicle.signals.records.table import Vector
 
@@ -149,9 +149,9 @@ def read_surface(path: Path) -> Surface:
 def read(path: Path) -> Measurement:
     """Read an OpenCRG file as channels: the distance, and the heights of each long section."""
     surface = read_surface(path)
-    channels = [Channel(name="distance", values=surface.u, unit="m", function="road profile")]
+    channels = [Channel(name="distance", values=surface.u, unit="m", function=ROAD_PROFILE)]
     channels += [
-        Channel(name=f"v = {v:.3f} m", values=surface.z[:, index], unit="m", function="road profile")
+        Channel(name=f"v = {v:.3f} m", values=surface.z[:, index], unit="m", function=ROAD_PROFILE)
         for index, v in enumerate(surface.v)
     ]
     return Measurement(

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.records.channel import ROAD_PROFILE, Channel, Measurement, uniform_axis
 from vehicle.signals.records.text import read_text
 from vehicle.signals.records.units import find_unit
 
@@ -35,7 +35,7 @@ def read(path: Path) -> Measurement:
 
     Source: UMTRI, The ERD File Specification; headers of LTPP profiles.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     lines = text.lines
     end = next((n for n, line in enumerate(lines[:400]) if line.strip().upper() == "END"), None)
     if end is None or end < 2:
@@ -75,13 +75,13 @@ def read(path: Path) -> Measurement:
     table = values.reshape(-1, count)
     start = float(keywords["XSTART"]) if "XSTART" in keywords and _is_number(keywords["XSTART"]) else 0.0
     distance = uniform_axis(table.shape[0], step, start) * distance_unit.factor
-    channels = [Channel(name="distance", values=distance, unit="m", function="road profile")]
+    channels = [Channel(name="distance", values=distance, unit="m", function=ROAD_PROFILE)]
     channels += [
         Channel(
             name=name or f"channel {n + 1}",
             values=np.ascontiguousarray(table[:, n]),
             unit=unit,
-            function="road profile",
+            function=ROAD_PROFILE,
             remark="" if unit else "no unit in the file",
         )
         for n, (name, unit) in enumerate(zip(names, units, strict=True))

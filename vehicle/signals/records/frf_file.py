@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,8 @@ import numpy.typing as npt
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.analysis.response_name import ResponseName, parsed_name
 from vehicle.signals.records.reader import read_table
 from vehicle.signals.records.table import Header, Table, Vector, Wanted, key_column
 from vehicle.signals.records.text_format import write_table
@@ -33,23 +35,42 @@ class FrfData:
 
     Attributes:
         frequency: increasing frequencies [Hz], shape (m,).
-        channels: names of the k channels.
+        names: output and input of the k FRFs.
         response: acceleration over plate displacement [m/s2 per m], shape (k, m); NaN where undefined.
         coherence: gamma^2 [-], shape (k, m); NaN where undefined.
         random_error: standard error of |H| [m/s2 per m], shape (k, m); NaN if unknown.
     """
 
     frequency: Vector
-    channels: tuple[str, ...]
+    names: tuple[ResponseName, ...]
     response: npt.NDArray[np.complex128]
     coherence: Vector
     random_error: Vector
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Output of each FRF, (k,)."""
+        return tuple(name.output for name in self.names)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Distinct inputs, as "plate_fr"; without unknown ones."""
+        return tuple(dict.fromkeys(name.input for name in self.names if name.motion))
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Name of each FRF in tables and figures, (k,): the output, with its plate if there are several inputs."""
+        return tuple(str(name) if len(self.inputs) > 1 else name.output for name in self.names)
+
+    def renamed(self, names: Sequence[ResponseName]) -> FrfData:
+        """Return the same FRFs under other names, (k,)."""
+        return replace(self, names=tuple(names))
+
     def select(self, channels: Sequence[str], *, band: tuple[float, float], spacing: float = 0.0) -> FrfData:
-        """Return channels in a frequency band, with a minimum spacing of the frequencies.
+        """Return the FRFs of channels in a frequency band, with a minimum spacing of the frequencies.
 
         Args:
-            channels: channel names.
+            channels: names of outputs, or of output and plate as "knuckle_fr_acc_z/plate_fr".
             band: minimum and maximum frequency [Hz].
             spacing: minimum spacing of the frequencies [Hz]. Adjacent lines of an estimate are correlated; lines
                 separated by its resolution are not.
@@ -57,9 +78,10 @@ class FrfData:
         Raises:
             DataError: a channel is missing, or too few frequencies remain.
         """
-        missing = next((name for name in channels if name not in self.channels), None)
+        accepted = [(name.output, str(name)) for name in self.names]
+        missing = next((name for name in channels if not any(name in pair for pair in accepted)), None)
         if missing is not None:
-            raise DataError(f"FRF: no channel {missing}; the file has {', '.join(self.channels)}")
+            raise DataError(f"FRF: no channel {missing}; the file has {', '.join(str(name) for name in self.names)}")
         selected: list[int] = []
         for index in np.flatnonzero((self.frequency >= band[0]) & (self.frequency <= band[1])):
             if not selected or self.frequency[index] - self.frequency[selected[-1]] >= 0.999 * spacing:
@@ -69,14 +91,30 @@ class FrfData:
                 f"FRF: {len(selected)} frequencies between {band[0]:g} and {band[1]:g} Hz with a spacing of "
                 f"{spacing:g} Hz, must be at least {LEAST_LINES}; widen the band or reduce the spacing"
             )
-        rows = [self.channels.index(name) for name in channels]
+        rows = list(dict.fromkeys(row for name in channels for row, pair in enumerate(accepted) if name in pair))
         return FrfData(
             frequency=self.frequency[selected],
-            channels=tuple(channels),
+            names=tuple(self.names[row] for row in rows),
             response=self.response[np.ix_(rows, selected)],
             coherence=self.coherence[np.ix_(rows, selected)],
             random_error=self.random_error[np.ix_(rows, selected)],
         )
+
+
+def frf_data(motions: Sequence[MotionResponse], channels: Sequence[str]) -> FrfData:
+    """Return the FRFs of channels to each motion of the plates, output by output.
+
+    Args:
+        motions: FRFs to each motion, with a row for each channel.
+        channels: names of the rows.
+    """
+    pairs = [(row, motion) for row in range(len(channels)) for motion in motions]
+    rows = {
+        name: np.array([getattr(motion.response, name)[row] for row, motion in pairs])
+        for name in ("response", "coherence", "random_error")
+    }
+    names = tuple(motion.named(channels[row]) for row, motion in pairs)
+    return FrfData(frequency=motions[0].response.frequency, names=names, **rows)
 
 
 def read_frf(path: Path) -> FrfData:
@@ -84,7 +122,7 @@ def read_frf(path: Path) -> FrfData:
 
     `#` comments, one header line `frequency [Hz]`, then `<channel>_magnitude` [m/s2 per m], `<channel>_phase [deg]`
     and `<channel>_coherence` of each channel, optionally `<channel>_random_error` [m/s2 per m]; an empty cell for an
-    undefined value.
+    undefined value. With several plates a channel is `<channel>/<plate>`, as `knuckle_fr_acc_z/plate_fr`.
 
     Args:
         path: table of FRFs.
@@ -108,7 +146,7 @@ def read_frf(path: Path) -> FrfData:
     magnitude, phase, coherence, random_error = values.values()
     return FrfData(
         frequency=frequency,
-        channels=channels,
+        names=tuple(parsed_name(channel) for channel in channels),
         response=np.asarray(magnitude * np.exp(1j * np.radians(phase)), dtype=np.complex128),
         coherence=coherence,
         random_error=random_error,
@@ -165,29 +203,25 @@ def _check_frequency(table: Table, frequency: Vector) -> None:
 
 def write_frf(
     path: Path,
-    response: FrequencyResponse,
+    responses: Mapping[str, FrequencyResponse],
     channels: Sequence[str],
     frame: str,
-    *,
-    further: Mapping[str, FrequencyResponse] | None = None,
     inputs: str = "",
 ) -> None:
     """Write magnitude [m/s2 per m], phase [deg], coherence and random error of each channel; undefined values empty.
 
     Args:
         path: file to write.
-        response: FRFs of the channels.
+        responses: input, as "plate_fr", to the FRFs of the channels, in columns `<channel>_magnitude` for one input,
+            `<channel>/<input>_magnitude` for several.
         channels: channel names.
         frame: description of the vector axes.
-        further: FRFs from other plates: wheel to the response of the channels, in columns
-            `<channel>_to_<wheel>_magnitude`.
         inputs: description of the inputs if there is more than one plate.
     """
-    heads, columns = [FREQUENCY], [response.frequency]
-    for end, response_to in (
-        ("", response),
-        *((f"_to_{wheel}", further_response) for wheel, further_response in (further or {}).items()),
-    ):
+    first = next(iter(responses.values()))
+    heads, columns = [FREQUENCY], [first.frequency]
+    for plate, response_to in responses.items():
+        end = f"/{plate}" if len(responses) > 1 else ""
         for row, channel in enumerate(channels):
             heads += [channel + end + suffix for suffix in (*SUFFIXES, RANDOM_ERROR)]
             values = response_to.response[row]
@@ -199,6 +233,6 @@ def write_frf(
             ]
     description = (
         "acceleration over plate displacement, magnitude and its random error (one standard error) in m/s2 per m, "
-        f"coherence without unit; {response.estimator}; frame: {frame}"
+        f"coherence without unit; {first.estimator}; frame: {frame}"
     )
     write_table(path, heads, columns, [description, inputs] if inputs else [description])

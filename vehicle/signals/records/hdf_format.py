@@ -15,8 +15,10 @@ from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement, even_step, uniform_axis
 from vehicle.signals.records.heads import TIME_NAME, split_head
 from vehicle.signals.records.matlab_format import channels_of
+from vehicle.signals.records.packed_values import unpacked
 from vehicle.signals.records.pandas_frames import frame_channels
 from vehicle.signals.records.reader import digest, extra
+from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_unit
 
 PLAIN_CLASSES = frozenset(
@@ -26,6 +28,12 @@ PLAIN_CLASSES = frozenset(
 
 LONG = 10
 """Minimum ratio of columns to rows of an array with one channel per row."""
+
+LONG_UNITS = {"days": 86400.0, "hours": 3600.0, "minutes": 60.0}
+"""Units of netCDF times in s, beside those of `vehicle.signals.records.units`."""
+
+NO_VALUES = "This is a netCDF dimension but not a netCDF variable"
+"""Begin of the attribute NAME of an array that netCDF writes for a dimension alone; its numbers have no meaning."""
 
 AXES = "axes"
 """Name of the group with the uneven axes, under the names of their channels."""
@@ -134,10 +142,14 @@ def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
         return []
     if dataset.dtype.names is not None:
         return _fields(name, dataset, notices)
-    if dataset.dtype.kind not in "fiuc" or dataset.ndim not in (1, 2):
+    if (
+        dataset.dtype.kind not in "fiuc"
+        or dataset.ndim not in (1, 2)
+        or _attribute(dataset, "NAME").startswith(NO_VALUES)
+    ):
         return []
-    values = np.asarray(dataset[()])
-    values = values.astype(complex if values.dtype.kind == "c" else np.float64)
+    values, fault, messages = unpacked(name, dataset)
+    notices.extend(messages)
     index_text = "(:,{})"
     if values.ndim == 2 and (len(values) == 1 or LONG * len(values) <= values.shape[1]):
         if len(values) > 1:
@@ -150,21 +162,41 @@ def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
     stored_axis = dataset.file.get(f"{AXES}/{name}")
     if getattr(stored_axis, "shape", None) == (len(values),) and axis_quantity:
         axis = np.asarray(stored_axis[()], dtype=np.float64)
+    if axis is None:
+        axis = _coordinate(dataset, len(values))
     label = _attribute(dataset, "name") or name
+    unit = _attribute(dataset, "unit") or _attribute(dataset, "units")
     return [
         Channel(
             name=label if values.shape[1] == 1 else label + index_text.format(n + 1),
             values=values[:, n].copy(),
-            unit=_attribute(dataset, "unit") or _attribute(dataset, "units"),
+            unit="" if fault else unit,
             axis=axis,
             kind="frequency" if axis_quantity == "frequency" else "time",
             function=_attribute(dataset, "function") or "time history",
             place=_attribute(dataset, "place"),
             direction=_attribute(dataset, "direction"),
             reference=_attribute(dataset, "reference"),
+            remark=f"{fault}: the unit {unit!r} is not taken" if fault and unit else "",
         )
         for n in range(values.shape[1])
     ]
+
+
+def _coordinate(dataset: Any, count: int) -> Vector | None:
+    """Return the times of the first dimension [s] from its dimension scale; None without a scale in a unit of time.
+
+    Times since a date, as "seconds since 2026-01-01" (CF conventions, section 4.4), begin at zero.
+    """
+    scales = dataset.dims[0]
+    if not len(scales) or scales[0].shape != (count,) or scales[0].dtype.kind not in "fiu":
+        return None
+    unit, since, _ = _attribute(scales[0], "units").partition(" since ")
+    factor = LONG_UNITS.get(unit.strip().lower()) or _seconds(unit.strip())
+    if not factor:
+        return None
+    times = np.asarray(unpacked("", scales[0]).values, dtype=np.float64) * factor
+    return times - times[0] if since else times
 
 
 def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vehicle.errors import DataError
+from vehicle.signals.records.clock_text import is_clock
 from vehicle.signals.records.units import find_unit
 
 HEAD_LINES = 6
@@ -23,7 +24,7 @@ TIME_NAME = re.compile(
     r"((rel\w*|abs\w*|elapsed|x)[ _.]?)?"
     r"(time([ _]?(stamp|axis|value))?s?|zeit\w*|timestamps?|t|temps|x-?values?|seconds|sec)\b.*|"
     r"time_?(stamps?)?[ _]?(m?s|us|ns|secs?|seconds|millis|micros|unix\w*|utc|since\w*|elapsed)|timestamp\w*|"
-    r"seconds_elapsed|(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|"
+    r"seconds_elapsed|elapsed|epoch|(elapsed|unix|epoch|device|gps|log|sample|system|utc|local|session|"
     r"recording)[ _]?time([ _]?stamp)?s?(\b.*|_m?s)|\w+_timestamp(sync)?(_\w+)?|t_(m?s|us|sec)",
     re.IGNORECASE,
 )
@@ -178,6 +179,8 @@ def _lines_of_heads(
         if not any(cells):
             continue
         if above and count > 2 and sum(map(bool, cells)) == 1:  # a title line
+            break
+        if above and any(cell[:1].isdigit() and is_clock(cell) for cell in cells):  # times of laps, no sources
             break
         if not above and _is_number(cells[0]) and not all(_is_number(cell) for cell in cells if cell):
             shown = ", ".join(map(repr, cells[:4]))

@@ -15,6 +15,7 @@ from vehicle.signals.records.channel import Channel, Measurement
 from vehicle.signals.records.clock_text import clock_seconds, epoch_seconds, is_date
 from vehicle.signals.records.frf_file import FREQUENCY, RANDOM_ERROR, SUFFIXES, read_frf
 from vehicle.signals.records.heads import FREQUENCY_NAME, TIME_NAME, Heads, cells_of, read_heads
+from vehicle.signals.records.remark_cells import with_remarks
 from vehicle.signals.records.spectrum_columns import joined
 from vehicle.signals.records.table import Header, Vector, Wanted
 from vehicle.signals.records.text import Text, read_text
@@ -46,7 +47,7 @@ def read(path: Path) -> Measurement:
         ConfigurationError: the file does not exist.
         DataError: no numeric columns, a row of another length, a non-numeric cell, or an ambiguous comma.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     if any(line.startswith(FREQUENCY) and SUFFIXES[0] in line for line in text.lines[:20]):
         return _responses(path, text.sha256)
     return read_lines(path, text, "csv")
@@ -66,6 +67,7 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     lines = text.lines
     table = find_table(path, lines)
     lines, table = _without_last_delimiter(lines, table)
+    lines, table, remarks = with_remarks(lines, table)
     start, delimiter = table.start, table.delimiter
     heads = read_heads(path, lines, start, delimiter, len(table.kinds))
     if not heads.named and delimiter == "," and not any("." in line for line in lines[start : start + AGREEING]):
@@ -76,7 +78,7 @@ def read_lines(path: Path, text: Text, format_name: str) -> Measurement:
     numbers = [n + 1 for n in range(start, len(lines)) if lines[n].strip()]
     rows = [lines[n - 1] for n in numbers]
     kinds = settled_kinds(path, rows, table, heads.names)
-    notices = list(text.notices)
+    notices = [*text.notices, *remarks]
     if not heads.named:
         notices.append(f"no line of names above line {start + 1}: the columns are numbered")
     texts, rows, delimiter = _texts(path, numbers, rows, delimiter, kinds)
@@ -171,13 +173,23 @@ def _texts(
 
 def _key(heads: Heads, kinds: Sequence[Kind]) -> int:
     """Return the index of the numeric time column, preferably with a known unit; -1 if there is none."""
-    named = [
+    named = _time_columns(heads, kinds)
+    with_unit = [index for index in named if find_unit(heads.units[index]) is not None]
+    return next(iter((*with_unit, *named)), -1)
+
+
+def _time_columns(heads: Heads, kinds: Sequence[Kind]) -> list[int]:
+    """Return the indices of the numeric columns with the name of a time."""
+    return [
         index
         for index, name in enumerate(heads.names)
         if kinds[index] == "number" and _is_axis(name, heads.units[index], "time")
     ]
-    with_unit = [index for index in named if find_unit(heads.units[index]) is not None]
-    return next(iter((*with_unit, *named)), -1)
+
+
+def _rises(values: Vector) -> bool:
+    """Return True if the values of a column never decrease; a clock that restarts decreases."""
+    return bool((np.diff(values) >= 0.0).all() and values[-1] > values[0])
 
 
 def _axis(
@@ -187,6 +199,9 @@ def _axis(
     clock = _clock_axis(path, heads, texts, numbers) if texts else None
     start = clock.start if clock is not None else ""
     key = _key(heads, kinds)
+    others = [column for column in _time_columns(heads, kinds) if column != key and _rises(values[:, column])]
+    if key >= 0 and not _rises(values[:, key]) and others:
+        key = others[0]
     if key >= 0:
         name, unit = heads.names[key], heads.units[key]
         time_unit = find_unit(unit)

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.records.channel import OVER_ANGLE, OVER_DISTANCE, Channel, Measurement, uniform_axis
 from vehicle.signals.records.clock_text import clock_seconds
 from vehicle.signals.records.heads import split_head
 from vehicle.signals.records.table import Header, Vector, Wanted
@@ -59,7 +59,7 @@ def read(path: Path) -> Measurement:
         ConfigurationError: the file does not exist.
         DataError: not according to the specification, damaged, or segments that overlap in time.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     lines = text.lines
     head, first = _file_header(path, lines)
     separator = {"comma": ",", "tab": "\t"}.get(head.get("Separator", "Tab").lower())
@@ -130,7 +130,7 @@ def _segments(path: Path, lines: Sequence[str], first: int, separator: str) -> l
 def _channels(
     path: Path, segment: _Segment, layout: str, separator: str, sign: str, notices: list[str]
 ) -> list[Channel]:
-    """Return the channels of a segment; their times begin at X0 of the segment."""
+    """Return the channels of a segment; their times begin at X0, and at Date and Time where these differ."""
     names = [name for name in segment.names if name]
     if names[-1:] == ["Comment"]:
         names = names[:-1]
@@ -142,6 +142,7 @@ def _channels(
             f"{', '.join(map(repr, names[:6]))}; export it again"
         )
     values = _numbers(path, segment, names, separator, sign, notices)
+    later = _later(segment, columns)
     channels = []
     for column in columns:
         samples = values[:, column]
@@ -156,11 +157,18 @@ def _channels(
             notices.append(f"{names[column]!r} has {samples.size} samples, {packet} according to its header")
         time_column = column - 1 if layout == "multi" else 0
         times = None if layout == "no" or time_column < 0 else values[: samples.size, time_column]
-        if layout == "one" and segment.value("Delta_X", column) != segment.value("Delta_X", columns[0]):
+        if layout == "one" and any(
+            segment.value(key, column) != segment.value(key, columns[0]) for key in ("X0", "Delta_X")
+        ):
             times = None  # the time column is valid for the first channel only
         axis, remark = _times(path, segment, column, times, samples.size, packet, sign)
         name, unit = split_head(names[column])
-        x_dimension = segment.value("X_Dimension", column).lower()
+        x_dimension = segment.value("X_Dimension", column).lower() or "time"
+        if x_dimension == "time" and axis is not None:
+            axis = axis + later[column]
+        elif x_dimension not in ("time", "frequency"):
+            axis, remark = None, f"the axis is a {x_dimension}: no times"
+        function = {"frequency": "spectrum", "distance": OVER_DISTANCE, "length": OVER_DISTANCE, "angle": OVER_ANGLE}
         channels.append(
             Channel(
                 name=name,
@@ -168,11 +176,31 @@ def _channels(
                 unit=segment.value("Y_Unit_Label", column) or unit,
                 axis=axis,
                 kind="frequency" if x_dimension == "frequency" else "time",
-                function="spectrum" if x_dimension == "frequency" else "time history",
+                function=function.get(x_dimension, "time history"),
                 remark=remark,
             )
         )
     return channels
+
+
+def _later(segment: _Segment, columns: Sequence[int]) -> dict[int, float]:
+    """Return the start of each channel after the earliest one by Date and Time [s].
+
+    Zero where X0 differs by the same times, which then states the same fact.
+    """
+    clocks = [segment.value("Time", column) for column in columns]
+    days = [segment.value("Date", column) for column in columns]
+    none = dict.fromkeys(columns, 0.0)
+    if len(set(zip(days, clocks, strict=True))) == 1:
+        return none
+    try:
+        seconds, _, _ = clock_seconds(clocks, days)
+        origins = np.array([float(segment.value("X0", column).replace(",", ".") or "0") for column in columns])
+    except ValueError:
+        return none
+    if np.allclose(np.diff(seconds), np.diff(origins), rtol=0.0, atol=1e-3):
+        return none
+    return dict(zip(columns, (seconds - seconds.min()).tolist(), strict=True))
 
 
 def _numbers(path: Path, segment: _Segment, names: list[str], separator: str, sign: str, notices: list[str]) -> Vector:

@@ -14,6 +14,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
 from vehicle.signals.records.matlab_elements import COMPRESSED, MATRIX, check_matrix, object_name
+from vehicle.signals.records.matlab_structures import columns_of, is_structure, structure_channels
 from vehicle.signals.records.reader import digest
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_ratio, find_unit
@@ -70,6 +71,7 @@ def channels_of(
     """
     channels: list[Channel] = []
     scalars: list[str] = []
+    left_out: list[str] = []
     objects = dict(objects)
     for name, value in variables.items():
         if name.startswith("__") or _is_object(value):
@@ -78,22 +80,28 @@ def channels_of(
             if "x_values" in record and "y_values" in record:
                 channels += _signal(path, label, record)
                 continue
+            if is_structure(record):
+                channels += structure_channels(label, record)
+                continue
             objects |= {
                 f"{label}.{field}": "object" for field, inner_value in record.items() if _is_object(inner_value)
             }
             inner = {f"{label}.{field}": np.asarray(inner_value) for field, inner_value in record.items()}
-            channels += [_plain(text, inner_value) for text, inner_value in inner.items() if _is_vector(inner_value)]
+            for text, inner_value in inner.items():
+                if inner_value.dtype.kind in "fiuc" and inner_value.ndim > 2 and inner_value.size > 1:
+                    left_out.append(f"{text} ({' x '.join(map(str, inner_value.shape))})")
+                elif inner_value.dtype.kind in "fiuc" and inner_value.size > 1:
+                    channels += [_plain(*column) for column in columns_of(text, inner_value)]
         array = np.asarray(value)
-        if array.dtype.kind not in "fiuc" or array.ndim > 2 or array.size == 0:
+        if array.dtype.kind not in "fiuc" or array.size == 0:
+            continue
+        if array.ndim > 2:
+            left_out.append(f"{name} ({' x '.join(map(str, array.shape))})")
             continue
         if array.size == 1:
             scalars.append(f"{name} = {array.ravel()[0]:g}")
             continue
-        if array.ndim < 2 or 1 in array.shape:
-            channels.append(_plain(name, array.ravel()))
-            continue
-        columns = array if array.shape[0] >= array.shape[1] else array.T
-        channels += [_plain(f"{name}(:,{n + 1})", columns[:, n]) for n in range(columns.shape[1])]
+        channels += [_plain(*column) for column in columns_of(name, array)]
     remedy = _remedy(objects)
     if not channels and objects:
         raise DataError(f"{path}: no numeric array; {remedy}")
@@ -105,6 +113,8 @@ def channels_of(
     notices = [f"single numbers: {', '.join(scalars[:12])}"] if scalars else []
     if objects:
         notices.append(f"ignored: {remedy}")
+    if left_out:
+        notices.append(f"arrays of more than two dimensions are ignored: {', '.join(left_out[:8])}; save their columns")
     if any(inner_value.axis is None for inner_value in channels):
         notices.append("arrays without times: set --rate HZ, or --channel time=NAME --unit time=s")
     return tuple(channels), notices
@@ -130,10 +140,6 @@ def _remedy(objects: Mapping[str, str]) -> str:
     return f"{shown} are MATLAB objects, readable by MATLAB only; convert them there, for example {line}"
 
 
-def _is_vector(array: Any) -> bool:
-    return array.dtype.kind in "fiuc" and array.size > 1 and array.size == max(array.shape)
-
-
 def _plain(name: str, values: Any) -> Channel:
     value_type = complex if np.iscomplexobj(values) else np.float64
     return Channel(name=name, values=np.array(values, dtype=value_type).ravel())
@@ -149,7 +155,7 @@ def _records(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, dict[
         label = name if flat.size == 1 else f"{name}({index + 1})"
         record = {field: element[field] for field in array.dtype.names}
         yield label, record
-        if "x_values" not in record:
+        if "x_values" not in record and not is_structure(record):
             for field, inner in record.items():
                 yield from _records(f"{label}.{field}", inner, depth + 1)
 
@@ -177,7 +183,11 @@ def _number(value: Any) -> float | None:
 
 
 def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
-    """Return the channels of a Testlab structure: x_values.increment and start_value, y_values.values, quantities."""
+    """Return the channels of a Testlab structure: x_values.increment and start_value, y_values.values, quantities.
+
+    A structure with a factor stores SI values; value in the unit of its label = SI value * factor. Without a factor the
+    values are in the unit of the label.
+    """
     x, y = record["x_values"], record["y_values"]
     values = np.asarray(_field(y, "values"))
     if values.dtype.kind not in "fiuc" or values.ndim > 2 or values.size < 2:
@@ -205,9 +215,16 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
             axis = uniform_axis(columns.shape[0], length, start * axis_unit.factor)
     unit = _text(_field(y, "quantity", "label"))
     factor, unit_entry = _number(_field(y, "quantity", "unit_transformation", "factor")), find_ratio(unit)
-    if factor is not None and unit_entry is not None and abs(factor / unit_entry.factor - 1.0) > 0.01:
-        remark = f"the unit is {unit!r}, its factor to SI {factor:g}: a contradiction"
-        unit = ""
+    if factor is not None and unit_entry is not None:
+        if abs(factor * unit_entry.factor - 1.0) > 0.01:
+            note = f"the unit is {unit!r}, the factor from SI to it {factor:g}: a contradiction"
+            unit = ""
+        elif unit_entry.factor != 1.0:
+            note = f"in SI units: the file displays {unit!r}, {factor:g} of them are one {unit_entry.si}"
+            unit = unit_entry.si
+        else:
+            note = ""
+        remark = "; ".join(text for text in (remark, note) if text)
     name = _text(_field(record.get("function_record"), "name")) or _text(_field(record.get("function_record"), "title"))
     function = _text(_field(record.get("function_record"), "type"))
     point = _text(_field(record.get("function_record"), "point"))

@@ -1,20 +1,24 @@
-"""Read MDF files of data loggers, versions 3 and 4, decode their raw CAN frames with DBC databases, and write MDF 4."""
+"""Read MDF files of data loggers, versions 3 and 4, with raw frames of CAN buses, and write MDF 4."""
 
 from __future__ import annotations
 
 import gc
 import sys
 import warnings
+from collections import Counter
 from collections.abc import Sequence, Set
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.signals.records.can_format import load_database, needs_database, none_decoded, quiet
-from vehicle.signals.records.channel import Channel, Measurement
+from vehicle.signals.records.can_decoder import decode, load_database, quiet
+from vehicle.signals.records.can_frames import FD_LENGTHS, IDENTIFIER_BITS, BusLog, grouped, merged
+from vehicle.signals.records.channel import NOT_OVER_TIME, ROAD_PROFILE, Channel, Measurement
 from vehicle.signals.records.reader import digest, extra
+from vehicle.signals.records.units import find_unit
 
 BUS_FRAMES = frozenset(
     f"{bus}_{kind}"
@@ -22,6 +26,12 @@ BUS_FRAMES = frozenset(
     for kind in ("DataFrame", "ErrorFrame", "RemoteFrame", "OverloadFrame", "Frame", "FrameHeader", "NullFrame", "PDU")
 )
 """First part of the names of channels with raw bus frames (ASAM MDF, bus logging)."""
+
+SYNCHRONISATION = {1: "time", 2: "angle", 3: "distance", 4: "index"}
+"""Quantity of a master channel by its synchronisation type."""
+
+DIRECTIONS = {"0": "Rx", "1": "Tx", "0.0": "Rx", "1.0": "Tx", "rx": "Rx", "tx": "Tx"}
+"""Direction of a frame by the value of CAN_DataFrame.Dir, in lower case."""
 
 MASTERS = (2, 3)
 """Types of channels with the times of their group."""
@@ -44,10 +54,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     asammdf = extra("asammdf", "mdf", "an MDF file")
     for database in databases:
         load_database(database)
-    channels: list[Channel] = []
-    identifiers: list[int] = []
-    notices: list[str] = []
-    skipped, reason = 0, ""
+    reason = ""
     try:
         with warnings.catch_warnings(), quiet():
             warnings.simplefilter("ignore")
@@ -56,16 +63,8 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
                 buses = {n for n, group in enumerate(file.groups) if _is_bus(group)}
                 for group in file.groups:
                     _check_size(path, group, size)
-                for number in sorted(buses):
-                    identifiers += _identifiers(file, number)
-                channels, skipped = _channels(file, buses)
-                if databases and identifiers:
-                    with file.extract_bus_logging(
-                        {"CAN": [(str(database), 0) for database in databases]}, ignore_value2text_conversion=True
-                    ) as decoded:
-                        signals, undecoded = _channels(decoded, set())
-                        channels, skipped = [*channels, *signals], skipped + undecoded
-                        notices.append(f"raw frames of a CAN bus: {len(identifiers)}, {len(signals)} signals decoded")
+                log = merged([_frames(file, number) for number in sorted(buses)])
+                channels, notices = _channels(file, buses)
                 start, program = str(file.start_time), f"MDF {file.version}"
     except DataError:
         raise
@@ -74,13 +73,14 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     if reason:
         _forget()
         raise DataError(f"{path}: cannot be read as MDF ({reason}); it may be truncated; export it again")
-    if not channels and identifiers:
-        log_format = f"raw frames in {program}"
-        raise none_decoded(path, identifiers, databases) if databases else needs_database(path, log_format, identifiers)
-    if identifiers and not databases:
-        notices.append(f"{len(identifiers)} raw frames of a CAN bus are ignored; set --dbc FILE to decode them")
+    if log and (databases or not channels):
+        decoded, of_log = decode(path, f"raw frames in {program}", log, databases)
+        channels, notices = [*channels, *decoded], [*of_log, *notices]
+    elif log:
+        count = sum(frames.time.size for frames in log.values())
+        notices = [f"{count} raw frames of a CAN bus are ignored; set --dbc FILE to decode them", *notices]
     if not channels:
-        raise DataError(f"{path}: no numeric channel; {skipped} channels of other types; export numbers")
+        raise DataError(f"{path}: no numeric channel; {'; '.join(notices) or 'no channels'}; export numbers")
     return Measurement(
         path=path,
         format="mdf",
@@ -88,7 +88,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         sha256=digest(path),
         program=program,
         start=start,
-        notices=(*notices, *((f"{skipped} channels without numbers are ignored",) if skipped else ())),
+        notices=tuple(notices),
     )
 
 
@@ -126,15 +126,29 @@ def write(path: Path, channels: Sequence[Channel], description: str) -> None:
         file.save(path, overwrite=True, compression=2)
 
 
-def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], int]:
-    """Return the numeric channels of all groups except bus groups, and the count of other channels."""
+def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
+    """Return the numeric channels of all groups except bus groups, and notices."""
     channels: list[Channel] = []
+    notices: list[str] = []
     skipped = 0
+    frames: Counter[str] = Counter()
     for number, group in enumerate(file.groups):
         if number in buses:
+            count = int(getattr(group.channel_group, "cycles_nr", 0))
+            if count and not _is_can(group):
+                kind = next(
+                    name for channel in group.channels if (name := str(channel.name).split(".")[0]) in BUS_FRAMES
+                )
+                frames[kind] += count
             continue
         axes: dict[int, np.ndarray] = {}
         group_name = str(getattr(group.channel_group, "acq_name", "") or "") if len(file.groups) > 1 else ""
+        place = group_name or (f"group {number + 1}" if len(file.groups) > 1 else "")
+        master, seconds, remark = _axis(file, number)
+        if master is not None:
+            channels.append(replace(master, place=place))
+        elif remark:
+            notices.append(f"{place or 'the group'}: {remark}")
         for index, channel in enumerate(group.channels):
             if channel.channel_type in MASTERS and str(getattr(file, "version", "4")) >= "4":
                 continue
@@ -143,18 +157,55 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], int]:
             if values.dtype.kind not in "fiu" or values.ndim != 1 or not values.size:
                 skipped += 1
                 continue
-            times = np.asarray(signal.timestamps, dtype=np.float64)
+            times = np.asarray(signal.timestamps, dtype=np.float64) * seconds
             axis = axes.setdefault(times.size, times)
-            channels.append(
-                Channel(
-                    name=channel.name,
-                    values=values.astype(np.float64),
-                    unit=signal.unit or "",
-                    axis=axis if np.array_equal(axis, times) else times,
-                    place=group_name or (f"group {number + 1}" if len(file.groups) > 1 else ""),
-                )
+            over_time = Channel(
+                name=channel.name,
+                values=values.astype(np.float64),
+                unit=signal.unit or "",
+                axis=axis if np.array_equal(axis, times) else times,
+                place=place,
             )
-    return channels, skipped
+            if master is not None:
+                heights = master.name == "distance" and over_time.quantity == "displacement"
+                function = ROAD_PROFILE if heights else master.function
+                over_time = replace(over_time, axis=None, function=function, remark=remark)
+            channels.append(over_time)
+    if frames:
+        shown = ", ".join(f"{kind} {count}" for kind, count in frames.items())
+        notices.append(f"frames of other types are left out: {shown}")
+    return channels, [*notices, *([f"{skipped} channels without numbers are ignored"] if skipped else [])]
+
+
+def _axis(file: Any, number: int) -> tuple[Channel | None, float, str]:
+    """Return the axis of a group: a channel for a master that is not time, the factor of a time to s, and a remark.
+
+    Source: ASAM MDF 4, synchronisation type of a master channel: time [s], angle [rad], distance [m], index.
+    """
+    index = file.masters_db.get(number)
+    if index is None:
+        return None, 1.0, ""
+    block = file.groups[number].channels[index]
+    unit = file.get_channel_unit(group=number, index=index) or ""
+    entry, kind = find_unit(unit), SYNCHRONISATION.get(getattr(block, "sync_type", 1), "time")
+    if kind == "time" and (entry is None or entry.quantity == "time"):
+        factor = 1.0 if entry is None else entry.factor
+        return None, factor, "" if factor == 1.0 else f"times in {unit!r} are converted to s"
+    if kind == "time" and entry is not None:
+        kind = "distance" if entry.quantity == "displacement" else entry.quantity
+    remark = f"the master {block.name!r} is a {kind}: no times"
+    function = f"function of {kind}"
+    return (
+        Channel(
+            name="distance" if kind == "distance" else block.name,
+            values=np.asarray(file.get_master(number), dtype=np.float64),
+            unit=unit or {"distance": "m", "angle": "rad"}.get(kind, ""),
+            function=function if function in NOT_OVER_TIME else "time history",
+            remark=remark,
+        ),
+        1.0,
+        remark,
+    )
 
 
 def _is_bus(group: Any) -> bool:
@@ -162,14 +213,49 @@ def _is_bus(group: Any) -> bool:
     return any(str(channel.name).split(".")[0] in BUS_FRAMES for channel in group.channels)
 
 
-def _identifiers(file: Any, number: int) -> list[int]:
-    """Return the identifiers of the CAN frames of a group; empty for error frames and other buses."""
-    names = {str(identifier.name): index for index, identifier in enumerate(file.groups[number].channels)}
-    index = names.get("CAN_DataFrame.ID")
-    if index is None:
-        return []
-    samples = np.asarray(file.get(group=number, index=index, raw=True, ignore_invalidation_bits=True).samples)
-    return [int(identifier) & 0x1FFFFFFF for identifier in samples]
+def _is_can(group: Any) -> bool:
+    return any(str(channel.name) == "CAN_DataFrame.ID" for channel in group.channels)
+
+
+def _frames(file: Any, number: int) -> BusLog:
+    """Return the CAN data frames of a group; empty for error frames and other buses."""
+    group = file.groups[number]
+    if not _is_can(group):
+        return {}
+    index = {str(channel.name).removeprefix("CAN_DataFrame."): n for n, channel in enumerate(group.channels)}
+    columns = {  # values of virtual channels, as a constant bus, are in their conversions
+        name: file.get(group=number, index=index[name], ignore_invalidation_bits=True)
+        for name in ("ID", "IDE", "BusChannel", "Dir", "DataLength", "DLC", "DataBytes")
+        if name in index
+    }
+    payload, identifiers = np.asarray(columns["DataBytes"].samples), columns["ID"].samples.astype(np.int64)
+    if not identifiers.size:
+        return {}
+    if payload.ndim == 1:
+        cells = [bytes(cell) for cell in payload]
+        width = max(map(len, cells), default=0)
+        payload = np.frombuffer(b"".join(cell.ljust(width, b"\0") for cell in cells), np.uint8).reshape(-1, width)
+    count = len(identifiers)
+    if "DataLength" in columns:
+        length = columns["DataLength"].samples.astype(np.int64)
+    elif "DLC" in columns:
+        length = np.array(FD_LENGTHS)[np.minimum(columns["DLC"].samples.astype(np.int64), len(FD_LENGTHS) - 1)]
+    else:
+        length = np.full(count, payload.shape[1])
+    extended = columns["IDE"].samples.astype(bool) if "IDE" in columns else identifiers >> 31 & 1 > 0
+    buses = columns["BusChannel"].samples if "BusChannel" in columns else np.zeros(count, dtype=np.int64)
+    ways = [str(way) for way in columns["Dir"].samples.astype(str)] if "Dir" in columns else [""] * count
+    return grouped(
+        np.asarray(columns["ID"].timestamps, dtype=np.float64),
+        payload,
+        np.minimum(length, payload.shape[1]),
+        (
+            [f"CAN{int(bus)}" for bus in buses],
+            [DIRECTIONS.get(way.lower(), way) for way in ways],
+            (identifiers & IDENTIFIER_BITS).tolist(),
+            extended.tolist(),
+        ),
+    )
 
 
 def _forget() -> None:

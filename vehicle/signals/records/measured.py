@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -12,20 +12,24 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
-from vehicle.signals.analysis.frf import frequency_responses
-from vehicle.signals.analysis.periodic_record import whole_record_responses
+from vehicle.signals.analysis.motion_response import motion_responses
+from vehicle.signals.analysis.response_name import ResponseName, parsed_name
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.channel_words import map_options, suggested_channels
-from vehicle.signals.records.choice import Choice, choose, pick
-from vehicle.signals.records.frf_file import FrfData
+from vehicle.signals.records.choice import Choice, choose, matching, pick
+from vehicle.signals.records.delays import channel_delays, responses_without_delays, without_delays
+from vehicle.signals.records.frf_file import FrfData, frf_data
 from vehicle.signals.records.integration import displacement, filtered
-from vehicle.signals.records.measured_frf import is_response, measured_frfs
+from vehicle.signals.records.measured_frf import input_of, is_response, measured_frfs
 from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.table import Record
 from vehicle.signals.records.units import find_unit
 
 EXAMPLES = re.compile(r"plate_\w+_displacement|knuckle_\w+_acc_z|seat_rail_acc_z")
 """Names of model channels in a message: those that are measured most often."""
+
+PLATE_CHANNEL = re.compile(r"plate_(?P<wheel>\w+)_displacement")
+"""Channel of a plate."""
 
 FRF_BAND = (1.0, 50.0)
 """Frequency band of estimated responses [Hz], equal to that of simulated responses."""
@@ -42,6 +46,7 @@ class Measured:
         notices: messages on channels and processing steps.
         estimator: estimator of the frequency responses; empty if the file contains the responses.
         start: first time of the file [s]; `record` may be an excerpt that begins later.
+        delays: channel to delay that was taken out [s].
     """
 
     file: Measurement
@@ -50,6 +55,7 @@ class Measured:
     notices: tuple[str, ...]
     estimator: str = ""
     start: float = 0.0
+    delays: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_measured(
@@ -71,7 +77,7 @@ def read_measured(
         path: measurement file of any format.
         model_channels: channel names of the model.
         choice: model channel name to channel of the file, and preprocessing; by default all channels whose names are
-            in `model_channels`.
+            in `model_channels`. A frequency response may name its plate, as "knuckle_fr_acc_z/plate_fr".
         inverted: names of channels whose sign is inverted.
         window: length of Hann windows for estimated responses [s]; by default the whole record is evaluated.
         measurement: contents of the file, if already read.
@@ -90,13 +96,18 @@ def read_measured(
     roles = {name: wanted for name, wanted in selection.channels.items() if name != "time"} or _same_names(
         file, model_channels, (False,) if histories_only else (True, False)
     )
-    unknown = next((name for name in (*roles, *inverted) if name not in model_channels), None)
+    output_of = {role: parsed_name(role).output for role in roles}
+    unknown = next((name for name in (*output_of.values(), *inverted) if name not in model_channels), None)
     if unknown is not None:
         close = get_close_matches(unknown, model_channels, n=3)
         raise ConfigurationError(
             f"--map {unknown}=...: unknown model channel; names are such as knuckle_fr_acc_z"
             + (f"; did you mean {' or '.join(close)}?" if close else "")
         )
+    # In the order of the model: that of the options and of the file changes nothing.
+    roles = {
+        role: roles[role] for role in sorted(roles, key=lambda role: (model_channels.index(output_of[role]), role))
+    }
     if not roles:
         listed = (
             ", ".join(f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(file.channels[:20], 1))
@@ -109,36 +120,43 @@ def read_measured(
             f"{path}: no channel has the name of a model channel; set --map CHANNEL=NAME, with a number, exact name or "
             f"pattern with *; the file has {listed}; {advice}"
         )
-    other = next((name for name in selection.units if name and name not in roles), None)
+    other = next((name for name in selection.units if name and name not in {*roles, *output_of.values()}), None)
     if other is not None:
         raise ConfigurationError(f"--unit {other}=...: must be one of the compared channels: {', '.join(roles)}")
     spectra = {
         name: wanted
         for name, wanted in roles.items()
         if not histories_only
-        and is_response(file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)])
+        and (
+            len(matching(file, wanted, is_response)) > 1
+            or is_response(file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)])
+        )
     }
+    delays = channel_delays(tuple(dict.fromkeys(output_of.values())), selection.delays)
     frf: FrfData | None = None
     record: Record | None = None
     notices: list[str] = []
     estimator, start = "", 0.0
     if spectra:
-        wrong = next((name for name in spectra if channel_units([name])[name] != "m/s2"), None)
+        wrong = next((output for name in spectra if channel_units([output := output_of[name]])[output] != "m/s2"), None)
         if wrong is not None:
             raise DataError(
                 f"{path}: --map {wrong}=...: is a frequency response; only acceleration channels of the model "
                 "have frequency responses"
             )
         frf, notices = measured_frfs(file, spectra, selection, inverted)
+        frf = responses_without_delays(frf, delays)
     histories = {name: wanted for name, wanted in roles.items() if name not in spectra}
+    named = next((name for name in histories if output_of[name] != name), None)
+    if named is not None:
+        raise ConfigurationError(
+            f"--map {named}={histories[named]}: names the plate of a frequency response, but the channel is a time "
+            f"history; set --map {output_of[named]}={histories[named]}"
+        )
     if histories:
         times = {role: wanted for role, wanted in selection.channels.items() if role == "time"}
-        begins = [
-            file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)].axis
-            for name, wanted in histories.items()
-        ]
-        start = min((float(axis[0]) for axis in begins if axis is not None and selection.rate is None), default=0.0)
-        record = _record(file, replace(selection, channels={**times, **histories}), inverted)
+        start = _start(file, histories) if selection.rate is None else 0.0
+        record = _record(file, replace(selection, channels={**times, **histories}), inverted, delays)
         notices += record.notices
         if frf is None and not histories_only:
             estimated = estimated_frf(record, window)
@@ -156,7 +174,19 @@ def read_measured(
         notices=tuple(dict.fromkeys([*file.notices, *notices])),
         start=start,
         estimator=estimator,
+        delays=delays,
     )
+
+
+def _start(file: Measurement, histories: Mapping[str, str]) -> float:
+    """Return the time of the file at which a run of its plates begins: their last start, else the first of all [s]."""
+    begins = {}
+    for name, wanted in histories.items():
+        axis = file.channels[pick(file, wanted, option=f"--map {name}=", allowed=_is_data)].axis
+        if axis is not None:
+            begins[name] = float(axis[0])
+    plates = [begin for name, begin in begins.items() if name.startswith("plate_")]
+    return max(plates) if plates else min(begins.values(), default=0.0)
 
 
 def _is_data(channel: object) -> bool:
@@ -164,7 +194,7 @@ def _is_data(channel: object) -> bool:
 
 
 def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequence[bool]) -> dict[str, str]:
-    """Map model channel names to channels named so, or "knuckle_fr_acc_z / plate_fr".
+    """Map model channel names, and names as "knuckle_fr_acc_z/plate_fr", to the channels of these names.
 
     Args:
         file: the file.
@@ -173,22 +203,25 @@ def _same_names(file: Measurement, model_channels: Sequence[str], order: Sequenc
     """
     numbers: dict[str, str] = {}
     for wants_response in order:
+        outputs = {parsed_name(role).output for role in numbers}
         for number, channel in enumerate(file.channels, 1):
-            name = channel.name.split(" / plate_")[0]
+            name = input_of(channel) if is_response(channel) else ResponseName(channel.name)
             if (
-                name in model_channels
-                and name not in numbers
+                name.output in model_channels
+                and name.output not in outputs
+                and str(name) not in numbers
                 and _is_data(channel)
                 and is_response(channel) is wants_response
             ):
-                numbers[name] = str(number)
+                numbers[str(name)] = str(number)
     return numbers
 
 
-def _record(file: Measurement, choice: Choice, inverted: Collection[str]) -> Record:
-    """Return the selected time histories in SI units at uniform times; invert signs."""
+def _record(file: Measurement, choice: Choice, inverted: Collection[str], delays: Mapping[str, float]) -> Record:
+    """Return the selected time histories in SI units at uniform times; take delays out, and invert signs."""
     chosen = choose(file, choice)
     chosen.require_uniform(file.path)
+    chosen = without_delays(chosen, {name: delay for name, delay in delays.items() if name in chosen.values})
     units = channel_units(chosen.values)
     plates = {name: values for name, values in chosen.values.items() if units[name] == "m"}
     others = {name: values for name, values in chosen.values.items() if name not in plates}
@@ -216,7 +249,7 @@ def _record(file: Measurement, choice: Choice, inverted: Collection[str]) -> Rec
 
 
 def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData, str] | None:
-    """Estimate the frequency responses of the accelerations of a record to its first moving plate.
+    """Estimate the frequency responses of the accelerations of a record to each independent motion of its plates.
 
     Args:
         record: time histories under model channel names.
@@ -226,26 +259,20 @@ def estimated_frf(record: Record, window: float | None = None) -> tuple[FrfData,
         Frequency responses and name of the estimator; None without a moving plate or without accelerations.
 
     Raises:
-        DataError: the record is too short, or two plates have the same motion.
+        DataError: the record is too short, or a plate repeats another with a delay.
     """
-    plates = [name for name, unit in record.units.items() if unit == "m" and name.startswith("plate_")]
-    plates = [name for name in plates if np.ptp(record.channels[name]) > 0.0]
+    plates = {name: match["wheel"] for name in record.channels if (match := PLATE_CHANNEL.fullmatch(name))}
+    moving = {wheel: record.channels[name] for name, wheel in plates.items() if np.ptp(record.channels[name]) > 0.0}
     names = [name for name, unit in record.units.items() if unit == "m/s2"]
-    if not plates or not names:
+    if not moving or not names:
         return None
-    inputs = np.array([record.channels[name] for name in plates])
-    outputs = np.array([record.channels[name] for name in names])
-    highest = min(FRF_BAND[1], record.usable)
-    options = {"band": (FRF_BAND[0], highest), "names": names, "input_names": plates}
-    if window is None:
-        estimate = whole_record_responses(record.step, inputs, outputs, **options)[0]  # type: ignore[arg-type]
-    else:
-        estimate = frequency_responses(record.step, inputs, outputs, window_s=window, **options)[0]  # type: ignore[arg-type]
-    data = FrfData(
-        frequency=estimate.frequency,
-        channels=tuple(names),
-        response=estimate.response,
-        coherence=estimate.coherence,
-        random_error=estimate.random_error,
+    motions = motion_responses(
+        record.step,
+        moving,
+        [record.channels[name] for name in names],
+        names=names,
+        band=(FRF_BAND[0], min(FRF_BAND[1], record.usable)),
+        window=window,
     )
-    return data, estimate.estimator + (f", Hann windows of {window:g} s" if window is not None else "")
+    estimator = motions[0].response.estimator
+    return frf_data(motions, names), estimator + (f", Hann windows of {window:g} s" if window is not None else "")

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
+from vehicle.signals.analysis.response_name import ResponseName, parsed_name
 from vehicle.signals.records.channel import Channel, Measurement
-from vehicle.signals.records.choice import Choice, pick
+from vehicle.signals.records.choice import Choice, matching, pick
 from vehicle.signals.records.frf_file import RANDOM_ERROR, FrfData
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_ratio
@@ -20,6 +21,9 @@ ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Order of the time derivative of the displacement."""
 
 RESPONSES = ("frequency response", "transmissibility")
+REFERENCE = re.compile(r"plate_(?P<wheel>\w+)[+-][xyz]")
+"""Reference point of a response that names the plate of a wheel, with its direction."""
+
 SAME_LINE = 0.05
 """Maximum distance of lines of two responses that are merged, over the frequency step [-]."""
 
@@ -37,9 +41,14 @@ def measured_frfs(
     Powers of j w convert responses of a motion to a motion (m/s2 per m, g per m, m/s per m, m/m, also per acceleration
     of the plate). Responses to a force are rejected: the inputs of the model are plate displacements.
 
+    The input of a response is that of its role, else the plate that the file names: in the name of the channel, as
+    "knuckle_fr_acc_z / plate_fr", or as its reference. A role without a plate selects the responses of a point to all
+    plates that the file names.
+
     Args:
         measurement: contents of the file.
-        channels: model channel name, such as knuckle_fr_acc_z, to number, name, pattern or point in the file.
+        channels: model channel name, such as knuckle_fr_acc_z or knuckle_fr_acc_z/plate_fr, to number, name, pattern or
+            point in the file.
         choice: selection with units that override those of the file.
         inverted: names of channels whose sign is inverted.
 
@@ -49,22 +58,26 @@ def measured_frfs(
     Raises:
         DataError: a channel that is not a response, without a unit, real, or per force.
     """
-    responses: dict[str, tuple[Channel, NDArray[np.complex128]]] = {}
+    responses: dict[ResponseName, tuple[Channel, NDArray[np.complex128]]] = {}
     notices = []
-    for name, wanted in channels.items():
-        index = pick(measurement, wanted, option=f"--map {name}=", allowed=is_response)
-        channel = measurement.channels[index]
-        unit = choice.units.get(name, choice.units.get("", ""))
-        if unit:
-            channel = replace(channel, unit=unit)
-        where = f"{measurement.path}: channel {index + 1} {channel.name!r}"
-        values, conversion = _acceleration_per_displacement(channel, where, name)
-        sign, sign_notes = _sign(channel, name, name in inverted)
-        responses[name] = (channel, sign * values)
-        notices.append(
-            f"{name}: channel {index + 1} {channel.name!r}"
-            + "".join(f"; {text}" for text in (conversion, *sign_notes) if text)
-        )
+    for role, wanted in channels.items():
+        for name, index in _named_channels(measurement, parsed_name(role), wanted):
+            channel, output = measurement.channels[index], name.output
+            if name in responses:
+                raise DataError(
+                    f"{measurement.path}: {name}: is mapped twice; name the plate: --map {output}/PLATE=NAME"
+                )
+            unit = choice.units.get(role, choice.units.get(output, choice.units.get("", "")))
+            if unit:
+                channel = replace(channel, unit=unit)
+            where = f"{measurement.path}: channel {index + 1} {channel.name!r}"
+            values, conversion = _acceleration_per_displacement(channel, where, output)
+            sign, sign_notes = _sign(channel, output, output in inverted)
+            responses[name] = (channel, sign * values)
+            notices.append(
+                f"{name}: channel {index + 1} {channel.name!r}"
+                + "".join(f"; {text}" for text in (conversion, *sign_notes) if text)
+            )
     frequency = _union([channel.axis for channel, _ in responses.values() if channel.axis is not None])
     shape = (len(responses), frequency.size)
     response = np.full(shape, complex(np.nan, np.nan))
@@ -86,12 +99,39 @@ def measured_frfs(
     positive = frequency > 0.0
     data = FrfData(
         frequency=frequency[positive],
-        channels=tuple(responses),
+        names=tuple(responses),
         response=response[:, positive],
         coherence=coherence[:, positive],
         random_error=random_error[:, positive],
     )
     return data, notices
+
+
+def input_of(channel: Channel) -> ResponseName:
+    """Return the name of a measured response as far as the file has it: output, and input if it is a plate."""
+    name = parsed_name(channel.name)
+    plate = REFERENCE.fullmatch(channel.reference.lower())
+    return name if name.motion or plate is None else parsed_name(f"{name.output}/plate_{plate['wheel']}")
+
+
+def _named_channels(measurement: Measurement, role: ResponseName, wanted: str) -> list[tuple[ResponseName, int]]:
+    """Return the channels of a role with their names: one, or one for each plate that the file names."""
+    motions = {
+        index: input_of(measurement.channels[index]).motion for index in matching(measurement, wanted, is_response)
+    }
+    if role.motion and len(motions) > 1:
+        motions = {index: motion for index, motion in motions.items() if motion == role.motion} or motions
+    if role.motion or len(motions) < 2 or not all(motions.values()) or len(set(motions.values())) < len(motions):
+        allowed = {id(measurement.channels[index]) for index in motions}
+        index = pick(
+            measurement,
+            wanted,
+            option=f"--map {role}=",
+            allowed=lambda channel: is_response(channel) and (not allowed or id(channel) in allowed),
+        )
+        motions = {index: role.motion or input_of(measurement.channels[index]).motion}
+    named = [(ResponseName(role.output, motion), index) for index, motion in motions.items()]
+    return sorted(named, key=lambda pair: pair[0].input)
 
 
 def _acceleration_per_displacement(channel: Channel, where: str, name: str) -> tuple[NDArray[np.complex128], str]:

@@ -29,7 +29,7 @@ def read(path: Path) -> Measurement:
     parquet = import_module("pyarrow.parquet")
     notices: list[str] = []
     try:
-        with parquet.ParquetFile(path) as file:
+        with parquet.ParquetFile(path, page_checksum_verification=True) as file:
             rows, fields = file.metadata.num_rows, file.schema_arrow
             wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
             needed = 2 * 8 * rows * len(wanted)
@@ -78,6 +78,7 @@ def _is_number(data_type: Any) -> bool:
         or types.is_floating(data_type)
         or types.is_decimal(data_type)
         or types.is_duration(data_type)
+        or types.is_time(data_type)  # some writers store durations as times of day
     )
 
 
@@ -89,7 +90,7 @@ def _column(column: Any) -> tuple[Any, str]:
     """Return the numbers of a column, NaN if missing, and the unit of a date or duration; keep integer counts."""
     unit = getattr(column.type, "unit", "") if hasattr(column.type, "unit") else ""
     if unit:
-        column = column.cast("int64")
+        column = column.cast("int32" if column.type.bit_width == 32 else "int64").cast("int64")
     elif not (column.type.bit_width or 0) or str(column.type).startswith("decimal"):
         column = column.cast("float64")
     values = np.asarray(column.to_numpy())

@@ -10,7 +10,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.signals.records.channel import Measurement
-from vehicle.signals.records.clock import check_increasing, check_uniform, without_rounding
+from vehicle.signals.records.clock import check_increasing, check_stamps, check_uniform, without_rounding
 from vehicle.signals.records.formats import BY_NAME, recognised_format
 from vehicle.signals.records.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
 
@@ -107,6 +107,7 @@ def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'"
     time, _ = channels.pop("time"), units.pop("time")
     if time.size < MINIMUM_SAMPLES:
         raise DataError(f"{path}: {time.size} samples, must be at least {MINIMUM_SAMPLES}")
+    check_stamps(path, time)
     check_increasing(table, time)
     uniform, notices = without_rounding(time)
     check_uniform(table, uniform)

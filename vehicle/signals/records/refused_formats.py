@@ -10,6 +10,7 @@ SIGNATURES = {
     b"<usi:tdm": ("TDM", "TDMS or CSV"),
     b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
     b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
+    b"CDF": ("netCDF of the classic form", "netCDF-4, as `nccopy -k nc4 IN.nc OUT.nc` does"),
     b"LOGG": (
         "a log of a CAN bus (Vector BLF)",
         "MDF4 or ASC, as `python -m can.logconvert IN.blf OUT.asc` of python-can does, and give --dbc FILE with it",

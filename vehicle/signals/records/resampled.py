@@ -24,9 +24,14 @@ LARGEST_GRID = 20_000_000
 
 
 def resampled(
-    time: Vector, columns: Mapping[str, Vector], rate: float, sample_name: Callable[[int], str], uniform: bool
+    time: Vector,
+    columns: Mapping[str, Vector],
+    rate: float,
+    sample_name: Callable[[int], str],
+    uniform: bool,
+    span: tuple[float, float] | None = None,
 ) -> tuple[dict[str, Vector], str]:
-    """Resample columns to uniform times `time[0] + k / rate`: first spline interpolation, then anti-alias filter.
+    """Resample columns to uniform times `t_0 + k / rate`: first spline interpolation, then anti-alias filter.
 
     The samples x_j have the true times t_j = j T + e_j, with jitter e_j. A spline of degree `DEGREE` through
     (t_j, x_j) is evaluated at the uniform times t_0 + k / (m rate), m the smallest integer with m rate >= 1 / T. These
@@ -40,6 +45,7 @@ def resampled(
         rate: new sampling rate [Hz].
         sample_name: function from the index of a sample to its name, for messages.
         uniform: True if the times are uniform within `UNIFORM_TOLERANCE`, for the notice.
+        span: first new time t_0 and last time within `time` [s]; all of it by default.
 
     Returns:
         Columns at the new times, shape (m,), and a notice with the deviation of the original times.
@@ -47,6 +53,10 @@ def resampled(
     Raises:
         DataError: a gap longer than `longest_gap`, or more samples than `LARGEST_GRID`.
     """
+    if time.size <= DEGREE:
+        raise DataError(
+            f"{sample_name(0)}: --resample of {time.size} samples, must be at least {DEGREE + 1}; use a longer record"
+        )
     steps = np.diff(time)
     median = float(np.median(steps))
     limit = longest_gap(median)
@@ -57,13 +67,14 @@ def resampled(
             f"{limit:.6g} s; use the part before it (--to {time[gap]:.9g}) or after it (--from {time[gap + 1]:.9g})"
         )
     factor = max(1, int(np.ceil((1.0 - UNIFORM_TOLERANCE) / (median * rate))))
-    samples = int(np.floor((time[-1] - time[0]) * rate * factor * (1.0 + 1e-12))) + 1
+    first, last = (time[0], time[-1]) if span is None else span
+    samples = int(np.floor((last - first) * rate * factor * (1.0 + 1e-12))) + 1
     if samples > LARGEST_GRID:
         raise DataError(
             f"{sample_name(0)}: --resample {rate:g} Hz gives {samples} samples, must be at most {LARGEST_GRID}; set a "
             "lower rate"
         )
-    fine = np.minimum(time[0] + np.arange(samples) / (rate * factor), time[-1])
+    fine = np.minimum(first + np.arange(samples) / (rate * factor), last)
     result = {}
     for name, values in columns.items():
         even = scipy.interpolate.make_interp_spline(time - time[0], values, k=DEGREE)(fine - time[0])
@@ -97,8 +108,9 @@ def _taps(ratio: float) -> Vector:
 
 def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: bool) -> str:
     """Describe the resampling of a record: original times, gaps, filter, accuracy."""
-    clock = "uniform times"
+    clock, longest = "uniform times", median
     if not uniform:
+        longest = float(steps.max())  # the spline follows frequencies as far as its widest steps do
         missing = int(np.count_nonzero(steps > 1.5 * median))
         jitter = np.abs(steps[steps <= 1.5 * median] / median - 1.0)
         clock = f"jittered times (steps up to {100.0 * float(jitter.max()):.2g} % off the median)"
@@ -108,8 +120,8 @@ def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: boo
     filtering = f" and a linear-phase anti-alias filter from {KEPT * rate:g} Hz on" if factor > 1 else ""
     return (
         f"resampled from {clock} at {1.0 / median:.6g} Hz to {rate:g} Hz by a spline of degree {DEGREE} through the "
-        f"samples at their true times{filtering}; amplitudes hold within 0.1 % up to {0.3 / median:.3g} Hz, 4 % up "
-        f"to {KEPT / median:.3g} Hz"
+        f"samples at their true times{filtering}; amplitudes hold within 0.1 % up to {0.3 / longest:.3g} Hz, 4 % up "
+        f"to {KEPT / longest:.3g} Hz"
     )
 
 

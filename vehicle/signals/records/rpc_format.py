@@ -161,6 +161,12 @@ def _check_values(path: Path, head: dict[str, str], number: int, values: np.ndar
         except (KeyError, ValueError):
             return
     largest = float(np.abs(values).max())
+    try:  # nCode writes limits of 1 for any channel, and its largest and smallest value elsewhere
+        extremes = [abs(float(word)) for word in head[f"NCODE_STAT1_CHAN_{number}"].split(",")[:2]]
+    except (KeyError, ValueError):
+        extremes = [0.0]
+    if abs(max(extremes) - largest) < 0.01 * largest:
+        return
     if max(limits) > 0.0 and largest > 2.0 * max(limits):
         raise DataError(
             f"{path}: channel {number} reaches {largest:g}, its limits in the header are {max(limits):g}; SCALE has "

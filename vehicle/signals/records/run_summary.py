@@ -118,9 +118,13 @@ class SolverSummary(TypedDict):
 
 
 class MotionSummary(TypedDict):
-    """Plates that move together with their factors, and the column names of the FRFs to this motion in `frf.csv`."""
+    """Input of FRFs: plates that move together with their factors, its name, its columns in `frf.csv`, its resonances.
+
+    `peaks` of the summary are those of the first input.
+    """
 
     plates: dict[str, float]
+    input: NotRequired[str]
     columns: str
     peaks: NotRequired[Peaks]
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.logger_format import read_lines
 from vehicle.signals.records.reader import digest, extra
 from vehicle.signals.records.text import Text
+
+NO_VALUES = "formulas without saved values: open the file in a spreadsheet program and save it"
+"""Remark on the cells of formulas that another program wrote without computing them."""
 
 
 def read(path: Path) -> Measurement:
@@ -24,18 +30,39 @@ def read(path: Path) -> Measurement:
         body = "\n".join(_row(row) for row in cells)
         notice = () if len(sheets) == 1 else (f"sheet {title!r} of {len(sheets)}",)
         try:
-            return read_lines(path, Text(body=body, notices=notice, sha256=digest(path)), "xlsx")
+            measurement = read_lines(path, Text(body=body, notices=notice, sha256=digest(path)), "xlsx")
         except DataError as error:
             first_error = first_error or error
+            continue
+        empty = [not np.isfinite(channel.values).any() for channel in measurement.channels]
+        if not any(empty) or not _formulas(path, title):
+            return measurement
+        channels = tuple(
+            replace(channel, remark=NO_VALUES) if none else channel
+            for channel, none in zip(measurement.channels, empty, strict=True)
+        )
+        return replace(measurement, channels=channels)
+    if first_error is not None and any(_formulas(path, title) for title in sheets):
+        raise DataError(f"{first_error}; the sheet has {NO_VALUES}") from None
     raise first_error or DataError(f"{path}: no sheet; save it again")
 
 
-def _sheets(path: Path) -> dict[str, list[tuple[object, ...]]]:
-    """Return the rows of each sheet by sheet title."""
+def _formulas(path: Path, title: str) -> bool:
+    """Return True if a sheet has a formula whose value was not saved."""
+    values, formulas = _sheets(path)[title], _sheets(path, formulas=True)[title]
+    return any(
+        value is None and isinstance(formula, str) and formula.startswith("=")
+        for row, row_formulas in zip(values, formulas, strict=False)
+        for value, formula in zip(row, row_formulas, strict=False)
+    )
+
+
+def _sheets(path: Path, *, formulas: bool = False) -> dict[str, list[tuple[object, ...]]]:
+    """Return the rows of each sheet by sheet title: saved values, or formulas."""
     openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
     try:
         with path.open("rb") as file:  # openpyxl rejects other file extensions
-            book = openpyxl.load_workbook(file, read_only=True, data_only=True)
+            book = openpyxl.load_workbook(file, read_only=True, data_only=not formulas)
             return {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in book.worksheets}
     except Exception as error:  # openpyxl raises errors of any type for damaged archives
         raise DataError(f"{path}: cannot be read as XLSX ({error}); save it again, or as CSV") from None
@@ -46,9 +73,13 @@ def read_sheet_texts(path: Path) -> list[list[str]]:
 
     Raises:
         MissingPartError: openpyxl is not installed.
-        DataError: the file is damaged or has no sheet.
+        DataError: the file is damaged or has no sheet, or a formula without a saved value.
     """
-    rows = next(iter(_sheets(path).values()), [])
+    sheets = _sheets(path)
+    title = next(iter(sheets), None)
+    rows = [] if title is None else sheets[title]
+    if title is not None and _formulas(path, title):
+        raise DataError(f"{path}: {NO_VALUES}")
     texts = [["" if cell is None else str(cell).strip() for cell in row] for row in rows]
     return [row for row in texts if any(row)]
 

@@ -56,18 +56,17 @@ class Text(NamedTuple):
             begin, number = end + 1 if end >= 0 else len(self.body) + 1, number + len(lines)
 
 
-def read_text(path: Path, *, western: bool = False) -> Text:
-    """Read a UTF-8 file; reject files that are too large, binary, or with very long lines, before parsing.
+def read_text(path: Path) -> Text:
+    """Read a UTF-8 file, or else Windows text (cp1252) with a notice; reject files before parsing that are no text.
 
     Args:
         path: text file.
-        western: read text other than UTF-8 as Windows text (cp1252), with a notice.
 
     Memory needed = TEXT_COPIES * size + BYTES_PER_ROW * size / (mean length of the first rows).
 
     Raises:
         ConfigurationError: the file does not exist.
-        DataError: empty, too large, NUL byte, not UTF-8, a line above 1 MB, not readable.
+        DataError: empty, too large, NUL byte, a line above 1 MB, not readable.
     """
     if not path.is_file():
         raise ConfigurationError(f"{path}: no such file; give the path of a CSV file")
@@ -92,15 +91,11 @@ def read_text(path: Path, *, western: bool = False) -> Text:
         notices.append("line ends of Windows (CR LF) or old Mac (CR) read as line ends")
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
-        text = Text(body=data.decode("utf-8"), notices=tuple(notices), sha256=digest)
-    except UnicodeDecodeError as error:
-        if western:
-            notices.append("the text is not UTF-8: read as Windows text (cp1252)")
-            return Text(body=data.decode("cp1252", "replace"), notices=tuple(notices), sha256=digest)
-        raise DataError(
-            f"{_place(path, data, error.start)}: byte 0x{data[error.start]:02x} is not UTF-8; save the file as UTF-8 "
-            "text"
-        ) from error
+        body = data.decode("utf-8")
+    except UnicodeDecodeError:
+        notices.append("the text is not UTF-8: read as Windows text (cp1252)")
+        body = data.decode("cp1252", "replace")
+    text = Text(body=body, notices=tuple(notices), sha256=digest)
     for number, lines in text.pieces():
         longest = max(lines, key=len)
         if len(longest) > LONGEST_LINE:

@@ -66,7 +66,7 @@ def find_table(path: Path, lines: Sequence[str]) -> TextTable:
                     return TextTable(start=start, delimiter=delimiter, kinds=kinds)
     for start in range(min(TEXT_LINES, len(lines))):
         following = [line for line in lines[start : start + AGREEING] if line.strip()]
-        if len(following) > 2 and all(_kinds(line, ";") == ["number"] for line in following):
+        if len(following) > 2 and all(kinds_of(line, ";") == ["number"] for line in following):
             return TextTable(start=start, delimiter=";", kinds=("number",))
     raise DataError(
         f"{path}: no table of numbers in the first {TEXT_LINES} lines; needed are rows of numbers in columns "
@@ -84,7 +84,13 @@ def _kind(cell: str, delimiter: str) -> Kind:
     return "text" if any(sign.isalpha() for sign in cell) else "other"
 
 
-def _kinds(row: str, delimiter: str) -> list[Kind]:
+def kinds_of(row: str, delimiter: str) -> list[Kind]:
+    """Return the types of the cells of a row.
+
+    Args:
+        row: line of text.
+        delimiter: delimiter of the cells; "" for blanks.
+    """
     return [_kind(cell, delimiter) for cell in cells_of(row, delimiter)]
 
 
@@ -92,17 +98,18 @@ def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[s
     """Return the column types of the table that begins at a line; None if no table begins there."""
     if not lines[start].strip() or (delimiter and delimiter not in lines[start]):
         return None
-    first = _kinds(lines[start], delimiter)
+    rows = [line for line in lines[start + 1 : start + 1 + AGREEING] if line.strip()]
+    parsed = _common([kinds_of(line, delimiter) for line in (lines[start], *rows)]) if delimiter else None
+    first = parsed[0] if parsed else kinds_of(lines[start], delimiter)
     if len(first) < 2 or "number" not in first or not all(kind in (*allowed, "missing") for kind in first):
         return None
     if len(allowed) > 1 and allowed[-1] not in first:
         return None
-    rows = [line for line in lines[start + 1 : start + 1 + AGREEING] if line.strip()]
     if len(rows) < 2:
         return None
     merged = first
-    for row in rows:
-        combined = _joined(merged, _kinds(row, delimiter))
+    for n, row in enumerate(rows, 1):
+        combined = _joined(merged, parsed[n] if parsed else kinds_of(row, delimiter))
         if combined is None:
             return None
         merged = combined
@@ -111,6 +118,13 @@ def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[s
     if not all(kind in (*allowed, "missing") for kind in merged):
         return None
     return tuple(merged)
+
+
+def _common(rows: list[list[Kind]]) -> list[list[Kind]]:
+    """Remove the cells of remarks, texts beyond the columns of the shortest row; return other rows unchanged."""
+    width = min(map(len, rows))
+    remarks = [kind for row in rows for kind in row[width:]]
+    return [row[:width] for row in rows] if remarks and set(remarks) <= {"text", "missing"} else rows
 
 
 def _joined(first: Sequence[Kind], second: Sequence[Kind]) -> list[Kind] | None:
@@ -139,7 +153,8 @@ def _spread(lines: Sequence[str]) -> list[str]:
 def _goes_on(lines: Sequence[str], delimiter: str, kinds: Sequence[Kind]) -> bool:
     """Return True if at least `SAME_SHAPE` of the lines up to the end of the file have these column types."""
     rows = _spread(lines)
-    good = sum(1 for row in rows if _joined(kinds, _kinds(row, delimiter)) is not None)
+    cells = [_common([list(kinds), kinds_of(row, delimiter)])[-1] for row in rows]
+    good = sum(1 for row_kinds in cells if _joined(kinds, row_kinds) is not None)
     return good >= SAME_SHAPE * len(rows)
 
 
@@ -162,6 +177,8 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
     for column, settled_kind in enumerate(table.kinds):
         cells = [row[column] for row in sampled if column < len(row)]
         kinds = {_kind(cell, table.delimiter) for cell in cells} - {"missing"}
+        if settled_kind == "missing" and not kinds:  # remarks may stand in a few rows
+            kinds = _kinds_of_column(rows, column, table.delimiter)
         if "other" in kinds:
             kinds = kinds - {"other"} | {"text"}
         if settled_kind == "missing":
@@ -175,6 +192,12 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
     return tuple(settled)
 
 
+def _kinds_of_column(rows: Sequence[str], column: int, delimiter: str) -> set[Kind]:
+    """Return the types of the cells of a column in all rows, without missing ones."""
+    cells = (cells_of(row, delimiter) for row in rows)
+    return {_kind(row[column], delimiter) for row in cells if column < len(row) and row[column]} - {"missing"}
+
+
 def _check_alternation(
     path: Path, rows: Sequence[str], kinds: Sequence[Kind], delimiter: str, names: Sequence[str]
 ) -> None:
@@ -182,6 +205,7 @@ def _check_alternation(
     head = [cells_of(row, delimiter) for row in rows[:SAMPLED]]
     for column, column_kind in enumerate(kinds):
         texts = [row[column] for row in head if column < len(row)]
+        texts = [text for text in texts if text]  # a source has a name; a remark may be missing
         different = sorted(set(texts))
         changes = sum(1 for text, next_text in pairwise(texts) if text != next_text)
         alternates = changes > max(1 + 0.1 * len(texts), 1.5 * len(different))  # excludes texts that change rarely

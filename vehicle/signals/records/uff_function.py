@@ -10,7 +10,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import Channel, Values, check_length, clock_step, uniform_axis
 from vehicle.signals.records.table import Vector
-from vehicle.signals.records.uff_blocks import D_EXPONENT, END, Block, cells, check_values, text_of
+from vehicle.signals.records.uff_blocks import D_EXPONENT, END, Block, cells, check_values, raw_text, text_of
 from vehicle.signals.records.uff_geometry import Units
 from vehicle.signals.records.units import QUANTITIES, find_ratio, find_unit
 
@@ -42,6 +42,9 @@ KINDS = {
 }
 """Specific data type -> quantity; 0 and 1 are unknown."""
 
+_WORDS = re.compile(r"\s*(\S.*?|)\s+(\d+)\s+(-?\d+)\s+(\S.*?|)\s+(-?\d+)\s+(-?\d+)\s*")
+"""Name, node and direction of the response, then of the reference, separated by blanks."""
+
 
 def read_function(path: Path, data: bytes, block: Block, where: str, units: Units | None) -> tuple[Channel, str, int]:
     """Read a dataset 58: return the channel, its date, and the byte position after the dataset."""
@@ -49,11 +52,11 @@ def read_function(path: Path, data: bytes, block: Block, where: str, units: Unit
     if len(lines) < 11:
         raise DataError(f"{path}: {where} ends within its header; the file is truncated; export it again")
     try:
-        nodes = cells(lines[5], (5, 10, 5, 10, 11, 10, 4, 11, 10, 4))
+        nodes = _points(lines[5])
         layout = cells(lines[6], (10, 10, 10, 13, 13, 13))
         data_type, points, spacing = (int(layout[n] or 0) for n in range(3))
         first, step = (float((layout[n] or "0").replace("D", "E")) for n in (3, 4))
-        axes = [cells(lines[n], (10, 5, 5, 5, 21, 21)) for n in (7, 8, 9)]
+        axes = [_axis_cells(lines[n]) for n in (7, 8, 9)]
         codes = [int(axis[0] or 0) for axis in axes]
         function = int(nodes[0] or 0)
         directions = [int(nodes[n] or 0) for n in (6, 9)]
@@ -112,6 +115,38 @@ def read_function(path: Path, data: bytes, block: Block, where: str, units: Unit
         remark="; ".join(text for text in remarks if text),
     )
     return channel, text_of(lines[2]), position
+
+
+def _points(line: bytes) -> list[str]:
+    """Return the cells of function, response point and reference: fixed columns, or words if a name exceeds its ten.
+
+    The format gives a name ten letters and a node ten digits; a longer name moves all following columns.
+
+    Raises:
+        ValueError: a longer name, and no nodes and directions behind it.
+    """
+    fixed, text = cells(line, (5, 10, 5, 10, 11, 10, 4, 11, 10, 4)), raw_text(line)
+    whole = all(re.fullmatch(r"(-?\d+)?", fixed[n]) for n in (5, 6, 8, 9))
+    if whole and not any(_cut(text, at) and len(fixed[n]) < 10 for at, n in ((41, 5), (66, 8))):
+        return fixed
+    words = _WORDS.fullmatch(text[30:])
+    if words is None:
+        raise ValueError(f"no nodes and directions in {text[30:].strip()[:40]!r}: names have up to ten letters")
+    return [*fixed[:4], *("" if word.upper() == "NONE" else word for word in words.groups())]
+
+
+def _axis_cells(line: bytes) -> list[str]:
+    """Return the cells of an axis: fixed columns, or the last word as unit if the title exceeds its twenty letters."""
+    fixed, text = cells(line, (10, 5, 5, 5, 21, 21)), raw_text(line)
+    if not _cut(text, 46):
+        return fixed
+    title, _, unit = text[25:].strip().rpartition(" ")
+    return [*fixed[:4], title.strip(), "" if unit.upper() == "NONE" else unit]
+
+
+def _cut(text: str, at: int) -> bool:
+    """Return True if the boundary of two columns lies within a word."""
+    return len(text) > at and not text[at - 1].isspace() and not text[at].isspace()
 
 
 def _lines(data: bytes, start: int, count: int) -> tuple[list[bytes], int]:

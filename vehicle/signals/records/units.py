@@ -19,7 +19,7 @@ class Unit(NamedTuple):
 
 
 _TABLE = {
-    ("time", "s"): {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0},
+    ("time", "s"): {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0},
     ("frequency", "Hz"): {"Hz": 1.0, "kHz": 1e3},
     ("displacement", "m"): {
         "m": 1.0,

@@ -42,7 +42,7 @@ def read(path: Path) -> Measurement:
         ConfigurationError: the file does not exist.
         DataError: a missing section, a row of another length, an invalid time of day.
     """
-    text = read_text(path, western=True)
+    text = read_text(path)
     sections: dict[str, list[tuple[int, str]]] = {"": []}
     name = ""
     for number, line in enumerate(text.lines, 1):

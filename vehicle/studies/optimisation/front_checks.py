@@ -26,9 +26,10 @@ NEW_CARS = 64
 def named_cars(trials: Trials, outcome: Outcome) -> dict[str, Car]:
     """Return the named cars, without the overrides of single inputs."""
     nominal, cars = replace(trials, spread=NO_TOLERANCES), dict[str, Car]()
+    base = Car.load(trials.vehicle, trials.fixed)
     for name, row in outcome.named.items():
         case = nominal.cases(outcome.tried.points[row][None])[0]
-        cars[name] = Car.load(trials.vehicle, [*trials.fixed, *case.overrides[case.shared :]])
+        cars[name] = Car.load(trials.vehicle, base.with_(case.overrides[case.shared :]).overrides)
     return cars
 
 

@@ -173,10 +173,8 @@ class FoundCars:
             lines.append(
                 f"the front grew by {100 * (1 - last):.1f} % in the last quarter; continue with --resume, more --cars"
             )
-        for name, row in outcome.named.items():
-            changes = problem.changes(tried.points[row].tolist()).items()
-            overrides = [*self.trials.fixed, *(f"{path}={value!r}" for path, value in changes)]
-            lines.append(f"{name}: " + " ".join(f"--set {shlex.quote(text)}" for text in overrides))
+        for name in outcome.named:
+            lines.append(f"{name}: " + " ".join(f"--set {shlex.quote(text)}" for text in self.cars[name].overrides))
         lines.append(f"tyres {self.tyres}; engine {self.trials.engine}; evaluated from {self.skip:g} s on")
         if beside is not None:
             difference = agreement(outcome, beside)

@@ -10,7 +10,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import meant, value_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.toml_file import as_table
-from vehicle.model.parameters.vehicle import Vehicle, load_vehicle
+from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.runs.car import Car
 from vehicle.studies.optimisation.problem import Criterion, Problem, Tolerance
 
 
@@ -84,9 +85,10 @@ def require_bounds(vehicle: Path | None, fixed: Sequence[str], problem: Problem)
     Raises:
         ConfigurationError: a bound is invalid; the message contains the parameter and the reason.
     """
+    base = Car.load(vehicle, fixed)
     for bounds, paths in zip(problem.ranges, problem.paths, strict=True):
         for value in (bounds.low, bounds.high):
             try:
-                load_vehicle(vehicle, [*fixed, *(f"{path}={value!r}" for path in paths)])
+                base.with_([f"{path}={value!r}" for path in paths])
             except ConfigurationError as error:
                 raise ConfigurationError(f"--vary {bounds.path}={bounds.low:g}:{bounds.high:g}: {error}") from None

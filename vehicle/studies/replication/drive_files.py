@@ -128,7 +128,13 @@ def write_drive(folder: Path, drive: FoundDrive, *, figures: bool = True) -> dic
             {"number": step.number, "gain": step.gain, "error": step.error, "kept": step.kept}
             for step in replication.steps
         ],
-        "notices": [*target.notices, *plant.ramp, *run.recording.statistics.warnings],
+        "delays": [each.summary() for each in drive.delays],
+        "notices": [
+            *target.notices,
+            *plant.ramp,
+            *run.recording.statistics.warnings,
+            *(text for each in drive.delays for text in each.advice(float(target.time[1]))),
+        ],
         "files": files | write_own_files(folder, plant.car),
     }
     write_json(folder / FILES["summary"], summary)

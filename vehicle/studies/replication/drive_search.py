@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
+
+import numpy as np
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.names import CORNERS, in_order
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.choice import Choice
+from vehicle.signals.records.delays import split_delay
 from vehicle.signals.records.reader import read_record
+from vehicle.studies.replication.channel_delays import ChannelDelay, against_median, delays_between
 from vehicle.studies.replication.driven_car import DrivenCar
 from vehicle.studies.replication.iteration import Replication, Step, replicate
 from vehicle.studies.replication.target import Target, read_target
@@ -24,7 +30,7 @@ MOST_ITERATIONS = 1000
 """Maximum number of iterations."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class FoundDrive:
     """Plate signals found from a measured response.
 
@@ -54,6 +60,22 @@ class FoundDrive:
         """Return RMS of target minus response over RMS of the target, in the band [-]."""
         return self.replication.error
 
+    @cached_property
+    def delays(self) -> tuple[ChannelDelay, ...]:
+        """Return the delay of each channel against the others; empty unless there are more channels than plates."""
+        target, lines = self.plant.target, self.plant.target.lines
+        frf = self.plant.frf(lines.frequency)
+        found, errors = delays_between(target.values, self.replication.response, frf, lines)
+        out = np.array([target.delays.get(channel, 0.0) for channel in target.channels])
+        whole = against_median(found + out)
+        return tuple(
+            ChannelDelay(channel=channel, delay=delay, error=error, taken_out=part)
+            for channel, delay, error, part in zip(
+                target.channels, whole.tolist(), errors.tolist(), (whole - found).tolist(), strict=True
+            )
+            if math.isfinite(delay)
+        )
+
     @property
     def run(self) -> Run:
         """Return the last run of the iteration."""
@@ -73,6 +95,7 @@ def replicate_drive(
     iterations: int = 15,
     gain: float = 0.8,
     target_error: float = 1e-3,
+    delay: Mapping[str, float] | None = None,
     engine: str = "auto",
     progress: Callable[[Step], None] = lambda step: None,
 ) -> FoundDrive:
@@ -90,6 +113,7 @@ def replicate_drive(
         iterations: maximum number of runs.
         gain: share of the correction that a step makes [-], above 0 and up to 1.
         target_error: relative RMS error at which the iteration ends [-].
+        delay: delays that are taken out of the file, as {"seat_*": 0.0123}: channel, pattern or group to seconds.
         engine: as in `Car.run`.
         progress: called with each step of the iteration.
 
@@ -103,6 +127,13 @@ def replicate_drive(
     """
     require_iteration(band, iterations, gain, target_error)
     path, options = Path(target), choice or Choice()
+    begin, delays = split_delay(delay or {})
+    if begin:
+        raise ConfigurationError(
+            f"--delay {begin:g}: the start of the record only moves the drive; name the channels that lag, as "
+            "--delay seat_rail_acc_z=12.3ms"
+        )
+    options = replace(options, delays={**options.delays, **delays})
     names = dict(channels) if isinstance(channels, Mapping) else named_channels(path, channels, options)
     car.vehicle.require_channels(names, car.vehicle.acceleration_channels)
     wanted = read_target(path, names, options, band, car.vehicle.solver.record_rate)

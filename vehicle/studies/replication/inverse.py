@@ -51,9 +51,13 @@ class Lines:
         ]
         return limited
 
+    def spectrum(self, signals: Vector) -> Complex:
+        """Return the spectra (k, m) of signals (k, n) at the lines with a weight."""
+        return np.asarray(scipy.fft.rfft(signals, self.size)[:, self.used])
+
     def correction(self, inverse: Complex, error: Vector) -> Vector:
         """Return the correction of the drives (p, n) for an error of the responses (k, n), by an inverse (m, p, k)."""
-        spectrum = scipy.fft.rfft(error, self.size)[:, self.used]
+        spectrum = self.spectrum(error)
         drive_spectrum = np.zeros((inverse.shape[1], self.size // 2 + 1), dtype=complex)
         drive_spectrum[:, self.used] = self.weight * np.einsum("mpk,km->pm", inverse, spectrum)
         drive: Vector = scipy.fft.irfft(drive_spectrum, self.size)[:, : self.samples]

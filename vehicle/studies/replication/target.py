@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, uniform_time
 from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice, choose
+from vehicle.signals.records.delays import channel_delays, without_delays
 from vehicle.signals.records.integration import filtered
 from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.table import USABLE
@@ -47,6 +48,7 @@ class Target:
         source: measurement file.
         sha256: digest of the file.
         notices: messages on the processing of the file.
+        delays: channel to delay that was taken out [s].
     """
 
     channels: tuple[str, ...]
@@ -57,6 +59,7 @@ class Target:
     source: Path
     sha256: str
     notices: tuple[str, ...]
+    delays: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tuple[float, float], rate: float) -> Target:
@@ -77,6 +80,8 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
     times = {role: name for role, name in choice.channels.items() if role == "time"}
     chosen = choose(measurement, replace(choice, channels={**times, **names}))
     chosen.require_uniform(path)
+    delays = channel_delays(tuple(names), choice.delays)
+    chosen = without_delays(chosen, delays)
     for role, quantity in chosen.quantities.items():
         if quantity != "acceleration":
             raise DataError(
@@ -115,6 +120,7 @@ def read_target(path: Path, names: Mapping[str, str], choice: Choice, band: tupl
         source=path,
         sha256=measurement.sha256,
         notices=tuple(notices),
+        delays=delays,
     )
 
 

@@ -90,7 +90,10 @@ def reason_for_mujoco(case: Case, measure: BatchMeasure) -> str:
 
 def run_of(case: Case, channels: Sequence[str] | None = None) -> Run:
     """Run a single case; channels as in `Car.run`."""
-    car = _loaded(case.vehicle, _changed(case.vehicle), case.overrides)
+    changed = _changed(case.vehicle)
+    # The variation of a case acts on the car of the study; one variation with the values of both makes the same car.
+    overrides = _varied(case.vehicle, changed, case.overrides[: case.shared], case.overrides[case.shared :]).overrides
+    car = _loaded(case.vehicle, changed, overrides)
     return car.run(signal_of(case.source), engine=case.engine, channels=channels)
 
 

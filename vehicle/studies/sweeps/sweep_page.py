@@ -6,6 +6,7 @@ import math
 import shlex
 from collections.abc import Sequence
 
+from vehicle.runs.car import Car
 from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
@@ -127,8 +128,10 @@ def _repeating(cars: RankedCars | None, results: SweepTable, command: str, notes
     if command:
         parts.append(tag("pre", command))
     if cars is not None and cars.paths:
-        settings = zip(cars.paths, cars.cells[cars.best], strict=True)
-        best = " ".join(f"--set {shlex.quote(f'{path}={cell}')}" for path, cell in settings)
+        first, cells = results.cases[0], cars.cells[cars.best]
+        settings = [f"{path}={cell}" for path, cell in zip(cars.paths, cells, strict=True)]
+        base = Car.load(first.vehicle, first.overrides[: first.shared])
+        best = " ".join(f"--set {shlex.quote(text)}" for text in base.with_(settings).overrides[first.shared :])
         parts += [tag("p", "The most comfortable car in every other command:"), tag("pre", best)]
     engines = ", ".join(results.made.get("engines_asked", ()))
     parts.append(tag("p", f"Engine {engines}; program {results.made.get('program', '')}."))

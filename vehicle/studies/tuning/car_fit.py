@@ -16,6 +16,7 @@ from vehicle.studies.tuning.least_squares import fit
 from vehicle.studies.tuning.level_target import LevelTarget
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.response_delays import DelayRange, start_delay
 
 Bounds = Sequence[float]
 """Lower bound, upper bound and optionally start value of a parameter, in the unit of the parameter."""
@@ -38,7 +39,8 @@ def tune(
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
 
     Returns:
-        Values with standard errors and correlation, unidentifiable parameters, and residual statistics.
+        Values with standard errors and correlation, delays of groups of channels, unidentifiable parameters, and
+        residual statistics.
 
     Raises:
         ConfigurationError: the car lacks a parameter, a parameter has no effect, or bounds are out of order.
@@ -50,7 +52,29 @@ def tune(
     targets = [
         measurement.target if isinstance(measurement, MeasuredTarget) else measurement for measurement in measurements
     ]
-    return fit(ranges, targets, lambda values: car.with_(overrides_of(car.vehicle, values)), progress=progress)
+    start = car.with_(overrides_of(car.vehicle, {entry.path: entry.start for entry in ranges}))
+    delays = [delay for number, target in enumerate(targets) for delay in delays_of(target, number, start)]
+    return fit(
+        ranges, targets, lambda values: car.with_(overrides_of(car.vehicle, values)), delays=delays, progress=progress
+    )
+
+
+def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start: Car) -> list[DelayRange]:
+    """Return the unknown delays of a measurement; each begins at that of best agreement with the car before the fit.
+
+    Args:
+        target: the measurement.
+        number: index of the measurement in the fit.
+        start: car before the fit.
+    """
+    lags = target.lags(start) if target.delays.groups else {}
+    delays = []
+    for group in target.delays.groups:
+        found = [lag for channel, lag in lags.items() if target.delays.fitted.get(channel) == group]
+        begin = start_delay([lag.delay for lag in found], [lag.error for lag in found])
+        path = f"delay of the {group} of {target.name}" + (f" ({number + 1})" if number else "")
+        delays.append(DelayRange(path=path, group=group, target=number, start=begin))
+    return delays
 
 
 def ranges_of(vehicle: Vehicle, parameters: Mapping[str, Bounds] | Sequence[Range]) -> tuple[Range, ...]:

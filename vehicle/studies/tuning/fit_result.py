@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.tuning.identifiability import Unidentified
+from vehicle.studies.tuning.response_delays import DelayRange
 
 Vector = npt.NDArray[np.float64]
 
+
+Unknown = Range | DelayRange
+"""Unknown of a fit: a parameter of the model, or the delay of a group of channels."""
 
 SURE = 2.0
 """Minimum significant correlation of neighbours, in standard errors 1/sqrt(n) of the correlation, n values of all rows.
@@ -50,16 +55,21 @@ class RowStatistics:
         return float(self.rms * np.sqrt(self.inflation))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class TuningResult:
-    """Fitted parameters with standard errors, correlation and residual statistics.
+    """Fitted parameters and delays with standard errors, correlation and residual statistics.
 
     Attributes:
-        parameters: all parameters with bounds and start values.
-        values: path to fitted value; the start value of a held parameter.
-        standard_errors: path to standard error, in the unit of the value; NaN for a parameter held or at a bound.
+        unknowns: parameters with bounds and start values, then delays.
+        solution: path of an unknown to its value; the start value of a held one. Delays in s.
+        standard_errors: path to standard error from noise alone, in the unit of the value: random residuals with the
+            correlation of neighbours; NaN for an unknown held or at a bound.
+        misfit_errors: path of a free unknown to its standard error with stretches of data as observations, which holds
+            noise and the varying part of the misfit of the model, at least that of noise alone; see `error_sources`.
+        lag_shifts: path of a free unknown to its largest shift if one channel, or all, lag by half a sample; NaN for
+            an unknown sampling interval.
         free: paths that were fitted and are not at a bound: rows of `correlation`.
-        correlation: correlation of the free parameters, (p, p).
+        correlation: correlation of the free unknowns, (p, p).
         unidentified: unidentifiable parameters, held at their start values.
         at_bound: paths whose value ended at a bound: wrong bounds, or a model that cannot reproduce the data.
         condition: largest over smallest singular value of the weighted Jacobian, columns in half widths [-].
@@ -70,12 +80,12 @@ class TuningResult:
         evaluations: number of model evaluations, including those for the Jacobians.
         converged: True if the iteration ended at a minimum.
         message: message of the optimiser.
-        sensitivity: -(J' J)^-1 J' of the free parameters, (p, residuals): d ln(value) / d (weighted residuals).
+        sensitivity: -(J' J)^-1 J' of the free unknowns, (p, residuals): d u / d (weighted residuals).
         weights: weights of the residuals, (residuals,): 1 over the scale of the row.
     """
 
-    parameters: tuple[Range, ...]
-    values: Mapping[str, float]
+    unknowns: tuple[Unknown, ...]
+    solution: Mapping[str, float]
     standard_errors: Mapping[str, float]
     free: tuple[str, ...]
     correlation: Vector
@@ -91,24 +101,50 @@ class TuningResult:
     message: str
     sensitivity: Vector
     weights: Vector
+    misfit_errors: Mapping[str, float]
+    lag_shifts: Mapping[str, float]
+
+    @property
+    def parameters(self) -> tuple[Range, ...]:
+        """Parameters of the model with bounds and start values."""
+        return tuple(unknown for unknown in self.unknowns if isinstance(unknown, Range))
+
+    @property
+    def delays(self) -> tuple[DelayRange, ...]:
+        """Delays of groups of channels."""
+        return tuple(unknown for unknown in self.unknowns if isinstance(unknown, DelayRange))
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """Path of a parameter of the model to its value."""
+        return {parameter.path: self.solution[parameter.path] for parameter in self.parameters}
+
+    def groups(self, target: int) -> dict[str, float]:
+        """Return group of channels to fitted delay of a measurement [s]."""
+        return {delay.group: self.solution[delay.path] for delay in self.delays if delay.target == target}
+
+    def deviation_of_u(self, path: str) -> float:
+        """Return the standard error of the coordinate u of an unknown [-]: relative for a parameter."""
+        unknown = next(each for each in self.unknowns if each.path == path)
+        return self.standard_errors[path] / unknown.slope(self.solution[path])
 
     def __repr__(self) -> str:
         """Return the fitted values with their standard errors in a line."""
-        values = [f"{path} {value:.5g} +- {self.standard_errors[path]:.2g}" for path, value in self.values.items()]
+        values = [f"{path} {value:.5g} +- {self.standard_errors[path]:.2g}" for path, value in self.solution.items()]
         return f"TuningResult({'; '.join(values)})"
 
     def deviation(self, path: str, value: float) -> float:
-        """Return (fitted - value) of a parameter over its standard error [-]."""
-        return (self.values[path] - value) / self.standard_errors[path]
+        """Return (fitted - value) of an unknown over its standard error [-]."""
+        return (self.solution[path] - value) / self.standard_errors[path]
 
     def shift(self, residuals: Vector) -> dict[str, float]:
-        """Return the Gauss-Newton step of the free parameters for given residuals.
+        """Return the Gauss-Newton step of the free unknowns for given residuals.
 
         Args:
             residuals: unweighted residuals in the order of the targets and their rows, (residuals,).
 
         Returns:
-            Path to step of ln(value).
+            Path to step of u.
         """
         step = self.sensitivity @ (residuals * self.weights)
         return {path: float(component) for path, component in zip(self.free, step, strict=True)}

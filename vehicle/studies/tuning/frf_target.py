@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.names import CORNERS, is_wheel
 from vehicle.runs.car import Car, Run
-from vehicle.signals.analysis.frf import FrequencyResponse, frequency_response
+from vehicle.signals.analysis.dependence import common_motions
 from vehicle.signals.analysis.frf_agreement import log_ratio
-from vehicle.signals.analysis.periodic_record import whole_record_responses
+from vehicle.signals.analysis.motion_response import motion_responses
+from vehicle.signals.analysis.phase_delay import PhaseDelay, phase_delay
+from vehicle.signals.analysis.response_name import PLATE, ResponseName, plates_of, row_of
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.frf_file import FrfData
+from vehicle.signals.records.counterpart import SAME_MOTION
+from vehicle.signals.records.frf_file import FrfData, frf_data
+from vehicle.studies.tuning.response_delays import ResponseDelays
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
+
+FRF_BAND = (1.0, 50.0)
+"""Band in which the motions of plates are compared [Hz], as for the FRFs of a run."""
 
 LEAST_COHERENCE = 0.1
 """Minimum coherence of an included point: at lower coherence the logarithm is biased, and the weight would be small."""
@@ -36,31 +44,35 @@ class FrfTarget:
 
     Attributes:
         name: name of the level, for reports.
-        data: measured FRFs.
-        signal: plate displacement of the measurement; None compares the linear car with stuck dampers, whose FRFs
-            follow from its matrices.
+        data: measured FRFs to plates that the signal drives, see `to_driven_plates`.
+        signal: displacements of the plates; None compares the linear car with stuck dampers, whose FRFs follow from its
+            matrices.
         averages: number of independent averages of data without a random error; 1 if unknown.
         window: length of the Hann windows of the H1 estimator [s]; None for an estimate on the whole record.
             FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
-        wheel: wheel on the driven plate.
+        delays: delays of the channels against the plate: the FRF of the model is turned by exp(-2 pi i f d).
+        sample: sampling interval of the measurement [s]; 0 if unknown.
+        motions: independent motions of the plates of the signal, see `motions_of`; empty without a signal.
     """
 
     name: str
     data: FrfData
     signal: Signal | None
-    wheel: str
     averages: float = 1.0
     window: float | None = None
+    delays: ResponseDelays = ResponseDelays()
+    sample: float = 0.0
+    motions: tuple[dict[str, float], ...] = field(init=False)
 
     def __post_init__(self) -> None:
         if self.averages <= 0.0:
             raise ConfigurationError(f"{self.name}: found {self.averages:g} averages, must be above 0")
-        if not is_wheel(self.wheel):
-            raise ConfigurationError(
-                f"{self.name}: found wheel {self.wheel!r}, must be one of {', '.join(CORNERS.values())}"
-            )
-        if self.signal is not None and self.signal.wheels != (self.wheel,):
-            raise ConfigurationError(f"{self.name}: the signal must drive the plate {self.wheel} alone")
+        unknown = next((str(name) for name in self.data.names if not name.motion), None)
+        if unknown is not None:
+            raise ConfigurationError(f"{self.name}: the FRF of {unknown} names no plate; name it as {unknown}/plate_fl")
+        object.__setattr__(self, "motions", () if self.signal is None else motions_of(self.signal))
+        if self.signal is not None:
+            to_driven_plates(self.data, self.motions, self.name)
         if not np.isfinite(self.deviation).any():
             raise DataError(
                 f"{self.name}: no FRF value has a coherence of {LEAST_COHERENCE:g} or more; measure with less noise"
@@ -69,12 +81,13 @@ class FrfTarget:
     @property
     def rows(self) -> tuple[str, ...]:
         """Return the names of the rows of the residuals."""
-        return tuple(f"{self.name}, {name}, {part}" for name in self.data.channels for part in ("magnitude", "phase"))
+        return tuple(f"{self.name}, {name}, {part}" for name in self.data.labels for part in ("magnitude", "phase"))
 
     @property
     def recorded(self) -> tuple[str, ...]:
         """Return the names of the channels of a run that the target needs."""
-        return (*self.data.channels, f"plate_{self.wheel}_displacement")
+        plates = [f"plate_{wheel}_displacement" for motion in self.motions for wheel in motion]
+        return (*dict.fromkeys(self.data.channels), *plates)
 
     @property
     def deviation(self) -> Vector:
@@ -88,8 +101,17 @@ class FrfTarget:
         deviation = np.where(np.isfinite(from_random_error) & np.isfinite(deviation), from_random_error, deviation)
         return np.where(np.isfinite(self.data.response), deviation, np.nan)
 
+    @property
+    def half_sample(self) -> float:
+        """Return half the sampling interval of the measurement [s]; 0 if unknown."""
+        return 0.5 * self.sample
+
     def model_response(self, model: Car | Run) -> Complex:
-        """Return FRFs at the frequencies of the data, (channels, m).
+        """Return FRFs at the frequencies of the data, with the known delays, (channels, m)."""
+        return late(self.response(model), self.data.frequency, self.delays.of(self.data.channels, {}, {}))
+
+    def response(self, model: Car | Run) -> Complex:
+        """Return FRFs at the frequencies of the data without delays, (channels, m).
 
         Args:
             model: a run of the signal; or a car, evaluated by its matrices (no signal) or by the reduced engine.
@@ -97,8 +119,16 @@ class FrfTarget:
         if isinstance(model, Run):
             return self.estimated(model)
         if self.signal is None:
-            return model.matrix_frf(self.data.channels, self.data.frequency, wheel=self.wheel)
+            return np.array([self._of_matrices(model, name) for name in self.data.names])
         return self.estimated(self.run(model))
+
+    def _of_matrices(self, car: Car, name: ResponseName) -> Complex:
+        """Return an FRF of the linear car, (m,): sum of a_p H_p over the plates p of its input."""
+        parts = [
+            factor * car.matrix_frf((name.output,), self.data.frequency, wheel=plate.removeprefix(PLATE))[0]
+            for plate, factor in name.motion
+        ]
+        return np.asarray(np.sum(parts, axis=0))
 
     def run(self, car: Car, engine: str = "reduced") -> Run:
         """Return the run of a car on the signal.
@@ -117,27 +147,122 @@ class FrfTarget:
     def estimated(self, run: Run) -> Complex:
         """Estimate the FRFs of a run at the frequencies of the data, (channels, m), with the estimator of the data."""
         frequency = self.data.frequency
-        plate = run[f"plate_{self.wheel}_displacement"]
-        responses = np.array([run[name] for name in self.data.channels])
-        step = run.recording.timestep
-        estimate: FrequencyResponse
+        outputs = tuple(dict.fromkeys(self.data.channels))
         if self.window is None:
             band = (float(frequency[0]), float(frequency[-1]))
-            spacing = float(np.min(np.diff(frequency)))
-            (estimate,) = whole_record_responses(step, plate[None], responses, band=band, resolution=spacing)
         else:
             margin = 1.0 / self.window
             band = (max(float(frequency[0]) - margin, margin), float(frequency[-1]) + margin)
-            estimate = frequency_response(step, plate, responses, window_s=self.window, band=band)
-        return np.array([np.interp(frequency, estimate.frequency, row) for row in estimate.response])
+        responses = motion_responses(
+            run.recording.timestep,
+            {wheel: run[f"plate_{wheel}_displacement"] for motion in self.motions for wheel in motion},
+            [run[name] for name in outputs],
+            names=outputs,
+            band=band,
+            window=self.window,
+            resolution=float(np.min(np.diff(frequency))),
+            motions=self.motions,
+        )
+        model = frf_data(responses, outputs)
+        pairs = [pair for name in self.data.names if (pair := row_of(name, model.names)) is not None]
+        return np.array([factor * np.interp(frequency, model.frequency, model.response[row]) for row, factor in pairs])
 
-    def residuals(self, model: Car | Run) -> Vector:
-        """Return Re and Im of ln(H / Hm) over its standard deviation, (2 channels, frequencies); 0 where undefined."""
-        logarithm = log_ratio(self.data.response, self.model_response(model))
+    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+        """Return Re and Im of ln(H exp(-2 pi i f d) / Hm) over its standard deviation; 0 where undefined.
+
+        Args:
+            response: result of `response`, H.
+            groups: group to delay d [s].
+            lags: channel to a further delay [s].
+
+        Returns:
+            Residuals, (2 channels, frequencies).
+        """
+        delays = self.delays.of(self.data.channels, groups, lags or {})
+        logarithm = log_ratio(self.data.response, late(response, self.data.frequency, delays))
         included = np.isfinite(logarithm) & np.isfinite(self.deviation) & (self.deviation > 0.0)
         scaled = np.divide(logarithm, self.deviation, out=np.full(included.shape, np.nan + 0j), where=included)
         rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.data.frequency.size)
         return np.where(np.isfinite(rows), rows, 0.0)
+
+    def settled(self, groups: Mapping[str, float]) -> Self:
+        """Return the target with known delays of all groups [s]."""
+        return replace(self, delays=self.delays.settled(groups))
+
+    def residuals(self, model: Car | Run) -> Vector:
+        """Return `misfit` of a model with the known delays, (2 channels, frequencies)."""
+        return self.misfit(self.response(model), {})
+
+    def lags(self, model: Car) -> dict[str, PhaseDelay]:
+        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
+        return response_lags(self.data, self.response(model), self.deviation)
+
+
+def response_lags(data: FrfData, response: Complex, deviation: Vector) -> dict[str, PhaseDelay]:
+    """Return the lags of measured FRFs against those of a model whose phases agree with them after the lag.
+
+    Args:
+        data: measured FRFs.
+        response: FRFs of the model, (k, m).
+        deviation: standard deviation of ln H, (k, m); NaN where a point is excluded.
+    """
+    weight = np.nan_to_num(1.0 / deviation**2, nan=0.0)
+    found: dict[str, PhaseDelay] = {}
+    for channel, measured, model, trust in zip(data.channels, data.response, response, weight, strict=True):
+        lag = phase_delay(data.frequency, model, measured, trust)
+        if lag is not None and lag.agreement >= SAME_MOTION:
+            best = found.get(channel)
+            found[channel] = lag if best is None or lag.error < best.error else best
+    return found
+
+
+def late(response: Complex, frequency: Vector, delays: Vector) -> Complex:
+    """Return FRFs H exp(-2 pi i f d) of responses with delays d [s], (k,)."""
+    return np.asarray(response * np.exp(-2j * np.pi * delays[:, None] * frequency)) if delays.any() else response
+
+
+def motions_of(signal: Signal) -> tuple[dict[str, float], ...]:
+    """Return the independent motions of the plates of a signal: wheel to its factor, 1 for the first.
+
+    Raises:
+        DependentInputsError: a plate repeats another with a delay.
+    """
+    moving = [wheel for wheel in signal.wheels if signal.rms(wheel) > 0.0]
+    if len(moving) < 2:
+        return tuple({wheel: 1.0} for wheel in moving)
+    plates = np.array([signal.displacement[wheel] for wheel in moving])
+    labels = [f"plate_{wheel}_displacement" for wheel in moving]
+    groups = common_motions(signal.timestep, plates, labels, signal.band(FRF_BAND))
+    return tuple({moving[index]: factor for index, factor in group.items()} for group in groups)
+
+
+def to_driven_plates(data: FrfData, motions: Sequence[Mapping[str, float]], where: str) -> FrfData:
+    """Return FRFs of which every input is one of the motions of the plates; an unknown input is the only one.
+
+    Args:
+        data: measured FRFs.
+        motions: see `motions_of`.
+        where: file, for the message.
+
+    Raises:
+        DataError: an FRF names no plate and several move, or names a plate that does not move.
+    """
+    driven = [plates_of(motion) for motion in motions]
+    names = []
+    for name in data.names:
+        candidates = [ResponseName(name.output, motion) for motion in driven]
+        try:
+            pair = row_of(name, candidates)
+        except DataError as error:
+            raise DataError(f"{where}: {error}") from None
+        if pair is None:
+            raise DataError(
+                f"{where}: {name}: is an FRF to {name.input}, but the signal drives "
+                f"{', '.join(candidate.input for candidate in candidates)}; use the signal of that measurement, or fit "
+                "other FRFs by --channels"
+            )
+        names.append(name if name.motion else candidates[pair[0]])
+    return data.renamed(names)
 
 
 def log_deviation(coherence: npt.ArrayLike, averages: npt.ArrayLike) -> Vector:

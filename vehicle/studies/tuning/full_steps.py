@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from vehicle.runs.car import Car, Run
 from vehicle.studies.tuning.fit_result import TuningResult, target_statistics
-from vehicle.studies.tuning.least_squares import Target
+from vehicle.studies.tuning.target import DelayedTarget, Target
 
 Vector = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ class FullSteps:
         result: the fit with values, errors and residuals of the full simulation.
         first: root of the mean square of the weighted residuals of the full simulation at the values of the fast
             models [-].
-        moved: path to change of the value in standard errors: the effect of the error of the fast models.
+        moved: path to change of the unknown in standard errors: the effect of the error of the fast models.
         largest_steps: largest step of each round in standard errors; the last step is the final check, and is left out
             if it is small.
         settled: True if the last step was small.
@@ -67,13 +67,19 @@ def full_steps(
     Source: Bandler et al., Space mapping: the state of the art, IEEE Transactions on Microwave Theory and Techniques
     52, 2004: a coarse model for the derivatives, the fine one for the residuals.
     """
-    relative = {path: result.standard_errors[path] / result.values[path] for path in result.free}
-    values = dict(result.values)
+    relative = {path: result.deviation_of_u(path) for path in result.free}
+    values = dict(result.solution)
     steps: list[float] = []
     first = 0.0
     while True:
-        runs = simulate(values)
-        residuals = [target.residuals(run) for target, run in zip(targets, runs, strict=True)]
+        current = dataclasses.replace(result, solution=values)
+        runs = simulate(current.values)
+        residuals = [
+            target.misfit(target.response(run), current.groups(number), {})
+            if isinstance(target, DelayedTarget)
+            else target.residuals(run)
+            for number, (target, run) in enumerate(zip(targets, runs, strict=True))
+        ]
         joined = np.concatenate([row for rows in residuals for row in rows])
         if not steps:
             first = float(np.sqrt(np.mean((joined * result.weights) ** 2)))
@@ -82,17 +88,20 @@ def full_steps(
         settled = steps[-1] <= SMALL
         if settled or len(steps) == most_rounds:
             break
-        for parameter in result.parameters:
-            if parameter.path in shift:
-                moved = values[parameter.path] * float(np.exp(shift[parameter.path]))
-                values[parameter.path] = float(np.clip(moved, parameter.low, parameter.high))
+        for unknown in result.unknowns:
+            if unknown.path in shift:
+                moved = unknown.value(unknown.coordinate(values[unknown.path]) + shift[unknown.path])
+                values[unknown.path] = float(np.clip(moved, unknown.low, unknown.high))
     freedom = 1.0 - len(result.free) / joined.size
     weighted = joined * result.weights
     return FullSteps(
         result=dataclasses.replace(
             result,
-            values=values,
-            standard_errors={path: relative.get(path, float("nan")) * value for path, value in values.items()},
+            solution=values,
+            standard_errors={
+                unknown.path: relative.get(unknown.path, float("nan")) * unknown.slope(values[unknown.path])
+                for unknown in result.unknowns
+            },
             rows=tuple(
                 row
                 for target, rows in zip(targets, residuals, strict=True)
@@ -103,7 +112,12 @@ def full_steps(
             converged=result.converged and settled,
         ),
         first=first,
-        moved={path: float(np.log(values[path] / result.values[path]) / relative[path]) for path in result.free},
+        moved={
+            unknown.path: (unknown.coordinate(values[unknown.path]) - unknown.coordinate(result.solution[unknown.path]))
+            / relative[unknown.path]
+            for unknown in result.unknowns
+            if unknown.path in relative
+        },
         largest_steps=tuple(steps),
         settled=settled,
     )

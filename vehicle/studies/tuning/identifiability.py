@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.model.parameters.ranges import Range
+from vehicle.studies.tuning.response_delays import DelayRange
 
 Vector = npt.NDArray[np.float64]
 
@@ -47,7 +48,7 @@ class Unidentified:
         )
 
 
-def worst_direction(jacobian: Vector, parameters: Sequence[Range]) -> Unidentified | None:
+def worst_direction(jacobian: Vector, parameters: Sequence[Range | DelayRange]) -> Unidentified | None:
     """Return the parameter to hold if the data leave a direction in parameter space undetermined.
 
     With residuals of unit variance and columns d r / d (u / half width), a singular value s is 1 over the standard

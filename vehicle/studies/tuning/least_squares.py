@@ -6,7 +6,8 @@ A first, coarse iteration uses the assumed deviations. Then the scale of each ro
 row (RMS, and correlation of neighbouring samples) and the fit is repeated with these scales: assumed deviations only
 have to be right within a row. The covariance of u is (J' J)^-1 C (J' J)^-1 with the residuals over their scale and
 C = sum rho_ij J_i' J_j, where rho_ij is the correlation of rows i and j of a measurement. It covers the identifiable
-parameters; the other parameters are held at their start.
+parameters; the other parameters are held at their start. Delays of groups of channels are further unknowns, with
+u = (delay - start) / 1 ms. How far other causes than noise move the values: see `error_sources`.
 
 Source of the covariance: Zellner, Journal of the American Statistical Association 57 (1962): equations whose errors are
 correlated.
@@ -15,7 +16,7 @@ correlated.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -23,8 +24,11 @@ import scipy
 
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.ranges import Range, checked_ranges
-from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, target_statistics
+from vehicle.studies.tuning.error_sources import lag_shifts, misfit_errors
+from vehicle.studies.tuning.fit_result import RowStatistics, TuningResult, Unknown, target_statistics
 from vehicle.studies.tuning.identifiability import Unidentified, covariance, worst_direction
+from vehicle.studies.tuning.response_delays import DelayRange
+from vehicle.studies.tuning.target import DelayedTarget, Target
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
@@ -52,23 +56,13 @@ AT_BOUND = 1e-4
 """Distance from a bound, in half widths, below which a value counts as at the bound."""
 
 
-class Target(Protocol):
-    """Measurement that a model is compared with."""
-
-    @property
-    def rows(self) -> tuple[str, ...]:
-        """Return the names of the rows of the residuals."""
-
-    def residuals(self, model: Any, /) -> Vector:
-        """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded."""
-
-
 @one_blas_thread()
 def fit(
     parameters: Sequence[Range],
     targets: Sequence[Target],
     build: Callable[[Mapping[str, float]], Any],
     *,
+    delays: Sequence[DelayRange] = (),
     most_iterations: int = 40,
     progress: Callable[[int, float], None] | None = None,
 ) -> TuningResult:
@@ -78,6 +72,7 @@ def fit(
         parameters: parameters with bounds and start values.
         targets: measurements; the weights are estimated from the residuals of each row.
         build: function of {path: value} that returns the model for `Target.residuals`.
+        delays: delays of groups of channels of a `DelayedTarget`, further unknowns.
         most_iterations: maximum number of iterations of each solution. There are at least two solutions: one to
             estimate the sizes of the residuals, one with these sizes; and one more each time parameters are held.
         progress: called with the number of evaluations and the root of the mean square of the weighted residuals.
@@ -89,10 +84,10 @@ def fit(
         ConfigurationError: no parameter or target, a parameter twice, or more parameters than values.
         SimulationError: the model gives residuals that are not finite.
     """
-    problem = _Problem(checked_ranges(parameters), targets, build, progress)
-    start = problem.residuals(np.zeros(len(parameters)))
+    problem = _Problem((*checked_ranges(parameters), *delays), targets, build, progress)
+    start = problem.residuals(np.zeros(len(problem.unknowns)))
     problem.weights = np.ones(start.size)
-    point, answer = problem.solve(np.zeros(len(parameters)), COARSE, most_iterations)
+    point, answer = problem.solve(np.zeros(len(problem.unknowns)), COARSE, most_iterations)
     held: list[Unidentified] = []
     problem.step = STEP
     rounds = 0
@@ -103,7 +98,7 @@ def fit(
         steady = rounds > 0 and bool(np.max(np.abs(np.log(problem.weights / before))) < np.log(STEADY))
         inner = problem.inside(point)
         jacobian = problem.jacobian(point, inner)
-        undetermined = _open_directions(jacobian, [problem.parameters[index] for index in inner])
+        undetermined = _open_directions(jacobian, [problem.unknowns[index] for index in inner])
         if (steady or rounds >= MOST_ROUNDS) and not undetermined:
             break
         held += undetermined
@@ -117,7 +112,7 @@ def fit(
     return problem.result(point, start, raw, inner, jacobian, tuple(held), answer)
 
 
-def _open_directions(jacobian: Vector, parameters: list[Range]) -> list[Unidentified]:
+def _open_directions(jacobian: Vector, parameters: list[Unknown]) -> list[Unidentified]:
     """Return parameters to hold, in the order of selection, so that all remaining directions are identifiable."""
     held: list[Unidentified] = []
     left = list(range(len(parameters)))
@@ -134,25 +129,26 @@ class _Problem:
     """Residuals and Jacobian over u = ln(value / start), with a count of the evaluations.
 
     Args:
-        parameters: parameters with bounds and start values.
+        unknowns: parameters of the model with bounds and start values, then delays.
         targets: measurements.
-        build: function of {path: value} that returns a model.
+        build: function of {path: value} of the parameters that returns a model.
         progress: callback, see `fit`.
     """
 
     def __init__(
         self,
-        parameters: tuple[Range, ...],
+        unknowns: tuple[Unknown, ...],
         targets: Sequence[Target],
         build: Callable[[Mapping[str, float]], Any],
         progress: Callable[[int, float], None] | None,
     ) -> None:
         if not targets:
             raise ConfigurationError("targets: no measurement to fit to; specify at least one")
-        self.parameters, self.targets, self.progress = parameters, targets, progress
+        self.unknowns, self.targets, self.progress = unknowns, targets, progress
         self.build = build
         self.step = COARSE_STEP
-        self.free = list(range(len(parameters)))
+        self.free = list(range(len(unknowns)))
+        self.responses: dict[tuple[float, ...], list[Any]] = {}
         self.lengths: list[int] = []
         self.weights = np.ones(1)
         self.scaled: tuple[RowStatistics, ...] = ()
@@ -161,23 +157,48 @@ class _Problem:
 
     def values(self, point: Vector) -> dict[str, float]:
         """Return path to value at a point u."""
-        return {parameter.path: parameter.value(float(u)) for parameter, u in zip(self.parameters, point, strict=True)}
+        return {unknown.path: unknown.value(float(u)) for unknown, u in zip(self.unknowns, point, strict=True)}
+
+    def groups(self, target: int, values: Mapping[str, float]) -> dict[str, float]:
+        """Return group to delay of a measurement [s]."""
+        delays = [unknown for unknown in self.unknowns if isinstance(unknown, DelayRange) and unknown.target == target]
+        return {delay.group: values[delay.path] for delay in delays}
+
+    def response(self, values: Mapping[str, float]) -> list[Any]:
+        """Return the response of the model for each target; residuals for a target without delays."""
+        own = {unknown.path: values[unknown.path] for unknown in self.unknowns if isinstance(unknown, Range)}
+        key = tuple(own.values())
+        if key not in self.responses:
+            model = self.build(own)
+            self.responses = {key: [
+                target.response(model) if isinstance(target, DelayedTarget) else target.residuals(model)
+                for target in self.targets
+            ]}  # fmt: skip
+            self.evaluations += 1
+        return self.responses[key]
+
+    def rows(self, values: Mapping[str, float], lags: Mapping[str, float] | None = None) -> list[Vector]:
+        """Return the residuals of each target, with further delays by channel [s]."""
+        return [
+            target.misfit(response, self.groups(number, values), lags or {})
+            if isinstance(target, DelayedTarget)
+            else response
+            for number, (target, response) in enumerate(zip(self.targets, self.response(values), strict=True))
+        ]
 
     def residuals(self, point: Vector) -> Vector:
         """Return the residuals of all rows before scaling, (n,)."""
         if self.last is not None and self.last[0] == point.tobytes():
             return self.last[1]
-        model = self.build(self.values(point))
-        rows = [row for target in self.targets for row in target.residuals(model)]
-        self.evaluations += 1
+        rows = [row for table in self.rows(self.values(point)) for row in table]
         self.lengths = [row.size for row in rows]
         joined = np.concatenate(rows)
         if not np.isfinite(joined).all():
             text = ", ".join(f"{path}={value:.5g}" for path, value in self.values(point).items())
             raise SimulationError(f"residuals are not finite at {text}; narrow the bounds")
-        if joined.size < len(self.parameters):
+        if joined.size < len(self.unknowns):
             raise ConfigurationError(
-                f"{joined.size} values for {len(self.parameters)} parameters; use more data or fewer parameters"
+                f"{joined.size} values for {len(self.unknowns)} parameters; use more data or fewer parameters"
             )
         self.last = (point.tobytes(), joined)
         return joined
@@ -203,14 +224,14 @@ class _Problem:
 
     def jacobian(self, point: Vector, columns: Sequence[int]) -> Vector:
         """Return d (weighted residuals) / d u, (n, columns), by forward differences; backward near an upper bound."""
-        base = self.residuals(point)
+        base, responses = self.residuals(point), self.responses
         table = np.empty((base.size, len(columns)))
         for column, index in enumerate(columns):
             step = self.step if point[index] + self.step < self.bounds(index)[1] else -self.step
             moved = point.copy()
             moved[index] += step
             table[:, column] = (self.residuals(moved) - base) / step * self.weights
-            self.last = (point.tobytes(), base)
+            self.last, self.responses = (point.tobytes(), base), responses
         return table
 
     def information(self, jacobian: Vector, weighted: Vector) -> Vector:
@@ -240,9 +261,9 @@ class _Problem:
         return weighted_sum
 
     def bounds(self, index: int) -> tuple[float, float]:
-        """Return lower and upper bound of u of a parameter."""
-        parameter = self.parameters[index]
-        return float(np.log(parameter.low / parameter.start)), float(np.log(parameter.high / parameter.start))
+        """Return lower and upper bound of u of an unknown."""
+        unknown = self.unknowns[index]
+        return unknown.coordinate(unknown.low), unknown.coordinate(unknown.high)
 
     def inside(self, point: Vector) -> list[int]:
         """Return the indices of the free parameters that are not at a bound."""
@@ -250,13 +271,13 @@ class _Problem:
             index
             for index in self.free
             if min(abs(point[index] - bound) for bound in self.bounds(index))
-            > AT_BOUND * self.parameters[index].half_width
+            > AT_BOUND * self.unknowns[index].half_width
         ]
 
     def hold(self, paths: Sequence[str], point: Vector) -> None:
         """Remove parameters from the fit and reset them to their start values in `point`."""
-        for index, parameter in enumerate(self.parameters):
-            if parameter.path in paths:
+        for index, unknown in enumerate(self.unknowns):
+            if unknown.path in paths:
                 self.free.remove(index)
                 point[index] = 0.0
 
@@ -274,7 +295,7 @@ class _Problem:
                 self.progress(self.evaluations, float(np.sqrt(np.mean(weighted**2))))
             return np.concatenate([weighted, regularisation * free])
 
-        widths = np.array([self.parameters[index].half_width for index in self.free])
+        widths = np.array([self.unknowns[index].half_width for index in self.free])
         regularisation = REGULARISATION / widths
         low, high = np.array([self.bounds(index) for index in self.free]).T
         margin = 1e-9 * (high - low)
@@ -308,17 +329,20 @@ class _Problem:
         weighted = raw * self.weights
         spread = inverse @ self.information(jacobian, weighted) @ inverse
         deviations = np.sqrt(np.diag(spread))
-        free = tuple(self.parameters[index].path for index in inner)
-        errors.update({path: float(deviation * values[path]) for path, deviation in zip(free, deviations, strict=True)})
-        widths = np.array([self.parameters[index].half_width for index in inner])
+        free = tuple(self.unknowns[index].path for index in inner)
+        slopes = np.array([self.unknowns[index].slope(values[self.unknowns[index].path]) for index in inner])
+        errors.update(dict(zip(free, (deviations * slopes).tolist(), strict=True)))
+        widths = np.array([self.unknowns[index].half_width for index in inner])
+        misfit = np.maximum(misfit_errors(jacobian, weighted, self._shapes(), inverse), deviations) * slopes
+        lag = lag_shifts(self._lagged(values, raw), -inverse @ jacobian.T) * slopes
         return TuningResult(
-            parameters=self.parameters,
-            values=values,
+            unknowns=self.unknowns,
+            solution=values,
             standard_errors=errors,
             free=free,
             correlation=spread / np.outer(deviations, deviations),
             unidentified=held,
-            at_bound=tuple(self.parameters[index].path for index in self.free if index not in inner),
+            at_bound=tuple(self.unknowns[index].path for index in self.free if index not in inner),
             condition=float(np.linalg.cond(jacobian * widths)) if inner else float("inf"),
             rows=self.scaled,
             before=float(np.sqrt(np.mean((start * self.weights) ** 2))),
@@ -329,4 +353,25 @@ class _Problem:
             message=answer[1],
             sensitivity=-inverse @ jacobian.T,
             weights=self.weights,
+            misfit_errors=dict(zip(free, misfit.tolist(), strict=True)),
+            lag_shifts=dict(zip(free, lag.tolist(), strict=True)),
         )
+
+    def _shapes(self) -> list[tuple[int, int]]:
+        """Return rows and samples of the residuals of each target."""
+        first, shapes = 0, list[tuple[int, int]]()
+        for target in self.targets:
+            shapes.append((len(target.rows), self.lengths[first]))
+            first += len(target.rows)
+        return shapes
+
+    def _lagged(self, values: Mapping[str, float], raw: Vector) -> Vector:
+        """Return the changes of the weighted residuals if a channel, or all, lag by half a sample, (cases, n)."""
+        targets = [target for target in self.targets if isinstance(target, DelayedTarget) and target.half_sample > 0.0]
+        half = {name: target.half_sample for target in targets for name in target.recorded}
+        cases = [{name: lag} for name, lag in half.items()] + [half] * (len(half) > 1)
+        changes = [
+            (np.concatenate([row for table in self.rows(values, case) for row in table]) - raw) * self.weights
+            for case in cases
+        ]
+        return np.array(changes).reshape(len(cases), raw.size)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +13,13 @@ import scipy
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
+from vehicle.signals.analysis.phase_delay import PhaseDelay
+from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.frf_file import FrfData
-from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector
+from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags
 from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.response_delays import ResponseDelays
 from vehicle.studies.tuning.road_car import RoadCar
 
 Indices = npt.NDArray[np.int64]
@@ -127,17 +132,54 @@ class LevelTarget:
         """Return the run of a car on the signal; arguments: see `RecordTarget.run`."""
         return self.histories.run(car, engine, self.recorded)
 
-    def model_response(self, model: Car | Run) -> Complex:
-        """Return the FRFs of the classes for a run, or for a car with the reduced engine, (rows, m)."""
+    @property
+    def delays(self) -> ResponseDelays:
+        """Delays of the channels of the record."""
+        return self.histories.delays
+
+    @property
+    def half_sample(self) -> float:
+        """Half the sampling interval of the measurement [s]."""
+        return self.histories.half_sample
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Channel of the record of each FRF."""
+        classes = int(self.classes.max()) + 1
+        return tuple(name for name in _fitted(self.histories, self.reference) for _ in range(classes))
+
+    def response(self, model: Car | Run) -> Complex:
+        """Return the FRFs of the classes without delays, for a run, or for a car with the reduced engine, (rows, m)."""
         run = model if isinstance(model, Run) else self.run(model)
         histories = np.array([run[name] for name in _fitted(self.histories, self.reference)])
         length = round(self.window / self.histories.record.step)
         x, y = (_spectra(part, self.starts, self.lines, length) for part in (run[self.reference][None], histories))
         return np.array([_transfer(x[0], each, chosen) for each in y for chosen in _members(self.classes)])
 
-    def residuals(self, model: Car | Run) -> Vector:
-        """Return Re and Im of ln(H / Hm) over its standard deviation, (rows, lines of a row); 0 where undefined."""
-        logarithm, deviation = log_ratio(self.data.response, self.model_response(model)), self.deviation
+    def model_response(self, model: Car | Run) -> Complex:
+        """Return the FRFs of the classes with the known delays, (rows, m)."""
+        return late(self.response(model), self.data.frequency, self._delays({}, {}))
+
+    def _delays(self, groups: Mapping[str, float], lags: Mapping[str, float]) -> Vector:
+        """Return the delay of each FRF against the reference, which is late itself if it is a measured channel [s]."""
+        reference = self.delays.of([self.reference], groups, lags)
+        return self.delays.of(self.outputs, groups, lags) - reference
+
+    def misfit(self, response: Complex, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+        """Return Re and Im of ln(H exp(-2 pi i f d) / Hm) over its standard deviation; 0 where undefined.
+
+        The windows are not moved: a delay of 1 % of their length lowers |H| by less than 0.1 %.
+
+        Args:
+            response: result of `response`, H.
+            groups: group to delay d [s].
+            lags: channel to a further delay [s].
+
+        Returns:
+            Residuals, (rows, lines of a row).
+        """
+        turned = late(response, self.data.frequency, self._delays(groups, lags or {}))
+        logarithm, deviation = log_ratio(self.data.response, turned), self.deviation
         included = np.isfinite(logarithm) & np.isfinite(deviation)
         scaled = np.divide(logarithm, deviation, out=np.zeros(included.shape, dtype=complex), where=included)
         rows = np.stack([scaled.real, scaled.imag], axis=1).reshape(-1, self.lines.size)
@@ -145,6 +187,20 @@ class LevelTarget:
         whole = np.zeros((rows.shape[0], parts * self.lines_per_row))
         whole[:, : self.lines.size] = rows
         return whole.reshape(-1, self.lines_per_row)
+
+    def settled(self, groups: Mapping[str, float]) -> Self:
+        """Return the target with known delays of all groups [s]."""
+        return replace(self, histories=self.histories.settled(groups))
+
+    def residuals(self, model: Car | Run) -> Vector:
+        """Return `misfit` of a model with the known delays, (rows, lines of a row)."""
+        return self.misfit(self.response(model), {})
+
+    def lags(self, model: Car) -> dict[str, PhaseDelay]:
+        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
+        found = response_lags(self.data, self.response(model), self.deviation)
+        named = dict(zip(self.data.channels, self.outputs, strict=True))
+        return {named[channel]: lag for channel, lag in found.items()}
 
 
 def level_target(
@@ -209,7 +265,9 @@ def level_target(
     ranges = [factor * rms[chosen] for chosen in members]
     name = reference.removesuffix("_displacement")
     names = tuple(
-        f"{channel}, {name} {each.min():.3g} to {each.max():.3g} {unit} RMS" for channel in fitted for each in ranges
+        ResponseName(f"{channel}, {name} {each.min():.3g} to {each.max():.3g} {unit} RMS", ((name, 1.0),))
+        for channel in fitted
+        for each in ranges
     )
     target = LevelTarget(
         histories=histories,
@@ -220,7 +278,7 @@ def level_target(
         lines=lines,
         data=FrfData(
             frequency=lines / window,
-            channels=names,
+            names=names,
             response=response,
             coherence=coherence,
             random_error=error,

@@ -28,16 +28,21 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
     """
     sentences = [held.message() for held in result.unidentified]
     for path in result.at_bound:
-        entry = next(parameter for parameter in result.parameters if parameter.path == path)
-        side = "lower" if result.values[path] < np.sqrt(entry.low * entry.high) else "upper"
+        entry = next(unknown for unknown in result.unknowns if unknown.path == path)
+        value = result.solution[path]
+        side = "lower" if value - entry.low < entry.high - value else "upper"
         sentences.append(
-            f"{path}: ended at its {side} bound {result.values[path]:.6g}, so without a standard error: widen the "
-            "bound, or the model cannot follow the data"
+            f"{path} ran into your {side} limit of {value:.6g}, so without a standard error. Either the limit is too "
+            "tight, or the data do not fit this model"
         )
-    relative = {path: result.standard_errors[path] / abs(result.values[path]) for path in result.free}
+    relative = {path: result.deviation_of_u(path) for path in result.free}
+    delays = {delay.path for delay in result.delays}
     for (i, first), (j, second) in combinations(enumerate(result.free), 2):
         rho = float(result.correlation[i, j])
         if abs(rho) < CORRELATED:
+            continue
+        if {first, second} & delays:
+            sentences.append(f"{first} and {second}: correlation {rho:+.2f}; an error of one moves the other")
             continue
         a, b = relative[first], relative[second]
         both = np.sqrt(max(a**2 + b**2 - 2.0 * abs(rho) * a * b, 0.0))
@@ -49,6 +54,6 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
     sentences += [
         f"{path}: standard error {100 * error:.2g} % of the value, above {100 * UNSURE:g} %"
         for path, error in relative.items()
-        if error > UNSURE
+        if error > UNSURE and path not in delays
     ]
     return tuple(sentences)

@@ -10,22 +10,23 @@ from typing import Any
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.names import CORNERS
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.excitation.input_files import find_input
-from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
-from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.analysis.response_name import ResponseName, plates_of
+from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.channel import uniform_axis
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
+from vehicle.signals.records.delays import Delay, split_delay
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
-from vehicle.signals.records.table import Record, Vector
+from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
-from vehicle.studies.tuning.frf_target import FrfTarget
+from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
-from vehicle.studies.tuning.record_target import KEPT, RecordTarget
+from vehicle.studies.tuning.plate_signal import plate_choices, plate_signal
+from vehicle.studies.tuning.record_target import KEPT, RecordTarget, signal_until
+from vehicle.studies.tuning.response_delays import response_delays
 from vehicle.studies.tuning.road_car import RoadCar
 
 BAND = (3.0, 45.0)
@@ -73,6 +74,7 @@ def measured_responses(
     spacing: float = SPACING,
     window: float | None = None,
     averages: float = 1.0,
+    delay: Mapping[str, float] | None = None,
 ) -> MeasuredTarget:
     """Read measured FRFs of one excitation level as a target of a fit.
 
@@ -91,6 +93,8 @@ def measured_responses(
         spacing: minimum distance of the frequencies [Hz].
         window: length of the Hann windows of the estimate [s]; by default the whole record is evaluated.
         averages: number of independent averages of FRFs without a random error; 1 if unknown.
+        delay: known delays of groups, channels or patterns, as {"accelerations": 0.0123} [s]; those of the other
+            groups are unknowns of the fit.
 
     Returns:
         The target; without a measured coherence all lines have equal weights.
@@ -100,7 +104,7 @@ def measured_responses(
         DataError: bad data, no FRF, or too few frequencies.
     """
     path = Path(file)
-    asked = _asked(choice, channels)
+    asked, plates = plate_choices(_asked(choice, channels, delay), path, signal)
     measured = _read(car, path, asked, inverted, window)
     frf = measured.frf
     if frf is None:
@@ -111,10 +115,18 @@ def measured_responses(
     data = frf.select(tuple(fitted) or frf.channels, band=band, spacing=spacing)
     unknown = ~np.isfinite(data.coherence).any(axis=1, keepdims=True)
     data.coherence[:] = np.where(unknown, 1.0, data.coherence)
-    plate_signal = None if stuck else _signal(signal, car, path, measured, asked, inverted)
-    wheel = car.vehicle.shaker_wheel if plate_signal is None else plate_signal.wheels[0]
-    target = FrfTarget(name=path.stem, data=data, signal=plate_signal, window=window, wheel=wheel, averages=averages)
-    return MeasuredTarget(target=target, signal=plate_signal, notices=_notices(path, measured, []))
+    driving = None if stuck else plate_signal(signal, car, path, measured, asked, inverted, plates)
+    if driving is not None:
+        data = to_driven_plates(data, motions_of(driving), str(path))
+    else:
+        shaker = plates_of({car.vehicle.shaker_wheel: 1.0})
+        data = data.renamed([name if name.motion else ResponseName(name.output, shaker) for name in data.names])
+    sample = 0.0 if not measured.estimator or measured.record is None else measured.record.step
+    delays = response_delays(measured, tuple(dict.fromkeys(data.channels)), asked.delays, contained=signal is None)
+    target = FrfTarget(
+        name=path.stem, data=data, signal=driving, window=window, averages=averages, delays=delays, sample=sample
+    )
+    return MeasuredTarget(target=target, signal=driving, notices=_notices(path, measured, []))
 
 
 def measured_histories(
@@ -126,7 +138,7 @@ def measured_histories(
     choice: Choice | None = None,
     inverted: Collection[str] = (),
     fitted: Sequence[str] = (),
-    delay: float = 0.0,
+    delay: Delay = 0.0,
     drift: float = 0.0,
     stretch: tuple[float, float] | None = None,
     lowpass: float = 100.0,
@@ -140,7 +152,8 @@ def measured_histories(
             its speed; by default the plate in the measurement file, at the times of the record.
         channels, choice, inverted: see `measured_responses`.
         fitted: channels to be fitted; by default all except plates.
-        delay: start of the record after the start of the signal [s].
+        delay: start of the record after the start of the signal [s]; or known delays of groups, channels or patterns,
+            as {"record": 0.2, "accelerations": 0.0123}. Those of the other groups are unknowns of the fit.
         drift: relative lag of the clock of the record [-].
         stretch: begin and end of the included part of the signal [s]; by default the measured part.
         lowpass: maximum frequency of the comparison of model and measurement [Hz].
@@ -198,6 +211,10 @@ def measured_levels(
             f"--reference {reference}: must be one of {', '.join([*plates, *target.record.channels])}"
         )
     # The plates are those of the input, without noise: the same in a run of any car.
+    if reference in target.record.channels:  # its group has no delay of its own
+        own = target.delays.fitted.get(reference)
+        others = {name: group for name, group in target.delays.fitted.items() if group != own}
+        target = replace(target, delays=replace(target.delays, fitted=others))
     front = [name for name in plates if name[len("plate_")] == wheel[0]]
     run = target.run(driven, channels=list(dict.fromkeys([*front, *(name for name in plates if name == reference)])))
     excitation = target.record.channels[reference] if reference in target.record.channels else run[reference]
@@ -223,7 +240,7 @@ def _histories(
     choice: Choice | None = None,
     inverted: Collection[str] = (),
     fitted: Sequence[str] = (),
-    delay: float = 0.0,
+    delay: Delay = 0.0,
     drift: float = 0.0,
     stretch: tuple[float, float] | None = None,
     lowpass: float = 100.0,
@@ -237,16 +254,17 @@ def _histories(
         keep: a channel that is read in addition to `fitted`.
     """
     path, contained = Path(file), signal is None
-    asked = _asked(choice, channels)
+    begin, groups = split_delay(delay)
+    asked, plates = plate_choices(_asked(choice, channels, groups), path, signal)
     measured = _read(car, path, asked, inverted, None, histories_only=True)
     held = measured.record
     names = [] if held is None else [channel for channel in held.channels if not channel.startswith("plate_")]
     if held is None or not names:
         raise DataError(f"{path}: contains no time history except that of a plate; choose with --map CHANNEL=NAME")
-    if contained and (delay, drift) != (0.0, 0.0):
+    if contained and (begin, drift) != (0.0, 0.0):
         raise ConfigurationError(
-            f"{path}: --delay and --drift correct the clock against a signal of another file; this record contains "
-            "its plate. Remove both, or add --signal FILE"
+            f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
+            "its plate. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the plate"
         )
     road: RoadCar | None = None
     settled = 0.0
@@ -255,7 +273,7 @@ def _histories(
         road, settled = RoadCar(start=car, rolling=car.with_(drive.overrides)), drive.skip
         signal = drive.signal()
     else:
-        signal = _signal(signal, car, path, measured, asked, inverted)
+        signal = plate_signal(signal, car, path, measured, asked, inverted, plates)
         if contained and any("half-cosine ramp" in text for text in signal.notices):
             settled = SETTLED
     if fitted:
@@ -263,9 +281,10 @@ def _histories(
         names = [channel for channel in names if channel in (*fitted, keep)]
         if not names:
             raise DataError(f"{path}: contains no time history of --channels {','.join(fitted)}; found {there}")
+    delays = response_delays(measured, tuple(names), asked.delays, contained=contained)
     step = 1.0 / car.vehicle.solver.record_rate
     grid = uniform_axis(int(signal.duration / step + 1e-6) + 1, step)
-    times = run_times(held, delay, drift, float(held.time[0]) if contained else measured.start)
+    times = run_times(held, begin, drift, float(held.time[0]) if contained else measured.start)
     inside = np.flatnonzero((grid >= times[0] - 1e-9) & (grid <= times[-1] + 1e-9))
     if inside.size < 3:
         raise DataError(
@@ -283,7 +302,7 @@ def _histories(
     elif settled > window_s[0]:
         window_s = (settled, window_s[1])
         more = [f"begins in motion: the first {settled:g} s are left out; --stretch FROM:TO sets other times"]
-    signal = _until(signal, window_s[1] + AFTER / lowpass)
+    signal = signal_until(signal, window_s[1] + AFTER / lowpass)
     grid = grid[: int(signal.duration / step + 1e-6) + 1]
     histories = {channel: values[: grid.size] for channel, values in histories.items()}
     shortest = LEAST_VALUES / (KEPT * lowpass)
@@ -295,7 +314,10 @@ def _histories(
         )
     units = {channel: held.units[channel] for channel in names}
     record = Record(time=grid, channels=histories, units=units)
-    target = RecordTarget(name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass, road=road)
+    target = RecordTarget(
+        name=path.stem, signal=signal, record=record, window=window_s, lowpass=lowpass, road=road,
+        delays=delays, sample=held.step,
+    )  # fmt: skip
     # A run with the start values shows errors of clock, signs and units of the measurement.
     run = target.run(car)
     parts = counterparts(
@@ -303,34 +325,20 @@ def _histories(
         Record(time=run.time, channels=run.recording.channels, units=run.recording.units),
         times,
     )
-    # The plate of the same file has the same clock.
-    clock = [] if contained else clock_advice(parts, step, delay, drift)
+    # The plate of the same file has the same clock; a known delay of a sensor is no error of the clock.
+    parts = [
+        replace(part, shift=part.shift and replace(part.shift, shift=part.shift.shift + lag))
+        for part, lag in zip(parts, delays.of([part.channel for part in parts], {}, {}).tolist(), strict=True)
+    ]
+    clock = [] if contained else clock_advice(parts, step, begin, drift)
     advice = [*clock, *sign_and_unit(parts)]
     return target, car, _notices(path, measured, [*more, *advice])
 
 
-def _until(signal: Signal, end: float) -> Signal:
-    """Return the beginning of a signal up to a time [s]."""
-    count = int(np.ceil(end / signal.timestep - 1e-6)) + 1
-    if count >= signal.time.size or count < MINIMUM_SAMPLES:
-        return signal
-
-    def beginning(columns: Mapping[str, Vector]) -> dict[str, Vector]:
-        return {wheel: values[:count] for wheel, values in columns.items()}
-
-    return replace(
-        signal,
-        time=signal.time[:count],
-        displacement=beginning(signal.displacement),
-        slope_velocity=beginning(signal.slope_velocity),
-        profile=beginning(signal.profile),
-    )
-
-
-def _asked(choice: Choice | None, channels: Mapping[str, str] | None) -> Choice:
-    """Return the choice with further channels."""
+def _asked(choice: Choice | None, channels: Mapping[str, str] | None, delays: Mapping[str, float] | None) -> Choice:
+    """Return the choice with further channels and delays."""
     asked = choice or Choice()
-    return replace(asked, channels={**asked.channels, **(channels or {})})
+    return replace(asked, channels={**asked.channels, **(channels or {})}, delays={**asked.delays, **(delays or {})})
 
 
 def _read(
@@ -344,42 +352,8 @@ def _read(
 ) -> Measured:
     """Return the chosen channels of a file under the names of the model."""
     model_channels = (*car.vehicle.channels, *car.vehicle.load_channels)
+    asked = replace(asked, delays={})  # the model is delayed in place of the measurement
     return read_measured(file, model_channels, asked, inverted=inverted, window=window, histories_only=histories_only)
-
-
-def _signal(
-    source: Signal | Path | str | None,
-    car: Car,
-    path: Path,
-    measured: Measured,
-    asked: Choice,
-    inverted: Collection[str],
-) -> Signal:
-    """Return the plate signal: a signal, a file, the name of a shipped file, or None for the plate in the measurement.
-
-    A file with one plate is read for the shaker wheel.
-    """
-    if isinstance(source, Signal):
-        return source
-    if source is not None:
-        return read_signal(
-            find_input(source if "." in str(source) else f"{source}.csv"), wheel=car.vehicle.shaker_wheel
-        )
-    plates = {} if measured.record is None else measured.record.channels
-    names = {wheel: f"plate_{wheel}_displacement" for wheel in CORNERS.values()}
-    names = {wheel: name for wheel, name in names.items() if name in plates and np.ptp(plates[name]) > 0.0}
-    if not names:
-        raise DataError(
-            f"{path}: contains no input: no moving plate is among its channels. Set --map plate_fl_displacement=NAME "
-            "for the channel of the plate, or --signal FILE after it for the plate displacement of another file"
-        )
-    units = {wheel: asked.units[name] for wheel, name in names.items() if name in asked.units}
-    units |= {role: unit for role, unit in asked.units.items() if role in ("", "time")}
-    roles = {wheel: asked.channels.get(name, name) for wheel, name in names.items()}
-    roles |= {role: name for role, name in asked.channels.items() if role == "time"}
-    signal = read_signal(path, choice=replace(asked, channels=roles, units=units))
-    turned = {wheel: -values if names[wheel] in inverted else values for wheel, values in signal.displacement.items()}
-    return replace(signal, displacement=turned)
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -12,8 +13,12 @@ import scipy
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.runs.car import Car, Run
-from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.analysis.phase_delay import PhaseDelay
+from vehicle.signals.analysis.time_shift import time_shift
+from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
+from vehicle.signals.records.counterpart import SAME_MOTION
 from vehicle.signals.records.table import Record
+from vehicle.studies.tuning.response_delays import ResponseDelays
 from vehicle.studies.tuning.road_car import RoadCar
 
 Vector = npt.NDArray[np.float64]
@@ -39,6 +44,9 @@ class RecordTarget:
         lowpass: -6 dB frequency of a Butterworth low-pass of order 4, forwards and backwards [Hz]; two samples are kept
             for each period, so that the noise of neighbouring samples stays nearly independent.
         road: car on the road of the record; None for a signal of a rig.
+        delays: delays of the channels against the signal: the run is compared at the earlier time t - d, so that the
+            noise of the measurement is not differentiated.
+        sample: sampling interval of the measurement [s]; that of the record by default.
     """
 
     name: str
@@ -47,6 +55,8 @@ class RecordTarget:
     window: tuple[float, float]
     lowpass: float = 100.0
     road: RoadCar | None = None
+    delays: ResponseDelays = ResponseDelays()
+    sample: float = 0.0
 
     def __post_init__(self) -> None:
         count, step = self.record.time.size, self.record.step
@@ -86,9 +96,14 @@ class RecordTarget:
         """Return the names of the channels of a run that the target needs."""
         return tuple(self.record.channels)
 
+    @property
+    def half_sample(self) -> float:
+        """Return half the sampling interval of the measurement [s]."""
+        return 0.5 * (self.sample or self.record.step)
+
     def measured(self) -> Vector:
         """Return the filtered measured data in the window, (channels, samples)."""
-        return self._filtered(np.array(list(self.record.channels.values())))
+        return self._filtered(np.array(list(self.record.channels.values())))[:, self.kept]
 
     def run(self, car: Car, engine: str = "reduced", channels: Sequence[str] = ()) -> Run:
         """Return the run of a car on the signal, on a road with turning wheels.
@@ -101,8 +116,8 @@ class RecordTarget:
         driven = car if self.road is None else self.road.variant(car)
         return driven.run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
 
-    def model_histories(self, model: Car | Run) -> Vector:
-        """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, samples).
+    def response(self, model: Car | Run) -> Vector:
+        """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, n).
 
         Raises:
             DataError: the run has other sampling times than the data.
@@ -116,13 +131,74 @@ class RecordTarget:
             )
         return self._filtered(np.array([run[name] for name in names]))
 
-    def residuals(self, model: Car | Run) -> Vector:
-        """Return (y - ym) over the RMS of y, (channels, samples), with ym from `model_histories`."""
+    def misfit(self, response: Vector, groups: Mapping[str, float], lags: Mapping[str, float] | None = None) -> Vector:
+        """Return (ym - y(t - d)) over the RMS of ym, (channels, samples); 0 where the run has no value.
+
+        Args:
+            response: result of `response`.
+            groups: group to delay d [s].
+            lags: channel to a further delay [s].
+        """
         measured = self.measured()
-        return np.asarray(
-            (measured - self.model_histories(model)) / np.sqrt(np.mean(measured**2, axis=1, keepdims=True))
-        )
+        delays = self.delays.of(self.recorded, groups, lags or {})
+        residuals = measured - self._delayed(response, delays)
+        residuals[np.round(self.kept - delays[:, None] / self.record.step) > self.record.time.size - 1] = 0.0
+        return np.asarray(residuals / np.sqrt(np.mean(measured**2, axis=1, keepdims=True)))
+
+    def model_histories(self, model: Car | Run) -> Vector:
+        """Return filtered histories of a run or a car in the window, with the known delays; (channels, samples)."""
+        return self._delayed(self.response(model), self.delays.of(self.recorded, {}, {}))
+
+    def settled(self, groups: Mapping[str, float]) -> Self:
+        """Return the target with known delays of all groups [s]."""
+        return replace(self, delays=self.delays.settled(groups))
+
+    def residuals(self, model: Car | Run) -> Vector:
+        """Return (ym - y) over the RMS of ym, (channels, samples), with y from `model_histories`."""
+        return self.misfit(self.response(model), {})
+
+    def lags(self, model: Car) -> dict[str, PhaseDelay]:
+        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
+        found = {}
+        inside, step = np.flatnonzero(self.inside), self.record.step
+        measured = self._filtered(np.array(list(self.record.channels.values())))[:, inside]
+        for name, values, curve in zip(self.recorded, measured, self.response(model), strict=True):
+            shift = time_shift(values, curve, step, -float(self.record.time[inside[0]]))
+            if shift is not None and shift.correlation >= SAME_MOTION:
+                error = shift.shift_error if np.isfinite(shift.shift_error) else step
+                found[name] = PhaseDelay(delay=-shift.shift, error=error, agreement=shift.correlation)
+        return found
+
+    def _delayed(self, histories: Vector, delays: Vector) -> Vector:
+        """Return y(t - d) at the kept samples, by a spline of degree 5; histories (channels, n) are band-limited."""
+        rows = []
+        for values, delay in zip(histories, delays, strict=True):
+            place = np.clip(self.kept - delay / self.record.step, 0.0, values.size - 1)
+            rows.append(
+                values[self.kept]
+                if delay == 0.0
+                else scipy.ndimage.map_coordinates(values, place[None], order=5, mode="nearest")
+            )
+        return np.array(rows)
 
     def _filtered(self, histories: Vector) -> Vector:
         sections = scipy.signal.butter(4, 2.0 * self.record.step * self.lowpass, output="sos")
-        return np.asarray(scipy.signal.sosfiltfilt(sections, histories, axis=1)[:, self.kept])
+        return np.asarray(scipy.signal.sosfiltfilt(sections, histories, axis=1))
+
+
+def signal_until(signal: Signal, end: float) -> Signal:
+    """Return the beginning of a signal up to a time [s]."""
+    count = int(np.ceil(end / signal.timestep - 1e-6)) + 1
+    if count >= signal.time.size or count < MINIMUM_SAMPLES:
+        return signal
+
+    def beginning(columns: Mapping[str, Vector]) -> dict[str, Vector]:
+        return {wheel: values[:count] for wheel, values in columns.items()}
+
+    return replace(
+        signal,
+        time=signal.time[:count],
+        displacement=beginning(signal.displacement),
+        slope_velocity=beginning(signal.slope_velocity),
+        profile=beginning(signal.profile),
+    )

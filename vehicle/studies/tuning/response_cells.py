@@ -92,7 +92,7 @@ def response_cells(targets: Sequence[FrfTarget]) -> ResponseCells:
         sums = weights.sum(axis=2, keepdims=True)
         weights = np.divide(weights, sums, out=np.zeros_like(weights), where=sums > 0.0)
         size = np.where(usable, np.abs(target.data.response), 1.0)
-        for row, channel in enumerate(target.data.channels):
+        for row, channel in enumerate(target.data.labels):
             for column, number in enumerate(bands):
                 if sums[row, column, 0] > 0.0:
                     names.append(f"{target.name}, {channel}, {10.0 ** (0.1 * number):.3g} Hz")

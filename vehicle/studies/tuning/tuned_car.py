@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,7 @@ from vehicle.model.parameters.paths import overrides_of, unit_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.frf_agreement import log_ratio
+from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -22,6 +23,7 @@ from vehicle.studies.tuning.level_target import LevelTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
 from vehicle.studies.tuning.measured_targets import MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget
+from vehicle.studies.tuning.refusal import refusal
 from vehicle.threads import one_blas_thread
 
 Vector = npt.NDArray[np.float64]
@@ -33,7 +35,9 @@ class Agreement:
 
     Attributes:
         measurement: name of the measurement.
-        channel: channel.
+        channel: channel; of an FRF its output.
+        plate: input of an FRF, as "plate_fr"; empty for a time history.
+        label: channel, with its plate if the measurement has FRFs to several.
         measure: quantity: "magnitude", "phase" or "history".
         unit: dB, deg, or % of the RMS of the measured history.
         before, after: RMS of the error over the fitted frequencies or times.
@@ -41,6 +45,8 @@ class Agreement:
 
     measurement: str
     channel: str
+    plate: str
+    label: str
     measure: str
     unit: str
     before: float
@@ -54,7 +60,7 @@ class TunedCar:
     Attributes:
         start: the car before the fit.
         result: the fit: values, standard errors, correlation, residual statistics.
-        measurements: the measurements.
+        measurements: the measurements with the fitted delays.
         engine: engine of the last steps; "reduced" if there were none.
         final: the last steps with the complete model; None without them.
     """
@@ -71,33 +77,53 @@ class TunedCar:
         return self.start.with_(overrides_of(self.start.vehicle, self.result.values))
 
     @property
-    def settings(self) -> str:
-        """Options that set the fitted values in every command."""
-        return " ".join(f"--set {path}={value:.8g}" for path, value in self.result.values.items())
+    def settings(self) -> tuple[str, ...]:
+        """Values of --set that make the fitted car beside the options of the start car; empty if the fit is refused."""
+        if self.refusal:
+            return ()
+        values = self.result.values
+        restated = self.fitted.overrides[len(self.start.overrides) + len(values) :]
+        return (*(f"{path}={value:.8g}" for path, value in values.items()), *restated)
+
+    @cached_property
+    def refusal(self) -> str:
+        """Reason why the values are not to be used: a bound, or an error above that of no motion; empty without."""
+        names = [
+            (f"{channel} in {each.target.name}", error)
+            for each, (_, after) in zip(self.measurements, self._errors, strict=True)
+            for channel, error in zip(_labels(each.target), after[:, -1].tolist(), strict=True)
+        ]
+        return refusal(self.result, names)
+
+    @cached_property
+    def _errors(self) -> tuple[tuple[Vector, Vector], ...]:
+        """Errors of each measurement before and after the fit, see `_model_errors`."""
+        return tuple(
+            (_model_errors(each.target, self.start), _model_errors(each.target, self.fitted))
+            for each in self.measurements
+        )
 
     @cached_property
     def agreement(self) -> tuple[Agreement, ...]:
         """Errors of all channels with the models of the fit: matrices of the stuck car, or the reduced engine."""
         rows: list[Agreement] = []
-        for measurement in self.measurements:
+        for measurement, errors in zip(self.measurements, self._errors, strict=True):
             target = measurement.target
             if not isinstance(target, RecordTarget):
-                errors = [_response_errors(target, car) for car in (self.start, self.fitted)]
                 measures: tuple[tuple[str, str], ...] = (("magnitude", "dB"), ("phase", "deg"))
-                channels: Sequence[str] = target.data.channels
+                names: Sequence[ResponseName] = target.data.names
             else:
-                errors = [
-                    100.0 * np.sqrt(np.mean(target.residuals(car) ** 2, axis=1))[:, None]
-                    for car in (self.start, self.fitted)
-                ]
-                measures, channels = (("history", "% of RMS"),), tuple(target.record.channels)
-            for row, channel in enumerate(channels):
+                measures = (("history", "% of RMS"),)
+                names = [ResponseName(channel) for channel in target.record.channels]
+            for row, (name, label) in enumerate(zip(names, _labels(target), strict=True)):
                 for column, (measure, unit) in enumerate(measures):
                     before, after = (float(table[row, column]) for table in errors)
                     rows.append(
                         Agreement(
                             measurement=target.name,
-                            channel=channel,
+                            channel=name.output,
+                            plate=name.input,
+                            label=label,
                             measure=measure,
                             unit=unit,
                             before=before,
@@ -118,13 +144,26 @@ class TunedCar:
                     "unit": unit_of(vehicle, parameter.path),
                     "value": result.values[parameter.path],
                     "standard_error": _finite(result.standard_errors[parameter.path]),
+                    "misfit_error": _finite(result.misfit_errors.get(parameter.path)),
+                    "half_sample_shift": _finite(result.lag_shifts.get(parameter.path)),
                     "start": parameter.start,
                     "low": parameter.low,
                     "high": parameter.high,
                 }
                 for parameter in result.parameters
             ],
-            "set": self.settings,
+            "delays": [
+                {
+                    "measurement": self.measurements[delay.target].target.name,
+                    "group": delay.group,
+                    "delay_s": result.solution[delay.path],
+                    "standard_error_s": _finite(result.standard_errors[delay.path]),
+                    "misfit_error_s": _finite(result.misfit_errors.get(delay.path)),
+                }
+                for delay in result.delays
+            ],
+            "set": list(self.settings),
+            "refusal": self.refusal,
             "left_open": list(what_data_leave_open(result)),
             "free": list(result.free),
             "correlation": result.correlation.tolist(),
@@ -136,6 +175,7 @@ class TunedCar:
                 {
                     "measurement": row.measurement,
                     "channel": row.channel,
+                    "plate": row.plate or None,
                     "measure": row.measure,
                     "unit": row.unit,
                     "before": row.before,
@@ -192,23 +232,38 @@ def tuned_car(
 
         final = full_steps(result, [each.target for each in measurements], models)
         result = final.result
+    fitted = [
+        replace(each, target=each.target.settled(result.groups(number))) for number, each in enumerate(measurements)
+    ]
     return TunedCar(
         start=car.with_(overrides_of(car.vehicle, {entry.path: entry.start for entry in result.parameters})),
         result=result,
-        measurements=tuple(measurements),
+        measurements=tuple(fitted),
         engine=engine if final is not None else "reduced",
         final=final,
     )
 
 
-def _response_errors(target: FrfTarget | LevelTarget, car: Car) -> Vector:
-    """Return the RMS over frequency of the magnitude [dB] and of the phase [deg], (channels, 2)."""
-    logarithm = np.where(
-        np.isfinite(target.deviation), log_ratio(target.data.response, target.model_response(car)), np.nan
-    )
+def _labels(target: FrfTarget | LevelTarget | RecordTarget) -> tuple[str, ...]:
+    """Return the names of the compared channels."""
+    return tuple(target.record.channels) if isinstance(target, RecordTarget) else target.data.labels
+
+
+def _model_errors(target: FrfTarget | LevelTarget | RecordTarget, car: Car) -> Vector:
+    """Return the errors of a car against a measurement.
+
+    Returns:
+        Time histories: RMS of the error over that of the measurement [%], (channels, 1). FRFs: RMS over frequency of
+        the magnitude [dB], of the phase [deg], and of |H - Hm| over that of |Hm| [%], (channels, 3).
+    """
+    if isinstance(target, RecordTarget):
+        return np.asarray(100.0 * np.sqrt(np.mean(target.residuals(car) ** 2, axis=1))[:, None])
+    used, measured, model = np.isfinite(target.deviation), target.data.response, target.model_response(car)
+    logarithm = np.where(used, log_ratio(measured, model), np.nan)
     size, angle = (np.sqrt(np.nanmean(part**2, axis=1)) for part in (logarithm.real, logarithm.imag))
-    return np.stack([20.0 / np.log(10.0) * size, np.degrees(angle)], axis=1)
+    missed, whole = (np.nansum(np.where(used, np.abs(part) ** 2, 0.0), axis=1) for part in (model - measured, measured))
+    return np.stack([20.0 / np.log(10.0) * size, np.degrees(angle), 100.0 * np.sqrt(missed / whole)], axis=1)
 
 
-def _finite(value: float) -> float | None:
-    return value if np.isfinite(value) else None
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and np.isfinite(value) else None

@@ -45,7 +45,7 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
     """
     models = {"start": target.model_response(start), "fitted": target.model_response(fitted)}
     data, frequency = target.data, target.data.frequency
-    channels = data.channels[:ACROSS]
+    shown = data.labels[:ACROSS]
     estimator = "local rational model" if target.window is None else f"H1, Hann windows of {target.window:g} s"
     model = (
         "linear car from its matrices, dampers stuck"
@@ -56,19 +56,19 @@ def plot_responses(path: Path, target: FrfTarget | LevelTarget, start: Car, fitt
         f"Measured: {source}. Start and fitted: {model}. {frequency.size} frequencies from {frequency[0]:.1f} to "
         f"{frequency[-1]:.1f} Hz; {FADED}"
     )
-    if len(data.channels) > ACROSS:
-        caption += f". First {ACROSS} of {len(data.channels)} channels; the table has all"
-    size = (max(7.2, 4.6 * len(channels)), 7.4)
+    if len(data.names) > ACROSS:
+        caption += f". First {ACROSS} of {len(data.names)} FRFs; the table has all"
+    size = (max(7.2, 4.6 * len(shown)), 7.4)
     title = f"FRFs before and after the fit: {target.name}"
     with saved_figure(path, size, title, textwrap.fill(caption, int(13.5 * size[0]))) as figure:
-        axes = figure.subplots(3, len(channels), sharex=True, sharey="row", height_ratios=(2.4, 1, 0.9), squeeze=False)
-        for row, (channel, (magnitude, phase, coherence)) in enumerate(zip(channels, axes.T, strict=True)):
+        axes = figure.subplots(3, len(shown), sharex=True, sharey="row", height_ratios=(2.4, 1, 0.9), squeeze=False)
+        for row, (name, (magnitude, phase, coherence)) in enumerate(zip(shown, axes.T, strict=True)):
             for label, response in {"measured": data.response, **models}.items():
                 weight = data.coherence[row] if label == "measured" else np.ones(frequency.size)
                 fading(magnitude, frequency, np.abs(response[row]), weight, label, **LOOKS[label])
                 phase.plot(frequency, wrapped_phase(response[row].copy()), **LOOKS[label])
             coherence.plot(frequency, data.coherence[row], **LOOKS["measured"])
-            magnitude.set_title(textwrap.fill(channel_words(channel), 40))
+            magnitude.set_title(textwrap.fill(channel_words(name), 40))
             magnitude.legend(loc="best")
         frf_axes(figure, axes, (0, 0.5, 1))
         if isinstance(target, LevelTarget):

@@ -17,13 +17,20 @@ from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
 from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_sentences
 from vehicle.studies.tuning.tuned_car import TunedCar
-from vehicle.studies.tuning.tuning_text import fit_sentences
+from vehicle.studies.tuning.tuning_text import delay_lines, fit_sentences
 
 POSTERIOR = "posterior"
 """Name of the picture of the posterior."""
 
 CORRELATION = "correlation"
 """Name of the picture of the correlations."""
+
+SOURCES = (
+    "The standard error holds noise alone. With misfit: the data in 20 stretches as observations, whose scatter holds "
+    "noise and the part of the misfit that varies. Half a sample of lag: largest shift of the value if one channel, or "
+    "all, lag by half a sampling interval."
+)
+"""Explanation of the columns of the fitted values."""
 
 MOST_NAMED = 3
 """Maximum number of fitted values in the sentence of the result."""
@@ -57,7 +64,7 @@ def tuning_page(
         ("Before and after", "agreement", _agreement(tuned, figures)),
         ("Residuals", "residuals", _residuals(tuned)),
         ("The fitted car", "car", car_section(tuned.fitted)),
-        ("How to repeat the fit", "repeat", joined([tag("pre", command), tag("pre", tuned.settings)])),
+        ("How to repeat the fit", "repeat", joined([tag("pre", command), *_settings(tuned)])),
     ]
     subtitles = (f"tyres {_driving(tuned)}", head_line(author, project))
     return document(f"{vehicle.name} fitted to {names}", subtitles, parts)
@@ -88,8 +95,9 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
     word = "falls" if row.after < row.before else "rises"
     left_open = what_data_leave_open(result)
     texts = [
+        *([f"The fit is not to be used: {tuned.refusal}."] if tuned.refusal else []),
         f"The measurement asks for {', '.join(changes)}.",
-        f"The largest error against the measurement ({channel_words(row.channel)}, {row.measure}) "
+        f"The largest error against the measurement ({channel_words(row.label)}, {row.measure}) "
         f"{word} from {number(row.before)} to {number(row.after)} {row.unit}; the data "
         + (f"leave open: {left_open[0]}." if left_open else "determine every parameter."),
     ]
@@ -115,13 +123,15 @@ def _values(tuned: TunedCar) -> Markup:
                 number(value, 5),
                 number(error if finite else None, 2),
                 number(100.0 * error / value if finite else None, 2),
+                *(number(_finite(each.get(parameter.path)), 2) for each in (result.misfit_errors, result.lag_shifts)),
                 number(parameter.start, 5),
                 number(100.0 * (value / parameter.start - 1.0), 3),
                 f"{number(parameter.low, 5)} to {number(parameter.high, 5)}",
             )
         )
-    heads = ("parameter", "unit", "fitted", "standard error", "[%]", "start", "change [%]", "bounds")
-    sentences = [tag("p", text) for text in fit_sentences(tuned)]
+    errors = ("standard error", "[%]", "with misfit", "half a sample of lag")
+    heads = ("parameter", "unit", "fitted", *errors, "start", "change [%]", "bounds")
+    sentences = [tag("p", text) for text in (*delay_lines(tuned), SOURCES, *fit_sentences(tuned))]
     notices = [tag("li", text) for each in tuned.measurements for text in each.notices]
     return joined(
         [
@@ -130,6 +140,15 @@ def _values(tuned: TunedCar) -> Markup:
             *([tag("h3", "Notices on the measurements"), tag("ul", *notices, class_="notices")] if notices else []),
         ]
     )
+
+
+def _settings(tuned: TunedCar) -> list[Markup]:
+    """Return the options that set the fitted values, if they are to be used."""
+    return [tag("pre", " ".join(f"--set {text}" for text in tuned.settings))] if tuned.settings else []
+
+
+def _finite(value: float | None) -> float | None:
+    return value if value is not None and math.isfinite(value) else None
 
 
 def _left_open(tuned: TunedCar) -> Markup:
@@ -141,7 +160,7 @@ def _left_open(tuned: TunedCar) -> Markup:
 
 def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> Markup:
     rows = [
-        (row.measurement, channel_words(row.channel), row.measure, row.unit, number(row.before), number(row.after))
+        (row.measurement, channel_words(row.label), row.measure, row.unit, number(row.before), number(row.after))
         for row in tuned.agreement
     ]
     heads = ("measurement", "channel", "error of", "unit", "before", "after")

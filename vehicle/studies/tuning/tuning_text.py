@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from vehicle.model.parameters.paths import unit_of
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT
 from vehicle.studies.tuning.fit_result import TuningResult
 from vehicle.studies.tuning.full_steps import SMALL
 from vehicle.studies.tuning.limits_of_data import what_data_leave_open
@@ -40,7 +41,10 @@ def tuning_text(tuned: TunedCar) -> str:
         tuned: fitted car.
     """
     result = tuned.result
-    lines = [*value_lines(result, tuned.start.vehicle), tuned.settings]
+    settings = " ".join(f"--set {text}" for text in tuned.settings)
+    lines = value_lines(result, tuned.start.vehicle)
+    lines += [settings or f"no --set line to copy: {tuned.refusal}"]
+    lines += [*delay_lines(tuned), *source_lines(result, tuned.start.vehicle)]
     left_open = what_data_leave_open(result)
     lines += [f"not determined: {text}" for text in left_open] or [
         "the data determine every parameter: no pair with a correlation of 0.9, no standard error above 10 %"
@@ -49,9 +53,42 @@ def tuning_text(tuned: TunedCar) -> str:
     return "\n".join([*lines, *fit_sentences(tuned)])
 
 
+def delay_lines(tuned: TunedCar) -> list[str]:
+    """Return a line for each fitted delay."""
+    result, lines = tuned.result, []
+    for delay in result.delays:
+        value, error = 1e3 * result.solution[delay.path], 1e3 * result.standard_errors[delay.path]
+        target = tuned.measurements[delay.target].target
+        digits = max(1 - math.floor(math.log10(error)), 0) if 0.0 < error < math.inf else 3
+        spread = f"{abs(value):.{digits}f}" + (f" +- {error:.{digits}f}" if math.isfinite(error) else "") + " ms"
+        large = abs(value) > max(SIGNIFICANT * error, 500.0 * SHARE_OF_STEP * 2.0 * target.half_sample)
+        lines.append(
+            f"the {delay.group} of {target.name} {'lead' if value < 0.0 else 'lag'} the input by {spread}, fitted "
+            "with the parameters" + (f": a sensor delay? {delay.option(1e-3 * value)} holds it" if large else "")
+        )
+    return lines
+
+
+def source_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
+    """Return the table of what the standard errors hold, and of what else would move the values."""
+    free = [parameter.path for parameter in result.parameters if parameter.path in result.free]
+    if not free:
+        return []
+    names = [f"{path} [{unit_of(vehicle, path)}]" for path in free]
+    width = max(48, *map(len, names))
+    lines = [f"{'standard error from':<{width}} {'noise':>9} {'and misfit':>11} {'shift by half a sample of lag':>30}"]
+    for name, path in zip(names, free, strict=True):
+        lag = result.lag_shifts[path]
+        shift = f"{lag:.2g}" if math.isfinite(lag) else "-"
+        lines.append(
+            f"{name:<{width}} {result.standard_errors[path]:>9.2g} {result.misfit_errors[path]:>11.2g} {shift:>30}"
+        )
+    return lines
+
+
 def agreement_lines(agreement: Sequence[Agreement]) -> list[str]:
     """Return the table of the errors against the measurements before and after the fit."""
-    names = [f"{row.measurement}, {row.channel}, {row.measure} [{row.unit}]" for row in agreement]
+    names = [f"{row.measurement}, {row.label}, {row.measure} [{row.unit}]" for row in agreement]
     width = max(48, *map(len, names)) if names else 48
     lines = [f"{'error against the measurement':<{width}} {'before':>9} {'after':>9}"]
     lines += [

@@ -1,0 +1,127 @@
+"""Every command that `inspect` advises runs: files of users, of other programs, and with each fault of a record.
+
+The files that other tests make are checked where they are made, see `tests/conftest.py`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.advice import advised, run_advice
+from tests.signals.records import logger_files
+from vehicle.signals.excitation.input_files import find_input
+
+ROOT = Path(__file__).resolve().parents[2]
+OUTSIDE = sorted(
+    path
+    for folder in (ROOT / "tests" / "data" / "uff", ROOT.parent / "shared" / "data" / "failing-inputs")
+    for path in (folder.iterdir() if folder.is_dir() else ())
+    if path.suffix not in (".md", ".dbc", "")
+)
+TEXTS = sorted(name for name, value in vars(logger_files).items() if name.isupper() and isinstance(value, str))
+TIME = np.arange(3000) / 100.0
+SINE = np.sin(2 * np.pi * 2.0 * TIME) * np.clip(TIME, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("path", OUTSIDE, ids=lambda path: path.name)
+def test_files_of_other_programs(path, tmp_path):
+    database = path.parent / "imu.dbc"
+    run_advice(path, tmp_path, *(["--dbc", str(database)] if path.name.endswith("bus.log") else []))
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_files_of_loggers(name, tmp_path):
+    path = tmp_path / "logger.txt"
+    path.write_text(getattr(logger_files, name), encoding="utf-8")
+    run_advice(path, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["bump_1p5mm.csv", "low.csv"])
+def test_shipped_inputs(name, tmp_path):
+    assert run_advice(find_input(name), tmp_path) == ["shaker"]
+
+
+def swapped():
+    time = TIME.copy()
+    time[[1000, 1001]] = time[[1001, 1000]]
+    return time
+
+
+def with_empty(values, begin, end):
+    values = values.copy()
+    values[begin:end] = np.nan
+    return values
+
+
+CASES = {
+    # stamps, accelerations, commands with a part of their words; no command where none can accept the file
+    "times out of order": (swapped(), SINE, "--from 10.02 --to 29.99"),
+    "a restarted clock": (np.concatenate([TIME[:1500], TIME[:1500]]), SINE, None),
+    "a clock that restarts once and goes on": (np.concatenate([TIME[:500], TIME[:2500]]), SINE, "--from 5 --to 24.99"),
+    "a pause": (np.where(TIME > 20.0, TIME + 3.0, TIME), SINE, "--from 0 --to 20"),
+    "pauses with parts that are too short": (TIME + 3.0 * np.floor(TIME / 0.3), SINE, None),
+    "a part shorter than the spline of --resample": (TIME + np.floor(TIME / 0.05) + 0.002 * (SINE > 0), SINE, None),
+    "an empty channel": (TIME, np.full(TIME.size, np.nan), None),
+    "empty cells": (TIME, with_empty(SINE, 1000, 1002), "--from 10.02 --to 29.99"),
+    "empty cells and jitter": (TIME + 0.002 * (np.arange(TIME.size) % 7 == 3), with_empty(SINE, 9, 12), "--from 0.12"),
+    "a level beyond comfort": (TIME, 500.0 * SINE, None),
+    "a sensor that was off": (TIME, np.zeros(TIME.size), None),
+    "gravity": (TIME, 9.81 + SINE, "--offset remove"),
+    "a short record": (TIME[:500], SINE[:500], None),
+    "batches": (0.2 * np.floor(TIME / 0.2), SINE, "--rate 100"),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_faults_of_an_acceleration(name, tmp_path):
+    time, values, words = CASES[name]
+    path = tmp_path / "seat.csv"
+    cells = (f"{t:.6g},{'' if np.isnan(a) else f'{a:.6f}'}" for t, a in zip(time, values, strict=True))
+    path.write_text("\n".join(["time [s],seat z [m/s2]", *cells]) + "\n")
+    commands, text = advised(path)
+    assert run_advice(path, tmp_path) == ([] if words is None else ["comfort"]), text
+    assert (words or "no command: ") in (text if words is None else " ".join(commands[0])), text
+
+
+@pytest.mark.parametrize(
+    ("words", "names"),
+    [
+        (None, ("Altitude", "Distance")),
+        (None, ("Damper Pos FL", "Federweg VR")),
+        ("--channel 'fl=Shaker FL'", ("Shaker FL", "Distance")),
+        ("--channel 'fl=Shaker FL'", ("Shaker FL", "Damper Pos FL")),
+    ],
+)
+def test_a_displacement_that_is_no_plate(words, names, tmp_path):
+    path = tmp_path / "lengths.csv"
+    table = np.column_stack([TIME, SINE, 5.0 * SINE])
+    heads = ",".join(["time [s]", *(f"{name} [mm]" for name in names)])
+    np.savetxt(path, table, "%.5f", ",", header=heads, comments="")
+    text = advised(path)[1]
+    assert (words or "no plate and no road") in text
+    run_advice(path, tmp_path)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.2])
+def test_the_comparison_takes_the_options_of_the_clock(jitter, tmp_path):
+    path = tmp_path / "rig.csv"
+    time = TIME + jitter / 100.0 * np.random.default_rng(1).uniform(size=TIME.size)
+    table = np.column_stack([time, 2.0 * SINE, 0.1 * SINE, 0.1 * SINE])
+    heads = "time [s],Shaker FL [mm],Hub FL z [g],Seat z [g]"  # the car of the command has no seat
+    np.savetxt(path, table, "%.6f", ",", header=heads, comments="")
+    assert run_advice(path, tmp_path) == ["shaker", "compare"]
+
+
+def test_a_record_too_short_for_an_frf_is_refused_before_its_run(tmp_path, capsys, monkeypatch):
+    from vehicle.commands.shaker import main
+
+    monkeypatch.setattr("vehicle.runs.car.car.Car.run", lambda *_, **__: pytest.fail("the run has begun"))
+    path = tmp_path / "short.csv"
+    np.savetxt(
+        path, np.column_stack([TIME[:100], SINE[:100]]), "%.5f", ",", header="time [s],displacement [mm]", comments=""
+    )
+    assert main(["--input", str(path), "--output", str(tmp_path / "out")]) == 3
+    assert "1 s is too short for an FRF up to 40 Hz; record at least" in capsys.readouterr().err

@@ -1,0 +1,51 @@
+"""Options --delay and --drift: the clock of a measurement, and the delays of groups of its channels."""
+
+from __future__ import annotations
+
+import argparse
+
+DELAY = (
+    "S: the measurement began this long after the run [s]; GROUP=TIME, as accelerations=12.3ms: channels that lag the "
+    "others by this in the file, taken out; GROUP is plates, accelerations, velocities, displacements, forces, a "
+    "channel or a pattern with *; may be repeated"
+)
+
+
+def delay_option(parser: argparse._ActionsContainer, more: str = "") -> None:
+    """Add --delay, the start of a measurement after the run and the delays of groups of channels.
+
+    Args:
+        parser: parser of the command, or the group of the options that act on the measurement.
+        more: further text of the help.
+    """
+    parser.add_argument("--delay", action="append", default=[], metavar="[GROUP=]TIME", help=DELAY + more)
+
+
+def drift_option(parser: argparse._ActionsContainer) -> None:
+    """Add --drift, the drift of the clock of a measurement against that of the run."""
+    parser.add_argument(
+        "--drift",
+        type=float,
+        default=0.0,
+        metavar="PPM",
+        help="the clock of the measurement is slow by so many parts per million: its times are multiplied by 1 + PPM / "
+        "1e6, then --delay is added; 0",
+    )
+
+
+def clock_of(options: argparse.Namespace) -> tuple[float, float]:
+    """Return the number of --delay [s] and --drift [-].
+
+    Args:
+        options: parsed options of a command with both.
+
+    Raises:
+        ConfigurationError: a value is not finite, or the drift exceeds 0.1.
+    """
+    from vehicle.runs.comparison.compared_run import require_drift
+    from vehicle.signals.records.counterpart import PARTS
+    from vehicle.signals.records.delays import parsed_delays, split_delay
+
+    drift = options.drift / PARTS
+    require_drift(drift)
+    return split_delay(parsed_delays(options.delay))[0], drift

@@ -1,0 +1,70 @@
+"""Simulation of a car on a signal with the engine that is asked for, or that the motion needs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from vehicle.engines.reduced.reduced_run import simulate_reduced
+from vehicle.engines.simulation.judgement import require_finite, require_samples
+from vehicle.engines.simulation.recording import Recording
+from vehicle.engines.simulation.stepping import Progress, simulate
+from vehicle.errors import ConfigurationError
+from vehicle.names import ENGINES
+from vehicle.signals.excitation.signal import Signal
+
+
+def simulated_run(
+    car: Any, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None
+) -> tuple[Any, Recording, str]:
+    """Simulate a car on a signal.
+
+    Args:
+        car: the car.
+        signal: displacement of the plates.
+        progress, engine, channels: as in `Car.run`.
+
+    Returns:
+        The simulated car, with its time step if MuJoCo ran; the recording; the reason for the choice of the engine.
+
+    Raises:
+        VehicleError: see `Car.run`.
+    """
+    if engine not in ENGINES:
+        raise ConfigurationError(f"engine: found {engine!r}, allowed are {', '.join(ENGINES)}")
+    defaults = car.vehicle.channels
+    if isinstance(channels, str):
+        raise ConfigurationError(
+            f"channels: found the text {channels!r}, must be a list of names; for loads, set "
+            "[*car.vehicle.channels, *car.vehicle.load_channels]"
+        )
+    car.vehicle.require_channels(channels or (), (*defaults, *car.vehicle.requested_channels))
+    car.vehicle.require_wheels(signal.wheels)
+    names = defaults if channels is None else channels
+    more = [name for name in names if name not in defaults]
+    loads = [name for name in more if name in car.vehicle.load_channels]
+    require_samples(signal.duration * car.vehicle.solver.record_rate, len(names))
+    reason = "asked for"
+    if engine != "mujoco":
+        car.check("reduced")
+        recording = simulate_reduced(
+            car.poles,
+            signal,
+            dampers=[damper.law for damper in car.vehicle.composition.dampers],
+            record_rate=car.vehicle.solver.record_rate,
+            tyre_load=car.static.tyre_load,
+            channels=channels,
+            loads=car.load_rows if loads else None,
+        )
+        require_finite(recording)
+        if engine == "reduced" or recording.statistics.within_validity:
+            if engine == "auto":
+                reason = "the motion stayed within the validity of the reduced engine"
+            return car, recording, reason
+        reason = "; ".join(recording.statistics.warnings)
+    stepped = car.stepped()
+    recording = simulate(stepped.model, signal, progress=progress, requested=more)
+    require_finite(recording)
+    if channels is not None:
+        recording = recording.only(channels)
+    return stepped, recording, reason

@@ -1,0 +1,158 @@
+"""Delays of the groups of channels of a measurement against its plates, from the lag of each channel against a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT, Counterpart
+from vehicle.signals.records.delays import PLATES, group_of
+
+RUN = "run"
+"""Reference of the first group: its lag contains the start of the record."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChannelLag:
+    """Lag of a measured channel against the run, in which both agree best.
+
+    Attributes:
+        channel: channel name in the model.
+        lag: lag in the file, before any delay is taken out [s].
+        error: standard error [s].
+        taken_out: delay that was taken out [s].
+    """
+
+    channel: str
+    lag: float
+    error: float
+    taken_out: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class GroupDelay:
+    """Delay of a group of channels of a measurement.
+
+    The delay is that of best agreement with the run. It is the delay of the sensors as far as the car of the run has
+    the phases of the measured one; a fit (`tune`) has both as unknowns.
+
+    Attributes:
+        group: plates, accelerations, velocities, displacements, forces or others.
+        against: group or "run" to which the delay refers.
+        delay: delay in the file [s]; NaN where the channels of the group disagree.
+        error: standard error, from the channels and their scatter [s].
+        taken_out: part of the delay that was taken out [s].
+        agreeing: number of channels with this delay.
+        channels: number of channels with a known lag.
+    """
+
+    group: str
+    against: str
+    delay: float
+    error: float
+    taken_out: float
+    agreeing: int
+    channels: int
+
+    def summary(self) -> dict[str, Any]:
+        """Return the entry of `compare.json`."""
+        told = math.isfinite(self.delay)
+        return {
+            "group": self.group,
+            "against": self.against,
+            "delay_s": self.delay if told else None,
+            "delay_error_s": self.error if told else None,
+            "taken_out_s": self.taken_out,
+            "agreeing": self.agreeing,
+            "channels": self.channels,
+        }
+
+    def advice(self, step: float, command: str = "") -> list[str]:
+        """Return a message with the option that takes the rest of the delay out; [] without a significant rest.
+
+        Args:
+            step: sampling interval of the comparison [s].
+            command: command with the option; empty for the running command.
+        """
+        rest = self.delay - self.taken_out
+        if self.against == RUN or not abs(rest) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
+            return []
+        return [
+            f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
+            f"{1e3 * abs(self.delay):.3g} ms (+- {1e3 * self.error:.1g} ms, in {self.agreeing} of {self.channels} "
+            "channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
+            f"--delay {self.group}={1e3 * self.delay:.5g}ms" + (f" of {command}" if command else "")
+        ]
+
+
+def channel_lags(parts: Sequence[Counterpart], taken_out: Mapping[str, float]) -> list[ChannelLag]:
+    """Return the lags of time histories with a reliable shift, in the middle of their common time.
+
+    Args:
+        parts: comparisons returned by `counterparts`.
+        taken_out: channel -> delay that was taken out [s].
+    """
+    shifts = [(part.channel, part.reliable_shift) for part in parts]
+    known = [(channel, shift) for channel, shift in shifts if shift is not None]
+    middle = float(np.median([shift.middle for _, shift in known])) if known else 0.0
+    lags = []
+    for channel, shift in known:
+        out = taken_out.get(channel, 0.0)
+        error = float(np.nan_to_num(shift.shift_error, posinf=0.0))
+        lags.append(ChannelLag(channel=channel, lag=out - shift.at(middle), error=error, taken_out=out))
+    return lags
+
+
+def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -> tuple[GroupDelay, ...]:
+    """Return the delay of each group: the weighted mean of the lags of its channels, less that of the reference.
+
+    Channels that differ from the median by more than a sampling interval and four standard errors do not count; if
+    they are half of a group or more, the group has no delay.
+
+    Args:
+        lags: lags of channels.
+        step: sampling interval of the comparison [s].
+        reference: group with the lag 0; by default the plates, or else the first group, whose own delay is its lag
+            against the run.
+    """
+    groups: dict[str, list[ChannelLag]] = {}
+    for each in lags:
+        groups.setdefault(group_of(each.channel), []).append(each)
+    if not groups:
+        return ()
+    first = reference or (PLATES if PLATES in groups else next(iter(groups)))
+    base = _mean(groups[first], step) if first in groups else (0.0, 0.0, 0.0, 0)
+    delays = []
+    for group in sorted(groups, key=lambda name: name != first):
+        lag, error, out, agreeing = _mean(groups[group], step)
+        own = group == first
+        delays.append(
+            GroupDelay(
+                group=group,
+                against=RUN if own else first,
+                delay=lag if own else lag - base[0],
+                error=error if own else math.hypot(error, base[1]),
+                taken_out=out if own else out - base[2],
+                agreeing=agreeing,
+                channels=len(groups[group]),
+            )
+        )
+    return tuple(delays)
+
+
+def _mean(lags: Sequence[ChannelLag], step: float) -> tuple[float, float, float, int]:
+    """Return mean, standard error, mean of the delays taken out, and number of agreeing channels."""
+    values, errors, out = (np.array([getattr(lag, name) for lag in lags]) for name in ("lag", "error", "taken_out"))
+    alike = np.abs(values - np.median(values)) <= np.maximum(step, SIGNIFICANT * errors)
+    count = int(np.count_nonzero(alike))
+    if 2 * count <= len(lags):
+        return math.nan, math.nan, float(np.mean(out)), count
+    weight = 1.0 / (errors[alike] + 1e-3 * step) ** 2
+    mean = float(np.average(values[alike], weights=weight))
+    scatter = float(np.average((values[alike] - mean) ** 2, weights=weight)) / max(count - 1, 1)
+    error = math.sqrt(max(scatter, 1.0 / float(weight.sum())))
+    return mean, error, float(np.mean(out[alike])), count

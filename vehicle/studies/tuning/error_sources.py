@@ -1,0 +1,62 @@
+"""How far causes other than noise move the values of a fit: residuals of a model that is wrong, and lags of sensors.
+
+The standard errors of a fit treat the residuals as noise: random, with the correlation of neighbours. What they leave
+out is stated beside them.
+
+1. Misfit. The residuals of a wrong model are systematic over whole stretches of time or frequency. Each measurement is
+   cut into `STRETCHES` stretches, all rows together, and each stretch is one observation, whatever its residuals r_b:
+
+       Cov = (J'J)^-1 (G / (G - 1) sum_b g_b g_b') (J'J)^-1,   g_b = J_b' r_b,   G stretches.
+
+   For white noise this is the covariance of the noise; a misfit that varies from stretch to stretch adds to it.
+   A misfit that is the same everywhere, as a wrong mass, moves the values and remains unseen.
+2. Lag. With a lag of half a sample in one channel or in all, the residuals change by dr, and the values by
+   (J'J)^-1 J' dr. A fitted delay takes the common lag of its group.
+
+Source: Liang and Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73 (1986), 13-22;
+Kuensch, The jackknife and the bootstrap for general stationary observations, Annals of Statistics 17 (1989), 1217-1241.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+STRETCHES = 20
+"""Stretches of a measurement: with 20 a standard error is known to 1 / sqrt(40) = 16 %."""
+
+
+def misfit_errors(jacobian: Vector, weighted: Vector, shapes: Sequence[tuple[int, int]], inverse: Vector) -> Vector:
+    """Return the standard errors of u with the stretches of each measurement as observations, (p,).
+
+    Args:
+        jacobian: Jacobian of the weighted residuals, (n, p).
+        weighted: weighted residuals, (n,).
+        shapes: rows and samples of each measurement, in the order of the residuals.
+        inverse: (J'J)^-1, (p, p).
+    """
+    scores, first = list[Vector](), 0
+    for rows, samples in shapes:
+        last = first + rows * samples
+        products = (jacobian[first:last] * weighted[first:last, None]).reshape(rows, samples, -1).sum(axis=0)
+        scores += [part.sum(axis=0) for part in np.array_split(products, min(STRETCHES, samples))]
+        first = last
+    table = np.array(scores).reshape(len(scores), -1)
+    factor = len(scores) / max(len(scores) - 1, 1)
+    return np.asarray(np.sqrt(np.maximum(factor * np.diag(inverse @ (table.T @ table) @ inverse), 0.0)))
+
+
+def lag_shifts(changes: Vector, sensitivity: Vector) -> Vector:
+    """Return the largest |shift| of u over the cases, (p,); NaN without a case.
+
+    Args:
+        changes: changes of the weighted residuals, (cases, n).
+        sensitivity: d u / d (weighted residuals), (p, n).
+    """
+    if not len(changes):
+        return np.full(sensitivity.shape[0], np.nan)
+    return np.asarray(np.max(np.abs(changes @ sensitivity.T), axis=0))

@@ -1,0 +1,144 @@
+"""Delays of measured responses against the input of the model: known ones, and an unknown of the fit for each group."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.errors import ConfigurationError
+from vehicle.signals.records.delays import PLATES, channel_delays, group_of
+from vehicle.signals.records.measured import Measured
+
+Vector = npt.NDArray[np.float64]
+
+HALF_RANGE = 0.02
+"""Half the range of a delay around its start [s]: half a period at 25 Hz. The start is the delay of best agreement with
+the car before the fit, so that the fit only has to follow the phases of the car."""
+
+MILLISECOND = 1e-3
+"""Unit of the coordinate of a delay in a fit [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ResponseDelays:
+    """Delays of the channels of a measurement.
+
+    Attributes:
+        known: channel to known delay [s].
+        fitted: channel to the group whose delay is an unknown of the fit.
+    """
+
+    known: Mapping[str, float] = field(default_factory=dict)
+    fitted: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Return the groups with an unknown delay."""
+        return tuple(dict.fromkeys(self.fitted.values()))
+
+    def of(self, channels: Sequence[str], groups: Mapping[str, float], lags: Mapping[str, float]) -> Vector:
+        """Return the delay of each channel [s].
+
+        Args:
+            channels: names of channels, (k,).
+            groups: group to delay [s]; 0 for a missing one.
+            lags: channel to a further delay [s].
+        """
+        return np.array(
+            [
+                self.known.get(name, groups.get(self.fitted.get(name, ""), 0.0)) + lags.get(name, 0.0)
+                for name in channels
+            ]
+        )
+
+    def settled(self, groups: Mapping[str, float]) -> ResponseDelays:
+        """Return the delays with those of all groups known."""
+        known = {channel: groups.get(group, 0.0) for channel, group in self.fitted.items()}
+        return ResponseDelays(known={**self.known, **known})
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DelayRange:
+    """Delay of a group of channels as an unknown of a fit, with the coordinate u = (value - start) / 1 ms.
+
+    Attributes:
+        path: name of the unknown, for messages.
+        group: group of channels.
+        target: index of the measurement.
+        start: delay at the start of the fit [s].
+    """
+
+    path: str
+    group: str
+    target: int
+    start: float
+
+    @property
+    def low(self) -> float:
+        """Minimum [s]."""
+        return self.start - HALF_RANGE
+
+    @property
+    def high(self) -> float:
+        """Maximum [s]."""
+        return self.start + HALF_RANGE
+
+    @property
+    def half_width(self) -> float:
+        """Half the distance of the limits of u [-]."""
+        return HALF_RANGE / MILLISECOND
+
+    def value(self, u: float) -> float:
+        """Return the delay at a coordinate u [s]."""
+        return self.start + MILLISECOND * u
+
+    def coordinate(self, value: float) -> float:
+        """Return u of a delay [-]."""
+        return (value - self.start) / MILLISECOND
+
+    def slope(self, _: float) -> float:
+        """Return d value / d u at a value [s]."""
+        return MILLISECOND
+
+    def option(self, delay: float) -> str:
+        """Return the option that takes a delay [s] out."""
+        return f"--delay {self.group}={1e3 * delay:.5g}ms"
+
+
+def start_delay(delays: Sequence[float], errors: Sequence[float]) -> float:
+    """Return the start of a delay [s]: the median of the channels, of two the one with the smaller error, 0 of none."""
+    if not delays:
+        return 0.0
+    if len(delays) == 2:
+        return float(delays[int(np.argmin(np.nan_to_num(errors, nan=math.inf)))])
+    return float(np.median(delays))
+
+
+def response_delays(
+    measured: Measured, channels: Sequence[str], known: Mapping[str, float], *, contained: bool
+) -> ResponseDelays:
+    """Return the known delays of channels against the input, and the groups of the others.
+
+    Args:
+        measured: the measurement.
+        channels: fitted channels.
+        known: group, channel or pattern to delay [s].
+        contained: the plates of the measurement are the input; else that of another file.
+
+    Raises:
+        ConfigurationError: a name specifies no channel, or plates with different delays.
+    """
+    every = [*(measured.record.channels if measured.record else ()), *(measured.frf.channels if measured.frf else ())]
+    found = channel_delays(tuple(dict.fromkeys([*every, *channels])), known)
+    plates = {found.get(name, 0.0) for name in every if group_of(name) == PLATES} if contained else {0.0}
+    if len(plates) > 1:
+        raise ConfigurationError(f"--delay: plates with different delays {sorted(plates)} s; set one, plates=TIME")
+    base = max(plates, default=0.0)
+    return ResponseDelays(
+        known={name: found[name] - base for name in channels if name in found},
+        fitted={name: group_of(name) for name in channels if name not in found},
+    )

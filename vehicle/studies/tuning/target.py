@@ -1,0 +1,41 @@
+"""Measurements that a model is compared with in a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+
+class Target(Protocol):
+    """Measurement that a model is compared with."""
+
+    @property
+    def rows(self) -> tuple[str, ...]:
+        """Return the names of the rows of the residuals."""
+
+    def residuals(self, model: Any, /) -> Vector:
+        """Return residuals over their assumed standard deviation, (rows, samples); 0 where a value is excluded."""
+
+
+@runtime_checkable
+class DelayedTarget(Target, Protocol):
+    """Measurement whose residuals are computed in two steps, so that delays need no further run of the model."""
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Return the names of the channels."""
+
+    @property
+    def half_sample(self) -> float:
+        """Return half the sampling interval of the measurement [s]; 0 if unknown."""
+
+    def response(self, model: Any, /) -> Any:
+        """Return the response of a model, without delays."""
+
+    def misfit(self, response: Any, groups: Mapping[str, float], lags: Mapping[str, float], /) -> Vector:
+        """Return the residuals for a response, group -> delay [s], and channel -> further delay [s]."""
