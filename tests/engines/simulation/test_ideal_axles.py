@@ -6,6 +6,7 @@ Asked for are 1e-3 mm and 1e-4 degree.
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -108,7 +109,7 @@ def rods(reach: float) -> dict[str, Any]:
     Args:
         reach: length l of these two [m].
     """
-    table = vehicle_table(REFERENCE)
+    table = vehicle_table(Path(REFERENCE))
     p, old = table["front"]["hardpoints"], table["front"]
     line = np.subtract(p["strut_top"], p["damper_bottom"])
     along = np.cross(line, [0.0, 1.0, 0.0])
