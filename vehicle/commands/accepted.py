@@ -11,7 +11,7 @@ from vehicle.names import CORNERS
 
 
 def refusal(arguments: Sequence[str]) -> str:
-    """Return the message with which a command refuses its files; empty if it accepts them.
+    """Return the error message of a command for its files; empty if the files are accepted.
 
     Args:
         arguments: name of the command (comfort, shaker or compare), and its options.

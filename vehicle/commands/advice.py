@@ -18,6 +18,7 @@ from vehicle.signals.records.channel_words import (
     wheel_of,
     words_of,
 )
+from vehicle.signals.records.text import LARGEST
 
 if TYPE_CHECKING:
     from vehicle.signals.records.channel import Channel, Measurement
@@ -216,16 +217,16 @@ def _plates(
     if len(speeds) == 1 and any(plain & set(NAMES[side]) for side in NAMES):
         speed = _pick(measurement, speeds[0][0])
         arguments = ["shaker", "--vehicle", "focus_road", "--road", *files, "--speed", f"channel:{speed}"]
-        heights = [channel for _, channel in moves if channel.name.strip().rstrip(".").lower() in
+        displacements = [channel for _, channel in moves if channel.name.strip().rstrip(".").lower() in
                    {name for names in NAMES.values() for name in names}]  # fmt: skip
-        same = [channel for _, channel in speeds if channel.axis is heights[0].axis]  # others are interpolated
-        command, why = _first(measurement, [[*arguments, *_clock(*heights, *same)]])
+        same = [channel for _, channel in speeds if channel.axis is displacements[0].axis]  # others are interpolated
+        command, why = _first(measurement, [[*arguments, *_clock(*displacements, *same)]])
         return command, "drives over the recorded road at the recorded speed" if command else f"a road, but: {why}"
     wheels: dict[str, int] = {}
     for number, channel in moves:
         wheel = wheel_of(channel.name)
-        together = [measurement.channels[other - 1] for other in wheels.values()]
-        if wheel and wheel not in wheels and all(overlap(channel, other) for other in together):
+        plates = [measurement.channels[other - 1] for other in wheels.values()]
+        if wheel and wheel not in wheels and all(overlap(channel, other) for other in plates):
             wheels[wheel] = number
     addition = ""
     if not wheels:
@@ -255,8 +256,8 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
     axes: dict[str, int] = {}
     for number, channel in seats or those:
         axis = axis_of(channel)
-        together = [measurement.channels[other - 1] for other in axes.values()]
-        if axis and axis not in axes and all(overlap(channel, other) for other in together):
+        assigned = [measurement.channels[other - 1] for other in axes.values()]
+        if axis and axis not in axes and all(overlap(channel, other) for other in assigned):
             axes[axis] = number
     if not axes:
         axes = {"z": (seats or those)[0][0]}
@@ -272,7 +273,8 @@ def _accelerations(measurement: Measurement, files: list[str], those: list[Numbe
         for word in ("--channel", f"{axis}={_pick(measurement, axes[axis])}")
     ]
     values = [np.real(channel.values) for channel in chosen]
-    still = all(abs(float(np.nanmean(each))) < 1e-3 * float(np.nanstd(each)) for each in values)
+    values = [each[np.abs(each) <= LARGEST] for each in values]  # False for NaN; the squares of larger ones overflow
+    still = all(each.size and abs(float(np.mean(each))) < 1e-3 * float(np.std(each)) for each in values)
     arguments = ["comfort", "--input", *files, *picks, *_clock(*chosen)]
     removed = [*arguments, "--offset", "remove"]
     command, why = _first(measurement, [arguments, removed] if still else [removed])

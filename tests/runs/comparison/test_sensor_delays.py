@@ -142,7 +142,7 @@ def test_command_says_it_and_takes_it_out(run, tmp_path, capsys):
         ("accelerations=12.3", None),
         ("accelerations=x", "must be a finite number of seconds, or with the unit ms or us, as 12.3ms"),
         ("accelerations=3min", "must be a finite number of seconds"),
-        ("forces=1ms", "no such channel or group; its groups are plates, velocities, accelerations"),
+        ("forces=1ms", "not a channel or group of the measurement; its groups are plates, velocities, accelerations"),
         ("accelerations=900", "leave no common time"),
     ],
 )

@@ -37,7 +37,7 @@ def test_a_bus_log_is_named_and_decoded(tmp_path, capsys, name):
     np.testing.assert_allclose(times(channels["AccZ"]), 0.02 * np.arange(6), atol=1e-6)
     assert inspect([str(path), "--dbc", str(database)]) == 0
     database.write_text(DBC.replace("BO_ 100", "BO_ 101"))
-    with pytest.raises(DataError, match=r"none of its messages \(0x64.*\) is in car.dbc"):
+    with pytest.raises(DataError, match=r"no message of the log \(0x64.*\) is in car.dbc"):
         read_record(path, [database])
 
 

@@ -1,5 +1,7 @@
 """Clipped, stuck and copied channels are named; sound ones are not."""
 
+import importlib
+
 import numpy as np
 import pytest
 
@@ -78,3 +80,19 @@ def test_shipped_inputs_are_sound(name):
     assert not any(
         "clipped" in text or "constant for" in text for text in read_signal(find_input(name), wheel="fr").notices
     )
+
+
+@pytest.mark.parametrize(("cell", "text"), [("1e200", "1e+200"), ("inf", "inf"), ("-inf", "-inf")])
+@pytest.mark.parametrize("command", ["inspect", "comfort"])
+def test_an_absurd_value_is_refused_for_what_it_is(tmp_path, capsys, command, cell, text):
+    """1e200 raised RuntimeWarnings before the refusal, and inf was called a missing value."""
+    rows = [f"{n / 500.0},{np.sin(0.3 * n):.6f}" for n in range(2000)]
+    rows[1000] = f"2.0,{cell}"
+    file = tmp_path / "seat.csv"
+    file.write_text("\n".join(["time [s],seat z [m/s2]", *rows, ""]))
+    arguments = [str(file)] if command == "inspect" else ["--input", str(file), "--channel", "z=seat z"]
+    assert importlib.import_module(f"vehicle.commands.{command}").main(arguments) == (0 if command == "inspect" else 3)
+    shown = capsys.readouterr()
+    if command == "comfort":
+        assert f"z: {text} at 2 s is no measured value (limit 1e+30)" in shown.err
+    assert "missing" not in shown.out + shown.err

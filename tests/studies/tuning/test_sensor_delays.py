@@ -100,7 +100,7 @@ def test_delays_are_named_by_channel_pattern_or_group():
     names = ("plate_fl_displacement", "knuckle_fl_acc_z", "seat_rail_acc_z", "damper_fl_velocity")
     found = channel_delays(names, {"seat_rail_acc_z": 3.0, "accelerations": 1.0, "*_velocity": 2.0})
     assert found == {"knuckle_fl_acc_z": 1.0, "seat_rail_acc_z": 3.0, "damper_fl_velocity": 2.0}
-    with pytest.raises(ConfigurationError, match="no such channel or group"):
+    with pytest.raises(ConfigurationError, match="not a channel or group of the measurement"):
         channel_delays(names, {"forces": 1.0})
 
 

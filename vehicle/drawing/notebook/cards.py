@@ -38,9 +38,11 @@ def run_card(run: Any) -> str:
     if "seat_rail_acc_x" in run.recording.channels:
         value = run.comfort()
         low, high = value.band
-        for place in (value, value.cushion) if value.cushion else (value,):
-            rows[f"unweighted, {place.point}"] = f"{place.unweighted.overall:.4g} m/s² RMS, {low:g} to {high:g} Hz"
-            rows[f"weighted, {place.point}"] = f"{place.weighted.overall:.4g} m/s² RMS (ISO 2631-1); lower is better"
+        for comfort in (value, value.cushion) if value.cushion else (value,):
+            rows[f"unweighted, {comfort.point}"] = f"{comfort.unweighted.overall:.4g} m/s² RMS, {low:g} to {high:g} Hz"
+            rows[f"weighted, {comfort.point}"] = (
+                f"{comfort.weighted.overall:.4g} m/s² RMS (ISO 2631-1); lower is better"
+            )
         if value.seat_value is not None:
             rows["SEAT value"] = f"{value.seat_value:.3g}; the seat isolates below 1"
     return card("Run", rows, line_drawing(run.time, run[shown], f"{shown} over {run.signal.duration:g} s"))

@@ -98,7 +98,7 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
 
 
 def event_of(recording: Recording, wheels: Sequence[str]) -> tuple[float, float] | None:
-    """Return begin and end of a single event of plates [s], as a bump; None for a continuous motion or for rest.
+    """Return begin and end of a single event of plates [s], as a bump; None if the motion is continuous or zero.
 
     Args:
         recording: recording of the run.
@@ -112,7 +112,7 @@ def event_of(recording: Recording, wheels: Sequence[str]) -> tuple[float, float]
 
 
 EVENT_LEVEL, EVENT_SHARE = 0.1, 0.5
-"""Share of the largest displacement above which a plate takes part in an event, and maximum share of the record."""
+"""Share of the largest displacement above which a plate is part of an event, and maximum share of the record."""
 
 
 def liveliest(time: Vector, values: Vector, length: float) -> float:

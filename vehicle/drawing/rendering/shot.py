@@ -253,7 +253,7 @@ class Shot:
         inside = (recording.time >= self.cut.start - ahead) & (recording.time <= self.cut.end + ahead)
         traces = []
         input_label = "plate [mm]" if self.road is None else "effective road [mm]"
-        for label, channel, scale, band, least in (
+        for label, channel, scale, band, minimum in (
             (input_label, f"plate_{wheel}_displacement", 1e3, None, 1e3 * AT_REST),
             ("seat rail, vertical [m/s²]", "seat_rail_acc_z", 1.0, None, LEAST_ACCELERATION),
             (f"damper {side_of(wheel, self.wheels)} [mm/s]", f"damper_{wheel}_velocity", 1e3, 1e3 * self.slip, 0.0),
@@ -261,7 +261,7 @@ class Shot:
             if channel not in recording.channels:
                 continue
             values = scale * recording[channel]
-            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0), least))
+            top = round_up(max(float(np.max(np.abs(values[inside]))), 1.2 * (band or 0.0), minimum))
             traces.append(Trace(label=label, values=values, top=top, band=band))
         return traces
 

@@ -93,7 +93,7 @@ def motion_shares(
 
 
 def leading_motions(shares: Mapping[str, float]) -> dict[str, float]:
-    """Return the motions that name a mode, with their shares: the one with half of its energy, else the two largest.
+    """Return the motions that name a mode, with their shares: the motion with half of its energy, or the two largest.
 
     Args:
         shares: share of the kinetic energy by motion, largest first.

@@ -1,7 +1,7 @@
 """Ride parameters of an axle: wheel rate, ride rate, unsprung mass, ride frequency, damping ratio, roll stiffness.
 
 The body is fixed. The wheels of the axle move by equal travel z, slowly, with bushings as they are and contact patches
-that roll freely; index o: by opposite travel. Stuck dampers keep their length; sliding ones have no rate.
+that roll freely; index o: by opposite travel. Stuck dampers keep their length; sliding dampers have no rate.
 
     wheel rate      K_w = dF/dz of a wheel            (tangent in the design position)
     wheel damping   C_w = sum of c i_d^2, c = (F_d(v) - F_d(-v)) / 2 v at v = 0.1 m/s; 0 for stuck dampers
@@ -115,12 +115,12 @@ class AxleRide:
 
     @property
     def roll(self) -> Support:
-        """Roll stiffness and roll damping of the axle without the tyres."""
+        """Return the roll stiffness and roll damping of the axle without the tyres."""
         return Support(stiffness=self.roll_springs + self.roll_bars, damping=self.roll_damping)
 
     @property
     def tyre_roll(self) -> Support:
-        """Roll stiffness and roll damping of the tyres, K_t t_p^2 / 2."""
+        """Return the roll stiffness and roll damping of the tyres, K_t t_p^2 / 2."""
         return self.tyre.times(0.5 * self.track**2)
 
 

@@ -10,8 +10,8 @@ Each figure is the natural frequency and the damping ratio of one motion alone, 
     hop     m_u     k = K_w + K_t            (both wheels of an axle in phase, the body at rest)
 
 The sprung mass m_s is the whole car without the unsprung masses m_u, which count as points in the wheel centres: body,
-engine, seats, occupants and loads as one rigid part, with the inertia I about its centre of gravity (x_s, z_s). It
-stands on the stations i: each axle with k_i = 2 K_r and K_phi,i of its suspension in series with its tyres (see
+engine, seats, occupants and loads as one rigid part, with the inertia I about its centre of gravity (x_s, z_s). The
+stations i support this part: each axle with k_i = 2 K_r and K_phi,i of its suspension in series with its tyres (see
 `vehicle.engines.simulation.axle_ride`), and each other contact with the ground, a rubber block, with k_i and k_i y_i^2.
 The damping c follows in the same way from dampers at 0.1 m/s, tyres and blocks. Stuck dampers keep their length.
 
@@ -58,7 +58,7 @@ class RideFigure:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Station:
-    """Where the sprung mass stands: an axle, or a contact of the body with the ground.
+    """Support of the sprung mass: an axle, or a contact of the body with the ground.
 
     Attributes:
         x: position along the car [m].
@@ -127,7 +127,7 @@ def _sprung(car: CarModel, axles: Mapping[str, AxleRide]) -> MassProperties:
 def _axle_station(car: CarModel, axle: str, ride: AxleRide) -> Station:
     """Return an axle as a station."""
     wheels = [wheel for wheel in car.vehicle.composition.wheels if wheel.axle == axle]
-    # The roll centre does not depend on the direction to the middle of the car.
+    # Both directions towards the middle of the car have the same roll centre.
     _, geometry = design_axle(car.model, car.static.preload, wheels, towards=1.0)
     return Station(
         x=wheels[0].center[0],

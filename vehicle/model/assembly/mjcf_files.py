@@ -1,8 +1,8 @@
 """Generated MJCF files: the model of the car on its rig, and a scene for a viewer, in which nothing moves.
 
-The force laws of the car are callbacks of this program. Without them MuJoCo would hold the parts by soft constraints of
-its own, and their motion would be none of the car. So `car.xml` requires a plugin that MuJoCo does not have: it
-refuses the file and names the reason. `scene.xml` has the same bodies without joints, forces and sensors.
+The force laws of the car are callbacks of this program. Without them MuJoCo would hold the parts by default soft
+constraints, and the car would move wrongly. So `car.xml` requires a plugin that does not exist in MuJoCo: MuJoCo
+rejects the file, and its message shows the reason. `scene.xml` has the same bodies without joints, forces and sensors.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def mjcf_files(vehicle: Vehicle, trimmed_body: Superelement) -> dict[str, bytes]
 
 
 def _guarded(text: str) -> str:
-    """Return a model that MuJoCo refuses, with the reason in the lines before the one that its message names."""
+    """Return a model that MuJoCo rejects, with the reason in the lines before the line of the error message."""
     head, end, body = text.partition("/>\n")  # of the first element, the compiler
     lines = textwrap.wrap(REASON, 110, initial_indent="  <!-- ", subsequent_indent="       ")
     extension = f'  <extension>\n    <plugin plugin="{PLUGIN}"/>\n  </extension>\n'

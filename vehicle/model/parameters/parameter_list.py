@@ -111,11 +111,11 @@ def parameter_at(vehicle: Vehicle, path: str, file: Path | None, optional: Optio
             that differ have it.
     """
     whole_paths = [path] if value_at(vehicle.table, path) is not None else meant(vehicle.table, path, optional)
-    found = [_settable(vehicle, whole, file) for whole in whole_paths]
-    if any(each.value != found[0].value for each in found):
-        values = ", ".join(f"{each.path} = {value_text(each.value)}" for each in found)
+    parameters = [_settable(vehicle, whole, file) for whole in whole_paths]
+    if any(each.value != parameters[0].value for each in parameters):
+        values = ", ".join(f"{each.path} = {value_text(each.value)}" for each in parameters)
         raise ConfigurationError(f"parameter {path} has several values: {values}; give the path of one of them")
-    return found[0] if len(found) == 1 else replace(found[0], path=path)
+    return parameters[0] if len(parameters) == 1 else replace(parameters[0], path=path)
 
 
 def _settable(vehicle: Vehicle, path: str, file: Path | None) -> Parameter:
@@ -143,7 +143,7 @@ def _on_side(path: str, value: Any) -> Any:
 
 
 def _source(file: Path | None, path: str, value: Any) -> str:
-    """Return the source of a value: the comment behind it in the vehicle file, or that it was changed."""
+    """Return the source of a value: its comment in the vehicle file, or `CHANGED` for a changed value."""
     if file is None:
         return ""
     original, sources = _original(file, file.stat().st_mtime_ns)
@@ -155,7 +155,7 @@ def _source(file: Path | None, path: str, value: Any) -> str:
     )
 
 
-# Read once for all looks at the parameters of a car, and of its variants.
+# Cached: all parameters of a car and of its variants have the same file.
 @lru_cache(maxsize=4)
 def _original(file: Path, modified: int) -> tuple[Mapping[str, Any], Mapping[str, str]]:
     """Return the values of a vehicle file and their sources; `modified`: time of its last change [ns]."""

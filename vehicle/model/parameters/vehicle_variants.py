@@ -69,8 +69,8 @@ class VehicleVariants:
                 _put(table, path, value, copies)
                 changed[owner] = None
         if body_moves(self.vehicle.table, table):
-            given = {path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()}
-            for path, value in followers(self.vehicle.table["body"], table["body"], given).items():
+            user_paths = {path for text in overrides for path, _ in self._numbers[text.partition("=")[0].strip()] or ()}
+            for path, value in followers(self.vehicle.table["body"], table["body"], user_paths).items():
                 _put(table, path, value, copies)
         return self._with_tables(table, changed)
 

@@ -3,8 +3,8 @@
     body.mass = f m:     I = f I about any point (CoG and radii of gyration stay); masses of the elastic model times f
     body.cog = c':       I about the CoG stays; about the origin I' = I + m (|c'|^2 1 - c' c''^T) - m (|c|^2 1 - c c^T)
 
-Values that the same variation sets are kept; the others follow, also those that a variation before has set: each
-variation acts on the car that the one before it has made. `body.model_mass` stores the mass to which the elastic model
+Values that the same variation sets are kept; the others follow, also those that an earlier variation has set: each
+variation acts on the result of the preceding variation. `body.model_mass` stores the mass to which the elastic model
 belongs, also in `vehicle.toml` of a run (`TrimmedBody.model_factor`); a model that a variation sets belongs to the mass
 of the body after it.
 """
@@ -35,8 +35,8 @@ def varied_table(table: Mapping[str, Any], overrides: Sequence[str], optional: O
     """
     varied = override(table, overrides, optional)
     if body_moves(table, varied):
-        given = {path for text in overrides for path in meant(varied, text.partition("=")[0].strip(), optional)}
-        put(varied, followers(table["body"], varied["body"], given))
+        user_paths = {path for text in overrides for path in meant(varied, text.partition("=")[0].strip(), optional)}
+        put(varied, followers(table["body"], varied["body"], user_paths))
     return varied
 
 
@@ -86,13 +86,13 @@ def body_moves(before: Mapping[str, Any], after: Mapping[str, Any]) -> bool:
     return any(first.get(key) != second.get(key) for key in ("mass", "cog", "superelement"))
 
 
-def followers(before: Mapping[str, Any], after: Mapping[str, Any], given: Collection[str]) -> dict[str, float]:
+def followers(before: Mapping[str, Any], after: Mapping[str, Any], user_paths: Collection[str]) -> dict[str, float]:
     """Return the values that follow from a change of mass or CoG, by their whole paths.
 
     Args:
         before: table [body] of a vehicle file.
         after: the table with other values of mass or CoG.
-        given: whole paths of values that are set and do not follow.
+        user_paths: whole paths of values that are set and do not follow.
     """
     numbers, new_numbers = _numbers(before), _numbers(after)
     if numbers is None or new_numbers is None:
@@ -106,11 +106,11 @@ def followers(before: Mapping[str, Any], after: Mapping[str, Any], given: Collec
             values[path] = values.get(path, 0.0) + more - _of_point(new_mass, cog)[name]
     elif factor == 1.0:
         values = {}
-    if "body.superelement" in given and "model_mass" in before:
+    if "body.superelement" in user_paths and "model_mass" in before:
         values["body.model_mass"] = new_mass
-    elif factor != 1.0 and "superelement" in after and "body.superelement" not in given:
+    elif factor != 1.0 and "superelement" in after and "body.superelement" not in user_paths:
         values["body.model_mass"] = float(before.get("model_mass", mass))
-    return {path: value for path, value in values.items() if path not in given}
+    return {path: value for path, value in values.items() if path not in user_paths}
 
 
 def _numbers(body: Mapping[str, Any]) -> tuple[float, list[float], dict[str, float], str] | None:

@@ -105,9 +105,9 @@ class Car:
     def with_(self, overrides: Overrides) -> Car:
         """Return a variant of this car with changed parameters; fast for many variants.
 
-        The variation acts on this car as it is: what follows the mass or the CoG of the body follows from its values,
-        also from those that a variation before has set (docs/vehicle-file.md). `overrides` of the variant lists the
-        values of all steps, so that `Car.load(file, variant.overrides)` loads the same car.
+        The variation acts on the current values of this car, also on those that an earlier variation has set: values
+        that depend on the mass or the CoG of the body follow from them (docs/vehicle-file.md). `overrides` of the
+        variant lists the values of all steps, so that `Car.load(file, variant.overrides)` loads the same car.
 
         If the changes affect only parameters of laws and masses, the matrices and static loads of the variant come from
         terms of this car, computed once (`vehicle.engines.linear.variant_matrices`), and its MuJoCo model is built at
@@ -141,7 +141,7 @@ class Car:
 
     @cached_property
     def _table(self) -> Mapping[str, Any]:
-        """Vehicle file of this car; if it is a variant of a loaded car, `curve` still names files of force laws."""
+        """Return the table of the vehicle file; in a variant of a loaded car, `curve` still names the law files."""
         if self._base is None:
             return self.vehicle.table
         try:
@@ -195,7 +195,7 @@ class Car:
                 as "tyre.stiffness.z"; with a leading "*." of all parameters with this end, if they are equal.
 
         Raises:
-            ConfigurationError: no parameter has this path (with the nearest path), several have, or it is a table.
+            ConfigurationError: no parameter (with the nearest path) or several have this path, or it is a table.
         """
         from vehicle.runs.car.car_data import source_file
 

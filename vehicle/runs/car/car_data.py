@@ -145,7 +145,8 @@ def car_data(car: Any) -> CarData:
     """Compute the data of a car.
 
     Args:
-        car: the car; on rolling tyres the modes beside the figures are those at its speed, all else that at rest.
+        car: the car; on rolling tyres the modes listed with the figures are those at its speed, all other data those
+            at rest.
 
     Raises:
         ConfigurationError: the car cannot be built.

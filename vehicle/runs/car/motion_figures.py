@@ -1,7 +1,7 @@
 """Headline figures of a car with the modes of the whole car that share their motions.
 
 Frequency and damping ratio of each figure are those of `vehicle.engines.simulation.ride_figures`: one motion alone, by
-its mass and its rates. A mode contains several motions, so a mode is never the figure; the modes are listed beside it,
+its mass and its rates. A mode contains several motions, so a mode is never the figure; the modes are listed with it,
 each with its share of this motion in its kinetic energy (`vehicle.engines.linear.motion_names`).
 """
 
@@ -69,7 +69,7 @@ def motion_figures(car: Any, states: Sequence[DamperState] = STATES) -> tuple[Mo
     """Return the headline figures of a car.
 
     Args:
-        car: the car; on rolling tyres the figures are those of the car at rest, beside the modes at its speed.
+        car: the car; on rolling tyres the figures are those of the car at rest, and the modes those at its speed.
         states: states of the dampers.
 
     Raises:

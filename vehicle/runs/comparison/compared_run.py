@@ -230,10 +230,10 @@ def response_lags(responses: Sequence[FrfComparison], taken_out: Mapping[str, fl
     lags = []
     for each in responses:
         weight = np.nan_to_num(each.measured_coherence, nan=1.0) * np.nan_to_num(each.simulated_coherence, nan=1.0)
-        found = phase_delay(each.frequency, each.simulated, each.measured, weight)
-        if found is not None and found.agreement >= SAME_MOTION:
+        delay = phase_delay(each.frequency, each.simulated, each.measured, weight)
+        if delay is not None and delay.agreement >= SAME_MOTION:
             out = taken_out.get(each.channel, 0.0)
-            lags.append(ChannelLag(channel=each.channel, lag=found.delay + out, error=found.error, taken_out=out))
+            lags.append(ChannelLag(channel=each.channel, lag=delay.delay + out, error=delay.error, taken_out=out))
     return lags
 
 

@@ -53,7 +53,7 @@ class Comparison:
 
     @property
     def plates(self) -> tuple[str, ...]:
-        """Inputs of the responses, as "plate_fr"; without unknown ones."""
+        """Return the inputs of the responses, as "plate_fr", without unknown inputs."""
         return tuple(dict.fromkeys(item.plate for item in self.responses if item.plate))
 
     def label(self, channel: str, plate: str) -> str:
@@ -247,13 +247,13 @@ class Comparison:
                 + ", ".join(f"{count} window{'s' if count > 1 else ''} of {length:.4g} s" for length, count in windows)
                 + " at the full rate, weighted by their RMS"
             )
-        told = [
+        delays = [
             f"{each.group} {1e3 * each.delay:.3f} +- {1e3 * each.error:.1g} ms after the {each.against}"
             + (f" ({1e3 * each.taken_out:.5g} ms taken out)" if each.taken_out else "")
             for each in self.delays
             if math.isfinite(each.delay)
         ]
-        lines += [f"delays: {'; '.join(told)}"] if told else []
+        lines += [f"delays: {'; '.join(delays)}"] if delays else []
         return "\n".join([*lines, *(f"notice: {text}" for text in self.notices)])
 
 

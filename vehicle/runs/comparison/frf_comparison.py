@@ -106,7 +106,7 @@ def paired(measured: FrfData, simulated: FrfData) -> list[tuple[int, float] | No
 
 
 def other_plates(measured: FrfData, simulated: FrfData) -> list[str]:
-    """Return a notice for inputs that only the measurement or only the simulation has."""
+    """Return a notice for inputs that only the measurement or only the simulation contains."""
     pairs = paired(measured, simulated)
     unpaired = [name.input for name, pair in zip(measured.names, pairs, strict=True) if pair is None and name.motion]
     compared = {pair[0] for pair in pairs if pair is not None}
@@ -141,7 +141,7 @@ def compare_responses(
         A comparison for each response, and the agreement of all together, None for a single response.
 
     Raises:
-        DataError: no common line, or a measured response without a plate beside those of several plates.
+        DataError: no common line, or a measured response without a plate among responses to several plates.
     """
     inside = (measured.frequency >= simulated.frequency[0]) & (measured.frequency <= simulated.frequency[-1])
     frequency = measured.frequency[inside]

@@ -24,7 +24,7 @@ def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
     modes = [mode for mode in car.modes(damper) if mode.frequency > 0.0 and not mode.grows]
     shapes = []
     for number, (mode, at) in enumerate(zip(modes, shapes_at(car, modes, points), strict=True), 1):
-        words, scale = mode.description, at.ravel()[np.argmax(np.abs(at))] or 1.0
+        description, scale = mode.description, at.ravel()[np.argmax(np.abs(at))] or 1.0
         shape = np.zeros((len(points), 6), dtype=np.complex128)
         shape[:, :3] = at / scale
         shapes.append(
@@ -36,7 +36,7 @@ def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:
                 points=points,
                 shape=shape,
                 # A line of a universal file has 80 characters: the leading motion with its share where two do not fit.
-                name=words if len(words) <= 80 else f"{words.partition(' with ')[0]} with others",
+                name=description if len(description) <= 80 else f"{description.partition(' with ')[0]} with others",
                 is_complex=True,
             )
         )

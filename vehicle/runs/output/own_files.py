@@ -23,7 +23,7 @@ def parameters_text(car: Car, header: str) -> str:
 
 
 def write_own_files(folder: Path, car: Car) -> dict[str, str]:
-    """Copy the templates and the body model that do not belong to the package.
+    """Copy the templates and the body model of the user, which are not part of the package.
 
     Args:
         folder: folder of the run.
@@ -46,6 +46,6 @@ def write_own_files(folder: Path, car: Car) -> dict[str, str]:
         (folder / name).parent.mkdir(exist_ok=True)
         text = file.read_bytes()
         if (folder / name).is_file() and (folder / name).read_bytes() == text:
-            continue  # the car is saved beside its own file
+            continue  # the car is saved in the folder of its file
         write_whole(folder / name, lambda path, text=text: path.write_bytes(text))  # type: ignore[misc]
     return {("template_" if "/" in name else "body_") + file.stem: name for name, file in files.items()}

@@ -119,7 +119,7 @@ def write_run(
     channels = run.car.vehicle.acceleration_channels
     responses, missing = _frfs(run, DependentInputsError if run.road is None else DataError)
     if run.road is not None:
-        missing = []  # on every road the rear plates repeat the front ones, which no user can change
+        missing = []  # on every road the rear plates repeat the front plates, which no user can change
     files = {"summary": SUMMARY_FILE, "vehicle": "vehicle.toml", "time": f"time.{time_format}"}
     if responses:
         files["frf"] = "frf.csv"
@@ -312,7 +312,7 @@ def summarise(
             "engine_reason": engine_reason,
         },
         "frf": _frf_summary(responses, channels) if responses else None,
-        # A run that was read from its folder has all of its notices, and makes most of them again.
+        # A loaded run contains all notices of the saved run, and most of them are generated again.
         "notices": list(
             dict.fromkeys(
                 [

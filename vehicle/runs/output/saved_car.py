@@ -1,4 +1,4 @@
-"""A car as a vehicle file, with the templates and the body model that do not belong to the package."""
+"""Save a car: a vehicle file, and the templates and the body model of the user."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from vehicle.runs.output.own_files import parameters_text, write_own_files
 def save_car(car: Car, file: Path | str, *, force: bool = False) -> Path:
     """Write a car as a vehicle file, from which `Car.load` makes the same car.
 
-    The file has every parameter as changed, the numbers of force laws that files gave among them. Templates and a body
-    model of the user are copied beside it.
+    Every parameter is written with its current value, also the numbers of force laws that were read from other files.
+    Templates and a body model of the user are copied to the same folder.
 
     Args:
         car: the car.
@@ -24,7 +24,7 @@ def save_car(car: Car, file: Path | str, *, force: bool = False) -> Path:
         The file.
 
     Raises:
-        ConfigurationError: the file exists without `force`, or another template or body model has the name of its own.
+        ConfigurationError: the file exists without `force`, or a template or body model would replace another file.
         OutputError: a file cannot be written.
     """
     path = Path(file)

@@ -61,7 +61,7 @@ def load_run(folder: Path | str) -> Run:
 
     The car is that of `vehicle.toml` in the folder, with all values as used; the signal is the recorded displacement of
     the plates, at the rate of the recording. Channels, FRFs, comfort and slip are those of the run that was saved.
-    Poses for a film are not saved, nor is the road behind the displacements.
+    Poses for a film and the road profile of the displacements are not saved.
 
     Args:
         folder: the folder.

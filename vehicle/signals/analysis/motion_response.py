@@ -41,7 +41,7 @@ class MotionResponse:
 
     @property
     def input(self) -> str:
-        """Name of the input, as "plate_fr" or "plate_fr+plate_fl"."""
+        """Return the name of the input, as "plate_fr" or "plate_fr+plate_fl"."""
         return self.named("").input
 
     def named(self, output: str) -> ResponseName:

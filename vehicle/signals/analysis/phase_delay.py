@@ -49,23 +49,23 @@ def phase_delay(frequency: Vector, first: npt.ArrayLike, second: npt.ArrayLike, 
         weight: weights of the lines [-], (m,).
 
     Returns:
-        The delay; None for fewer than three defined lines.
+        The delay; None if fewer than three lines are defined.
 
     Source: Piersol, Time delay estimation using phase data, IEEE Trans. ASSP 29(3), 1981, 471-477.
     """
-    one, two = np.asarray(first, dtype=complex), np.asarray(second, dtype=complex)
-    usable = np.isfinite(one) & np.isfinite(two) & (np.abs(one) > 0.0) & (np.abs(two) > 0.0) & (weight > 0.0)
+    h_1, h_2 = np.asarray(first, dtype=complex), np.asarray(second, dtype=complex)
+    usable = np.isfinite(h_1) & np.isfinite(h_2) & (np.abs(h_1) > 0.0) & (np.abs(h_2) > 0.0) & (weight > 0.0)
     if np.count_nonzero(usable) < 3:
         return None
     omega, w = 2.0 * np.pi * frequency[usable], weight[usable] / weight[usable].sum()
-    turn = two[usable] * np.conj(one[usable])
+    turn = h_2[usable] * np.conj(h_1[usable])
     turn /= np.abs(turn)
     step = 2.0 * np.pi / float(omega[-1]) / PER_PERIOD
     grid = step * np.arange(-np.ceil(LARGEST_DELAY / step), np.ceil(LARGEST_DELAY / step) + 1)
     delay = float(grid[np.argmax((np.exp(1j * grid[:, None] * omega) @ (w * turn)).real)])
     power = float(w @ omega**2)
     for _ in range(ROUNDS):
-        # sin in place of the angle: phases near +-180 degrees, as between resonances that do not fit, have no weight.
+        # sin in place of the angle: phases near +-180 degrees, as between two different resonances, have no weight.
         change = -float((w * omega) @ np.sin(np.angle(turn * np.exp(1j * omega * delay)))) / power
         delay += change
         if abs(change) < 1e-9:

@@ -35,7 +35,7 @@ class ResponseName:
 
     @property
     def input(self) -> str:
-        """Name of the input, as "plate_fr" or "plate_fr+plate_fl"; empty if unknown."""
+        """Return the name of the input, as "plate_fr" or "plate_fr+plate_fl"; empty if unknown."""
         return "+".join(plate for plate, _ in self.motion)
 
     def __str__(self) -> str:
@@ -68,7 +68,7 @@ def parsed_name(text: str) -> ResponseName:
 def row_of(name: ResponseName, names: Sequence[ResponseName]) -> tuple[int, float] | None:
     """Return the row of the same FRF in another set, and the factor of its values; None if it has none.
 
-    The FRF of an input to its plate p is H / a_p. An FRF to one plate is also that of an input which moves further
+    The FRF of an input to its plate p is H / a_p. The FRF of one plate also matches an input that moves further
     plates with it. An unknown input is the only one of the set.
 
     Args:

@@ -43,7 +43,7 @@ _OTHER_UNIT = re.compile(r"m?m/s(2|\^2|²)?|g")
 
 
 class ForeignTableError(DataError):
-    """A text table without a column of the time or of a plate in its first line, as an export with a head above it."""
+    """Text table whose first line names no time and no plate, for example an export with lines above its header."""
 
 
 def read_signal(

@@ -56,11 +56,13 @@ def _chosen(path: Path, choice: Choice, names: list[str]) -> Record:
     """
     measurement = read_record(path, choice.databases)
     roles = {role: wanted for role, wanted in choice.channels.items() if role != "time"}
-    names_in_file = {one.name for one in measurement.channels}
+    names_in_file = {channel.name for channel in measurement.channels}
     if not roles:
         roles = {axis: name for axis, name in zip(AXES, names, strict=True) if name in names_in_file}
     if not roles or not set(roles) <= set(AXES):
-        listed = ", ".join(f"{n} {one.name!r} [{one.unit}]" for n, one in enumerate(measurement.channels[:20], 1))
+        listed = ", ".join(
+            f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels[:20], 1)
+        )
         raise DataError(
             f"{path}: no axis is assigned; set --channel x=NAME --channel y=NAME --channel z=NAME, or one or two of "
             f"them, each with a number, an exact name or a pattern with *; the file has {listed}"
@@ -117,7 +119,7 @@ def read_acceleration(path: str | Path, point: str | None = None, choice: Choice
         if name not in record.channels and partial:
             continue
         if name not in record.channels:
-            points = dict.fromkeys(one[:-6] for one in record.channels if one.endswith("_acc_x"))
+            points = dict.fromkeys(channel[:-6] for channel in record.channels if channel.endswith("_acc_x"))
             points_shown = f"; set --channel to one of {', '.join(points)}" if points else ""
             shown = ", ".join(list(record.channels)[:6])
             raise DataError(f"{file}: no column {name}; found {shown}; needed are {needed}{points_shown}")

@@ -1,7 +1,7 @@
 """Decode the data frames of CAN buses with DBC databases: one decoder for every container of frames.
 
 A signal is x = factor * raw + offset, raw an integer of given position, size and byte order in the payload (Vector, DBC
-file format). The bits are extracted here because asammdf loses the sign of signals that are not aligned to bytes, takes
+file format). The bits are extracted here: asammdf loses the sign of signals that are not aligned to bytes, takes
 the raw value of a signal with a value table, and pads short frames with 0xFF. canmatrix reads the databases.
 """
 
@@ -44,7 +44,7 @@ HIGHEST_VALID = {
     28: 0xFAFFFFF,
     32: 0xFAFFFFFF,
 }
-"""Highest valid raw value of a J1939 signal by size [bit]; higher ones are error codes (SAE J1939-71, table 1)."""
+"""Highest valid raw value of a J1939 signal by size [bit]; higher values are error codes (SAE J1939-71, table 1)."""
 
 NO_VALUE = re.compile(
     r"\bsna\b|\bsnv\b|\bn/?a\b|not ?avail|not ?valid|unavail|invalid|undefined"
@@ -96,9 +96,9 @@ def quiet() -> Iterator[None]:
 def decode(
     path: Path, container: str, log: BusLog, databases: Sequence[Path]
 ) -> tuple[tuple[Channel, ...], tuple[str, ...]]:
-    """Decode the frames of a log into channels, each over the times of its message.
+    """Convert the frames of a log into channels, each over the times of its message.
 
-    A message is found by identifier, else by PGN if the database describes it as J1939. Frames of one message from
+    Messages are selected by identifier, else by PGN if the database describes them as J1939. Frames of one message from
     several buses, directions or identifiers are different channels, whose names state what differs.
 
     Args:
@@ -124,7 +124,7 @@ def decode(
     loaded = [load_database(database) for database in databases]
     messages = {source: message for source in log if (message := _message(source, loaded)) is not None}
     if not messages:
-        raise DataError(f"{path}: none of its messages ({_shown(log)}) is in {names}; use the database of this bus")
+        raise DataError(f"{path}: no message of the log ({_shown(log)}) is in {names}; use the database of this bus")
     channels: list[Channel] = []
     missing: Counter[str] = Counter()
     try:
@@ -133,12 +133,13 @@ def decode(
             channels += _signals(source, log[source], message, j1939, _difference(source, same), missing)
     except Exception as error:  # damaged databases describe impossible signals
         raise DataError(f"{path}: {names} cannot decode its frames ({error}); use another database") from None
-    rest = {source: frames for source, frames in log.items() if source not in messages}
-    decoded = frame_count - sum(frames.time.size for frames in rest.values())
+    undecoded = {source: frames for source, frames in log.items() if source not in messages}
+    decoded = frame_count - sum(frames.time.size for frames in undecoded.values())
     notices = [f"log of a CAN bus: {frame_count} frames, {decoded} decoded by {names}"]
-    if rest:
+    if undecoded:
         notices.append(
-            f"{frame_count - decoded} frames of {len(_identifiers(rest))} messages are not in {names}: {_shown(rest)}"
+            f"{frame_count - decoded} frames of {len(_identifiers(undecoded))} messages are not in {names}: "
+            f"{_shown(undecoded)}"
         )
     notices += [f"{text}: {count}" for text, count in missing.items()]
     return tuple(channels), tuple(notices)
@@ -154,7 +155,7 @@ def _shown(log: BusLog) -> str:
 
 
 def _message(source: Source, databases: Sequence[Any]) -> tuple[Any, bool] | None:
-    """Return the message of a source and True for J1939: by identifier, else by PGN; None if there is none or several.
+    """Return the message of a source and True for J1939: by identifier, else by PGN; None without a unique message.
 
     Of several messages of a PGN, that for any source address is taken.
     """
@@ -168,7 +169,7 @@ def _message(source: Source, databases: Sequence[Any]) -> tuple[Any, bool] | Non
         frame for frame, j1939 in frames if j1939 and frame.arbitration_id.pgn == parameter_group(source.identifier)
     ]
     any_source = [frame for frame in group if frame.arbitration_id.j1939_source == NULL_ADDRESS]
-    return next(((found[0], True) for found in (any_source, group) if len(found) == 1), None)
+    return next(((candidates[0], True) for candidates in (any_source, group) if len(candidates) == 1), None)
 
 
 def _is_j1939(frame: Any, database: Any) -> bool:
@@ -218,7 +219,7 @@ def _signals(
 
 
 def _rows(signal: Any, message: Any, frames: Frames) -> NDArray[np.bool_]:
-    """Return which frames contain a signal, (n,): long enough, and the multiplexer has one of its values."""
+    """Return which frames contain a signal, (n,): long enough, and the multiplexer selects the signal."""
     first, size = _first_bit(signal), signal.size
     inside: NDArray[np.bool_] = frames.length >= -(-(first + size) // 8)
     name = signal.muxer_for_signal
@@ -255,12 +256,12 @@ def raw_values(signal: Any, payload: NDArray[np.uint8]) -> NDArray[Any]:
     bits = bits[:, first - 8 * begin :][:, :size]
     if not signal.is_little_endian:
         bits = bits[:, ::-1]
-    words = np.zeros((len(payload), 8), dtype=np.uint8)
+    padded = np.zeros((len(payload), 8), dtype=np.uint8)
     packed = np.packbits(bits, axis=1, bitorder="little")
-    words[:, : packed.shape[1]] = packed
+    padded[:, : packed.shape[1]] = packed
     if signal.is_float:
-        return words.view(f"<f{size // 8}")[:, 0].astype(np.float64)
-    numbers = words.view("<u8")[:, 0]
+        return padded.view(f"<f{size // 8}")[:, 0].astype(np.float64)
+    numbers = padded.view("<u8")[:, 0]
     if not signal.is_signed:
         return numbers
     return (numbers << np.uint64(WIDEST - size)).view(np.int64) >> np.int64(WIDEST - size)
@@ -271,21 +272,21 @@ def _without_value(
 ) -> dict[str, NDArray[np.bool_]]:
     """Return the raw values that are no measured values, by reason, with their frames, (n,).
 
-    A value table names raw values; it does not replace factor and offset. A named value of a measured quantity (one
-    with a unit or a factor) is missing if its name says so, or if it is outside the stated range.
+    A value table names raw values; it does not replace factor and offset. A named value of a measured quantity
+    (with a unit or a factor) is missing if its name matches `NO_VALUE`, or if it is outside the stated range.
     """
     if not signal.unit and float(signal.factor) == 1.0 and float(signal.offset) == 0.0:
         return {}  # a state, whose numbers are its values
-    found: dict[str, NDArray[np.bool_]] = {}
+    reasons: dict[str, NDArray[np.bool_]] = {}
     for key, text in signal.values.items():
         value = float(key) * float(signal.factor) + float(signal.offset)
         spaced = re.sub(r"(?<=[a-z])(?=[A-Z])|_", " ", str(text)).lower()
         if NO_VALUE.search(spaced) or _outside(signal, value):
-            found[f"named {text!r}"] = raw == float(key)
+            reasons[f"named {text!r}"] = raw == float(key)
     size = next((size for size in HIGHEST_VALID if signal.size <= size), 0)
     if j1939 and size and not signal.is_float and not signal.is_signed:
-        found["above the valid range of J1939"] = (raw > HIGHEST_VALID[size]) & np.isfinite(values)
-    return {reason: where for reason, where in found.items() if where.any()}
+        reasons["above the valid range of J1939"] = (raw > HIGHEST_VALID[size]) & np.isfinite(values)
+    return {reason: where for reason, where in reasons.items() if where.any()}
 
 
 def _outside(signal: Any, value: float) -> bool:

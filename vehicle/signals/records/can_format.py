@@ -1,7 +1,7 @@
 """Read text logs of a CAN bus (Vector .asc, PEAK .trc, candump) into data frames, and decode them with databases.
 
 Every line is a data frame, a line of the header, or counted by its form: no line is dropped without a word. python-can
-reads the same formats, but drops unknown lines silently and takes relative times of .asc as absolute ones.
+reads the same formats, but drops unknown lines silently and takes relative times of .asc as absolute times.
 
 Sources: Vector, CAN ASC logging file format; PEAK, CAN TRC file format; can-utils, `candump -L` and `candump -t a`.
 """
@@ -90,8 +90,8 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
     del other[""]
     forms = ", ".join(f"{form!r} {count}" for form, count in other.most_common(8))
     if first is None:
-        found = f"; lines of other forms: {forms}" if forms else ""
-        raise DataError(f"{path}: log of a CAN bus ({log_format}) without data frames{found}; record it again")
+        other_forms = f"; lines of other forms: {forms}" if forms else ""
+        raise DataError(f"{path}: log of a CAN bus ({log_format}) without data frames{other_forms}; record it again")
     log = {source: frames_of(of_source) for source, of_source in rows.items()}
     channels, notices = decode(path, log_format, log, databases)
     left_out = (f"{sum(other.values())} lines without a data frame are left out: {forms}",) if forms else ()
@@ -117,11 +117,11 @@ def _row(match: re.Match[str], bus: str, extended: bool, length: int | None, sca
     return _Row(source, float(groups["time"]) * scale, data, len(data) if length is None else length)
 
 
-def _form(line: str, words: str) -> str:
-    """Return the form of a line without a data frame, for the count of such lines."""
+def _form(line: str, default: str) -> str:
+    """Return the form of a line without a data frame, for the count of lines by form."""
     if re.search(r"error ?frame", line, re.IGNORECASE):
         return "error frame"
-    return "remote frame" if _REMOTE.search(line) else words
+    return "remote frame" if _REMOTE.search(line) else default
 
 
 def _dump_row(line: str) -> _Row | str:
@@ -147,11 +147,11 @@ def _asc_parser(lines: Sequence[str]) -> Parser:
         clock = clock * relative + float(event["time"])
         match = _ASC.match(event["event"]) or _ASC_FD.match(event["event"])
         if match is None:
-            words = [word for word in event["event"].split() if not word[0].isdigit()]
-            if "Start" in words[:2]:
+            keywords = [word for word in event["event"].split() if not word[0].isdigit()]
+            if "Start" in keywords[:2]:
                 return ""  # start of the measurement, in the language of the program
             symbolic = re.match(r"(CANFD\s+)?\d+\s+\w+\s+(Rx|Tx)\s+(d|[01])\s", event["event"])
-            return _form(line, "frame with a symbolic name" if symbolic else words[0] if words else "numbers")
+            return _form(line, "frame with a symbolic name" if symbolic else keywords[0] if keywords else "numbers")
         try:
             identifier = int(match["id"], base)
             data = bytes(int(byte, base) for byte in match["data"].split())
@@ -179,12 +179,12 @@ def _trc_parser(lines: Sequence[str]) -> Parser:
         if line.lstrip().startswith(";"):
             return ""
         cells = dict(zip(columns, line.split(None, len(columns) - 1), strict=False))
-        kind = cells.get("T", "")
-        if kind not in ("DT", "FD", "FB", "FE", "BI"):
-            return "remote frame" if kind == "RR" else f"type {kind}"
+        frame_type = cells.get("T", "")
+        if frame_type not in ("DT", "FD", "FB", "FE", "BI"):
+            return "remote frame" if frame_type == "RR" else f"type {frame_type}"
         try:
             length = int(cells["l"]) if "l" in cells else FD_LENGTHS[int(cells["L"])]
-            length = min(length, 8) if kind == "DT" else length
+            length = min(length, 8) if frame_type == "DT" else length
             identifier = int(cells["I"], 16)
             data = bytes.fromhex(cells.get("D", ""))
             time = 1e-3 * float(cells["O"])
@@ -204,7 +204,7 @@ def _trc_1_row(line: str) -> _Row | str:
         return "bus status"
     match = _TRC_1.fullmatch(line)
     if match is None:
-        words = [word for word in line.split() if word[0].isalpha()]
-        return _form(line, words[0] if words else "numbers")
+        keywords = [word for word in line.split() if word[0].isalpha()]
+        return _form(line, keywords[0] if keywords else "numbers")
     bus = f"CAN{match['bus']}" if match["bus"] else ""
     return _row(match, bus, len(match["id"]) == 8, min(int(match["length"]), 8), 1e-3)

@@ -22,7 +22,7 @@ class Source(NamedTuple):
     """Key of frames of one message: frames of different keys are different signals.
 
     Attributes:
-        bus: name of the bus, such as CAN1 or can0; empty if unknown.
+        bus: name of the bus, for example CAN1 or can0; empty if unknown.
         direction: Rx or Tx; empty if unknown.
         identifier: arbitration ID.
         extended: True for an identifier of 29 bits.
@@ -36,7 +36,7 @@ class Source(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frames:
-    """Data frames of one source.
+    """Data frames of a source.
 
     Attributes:
         time: times of reception [s], (n,).
@@ -70,7 +70,7 @@ def grouped(
     length: NDArray[np.int64],
     keys: tuple[Sequence[str], Sequence[str], Sequence[int], Sequence[bool]],
 ) -> dict[Source, Frames]:
-    """Group the frames of one array by source.
+    """Split the frames of an array by source.
 
     Args:
         time: times [s], (n,).

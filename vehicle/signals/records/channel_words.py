@@ -101,8 +101,8 @@ def of_receiver(channels: Sequence[Channel]) -> bool:
     Args:
         channels: channels of a measurement.
     """
-    words = [set(words_of(channel.name)) for channel in channels]
-    return any(each & LATITUDE for each in words) and any(each & LONGITUDE for each in words)
+    names = [set(words_of(channel.name)) for channel in channels]
+    return any(each & LATITUDE for each in names) and any(each & LONGITUDE for each in names)
 
 
 def may_be_plate(channel: Channel, channels: Sequence[Channel]) -> bool:
@@ -112,11 +112,11 @@ def may_be_plate(channel: Channel, channels: Sequence[Channel]) -> bool:
         channel: displacement.
         channels: all channels of its file.
     """
-    words = set(words_of(channel.name))
-    if words & (ROUTE | SPRING):
+    terms = set(words_of(channel.name))
+    if terms & (ROUTE | SPRING):
         return False
     return not of_receiver(channels) or bool(
-        wheel_of(channel.name) or words & {"plate", "displacement", "left", "right"}
+        wheel_of(channel.name) or terms & {"plate", "displacement", "left", "right"}
     )
 
 

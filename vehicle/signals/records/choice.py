@@ -17,6 +17,7 @@ from vehicle.signals.records.clock import check_stamps, clock_options, is_unifor
 from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
 from vehicle.signals.records.resampled import resampled
 from vehicle.signals.records.table import USABLE, Vector
+from vehicle.signals.records.text import LARGEST
 from vehicle.signals.records.units import allowed_units, find_ratio, find_unit
 
 
@@ -242,23 +243,23 @@ def _blocks(
     measurement: Measurement, choice: Choice, channels: Mapping[str, Channel], notices: list[str]
 ) -> list[Block]:
     """Return the channels by their times: one block after a cut to the common span, several if they need resampling."""
-    path, together = measurement.path, dict(channels)
+    path, selected = measurement.path, dict(channels)
     if "time" in choice.channels:
-        together["time"] = measurement.channels[pick(measurement, choice.channels["time"])]
+        selected["time"] = measurement.channels[pick(measurement, choice.channels["time"])]
     blocks: list[Block] = []
-    if all(channel.axis is not None for channel in together.values()):
-        blocks, notice = cut(path, blocks_of(together))
+    if all(channel.axis is not None for channel in selected.values()):
+        blocks, notice = cut(path, blocks_of(selected))
         notices += [notice] if notice else []
-        together = dict(blocks[0].channels) if len(blocks) == 1 else together
+        selected = dict(blocks[0].channels) if len(blocks) == 1 else selected
     if choice.rate is None and "time" not in choice.channels:
         if not blocks:
             raise without_times(path, next(channel for channel in channels.values() if channel.axis is None))
         return blocks
-    if len({channel.values.size for channel in together.values()}) > 1:
-        sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in together.items())
+    if len({channel.values.size for channel in selected.values()}) > 1:
+        sizes = ", ".join(f"{role} {channel.values.size}" for role, channel in selected.items())
         raise DataError(f"{path}: channels of different length ({sizes}); choose channels of one sampling rate")
-    time = _times(path, choice, together, notices)
-    return [Block(time=time, channels={role: together[role] for role in channels})]
+    time = _times(path, choice, selected, notices)
+    return [Block(time=time, channels={role: selected[role] for role in channels})]
 
 
 def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple[Vector, dict[str, Vector]]:
@@ -276,6 +277,10 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
         notices.append(f"excerpt from {time[0]:.6g} to {time[-1]:.6g} s")
     values = {role: np.asarray(channel.si_values, dtype=np.float64)[selected] for role, channel in channels.items()}
     for role, samples in values.items():
+        absurd = np.flatnonzero(np.abs(samples) > LARGEST)
+        if absurd.size:
+            raise DataError(f"{path}: {role}: {samples[absurd[0]]:.4g} at {time[absurd[0]]:.6g} s is no measured value "
+                            f"(limit {LARGEST:g}); exclude it with --from and --to, or repair the file")  # fmt: skip
         missing = np.count_nonzero(~np.isfinite(samples))
         if missing == samples.size:
             channel = channels[role]
@@ -296,7 +301,7 @@ def _part(path: Path, block: Block, choice: Choice, notices: list[str]) -> tuple
 def _resampled(
     path: Path, parts: Sequence[tuple[Vector, dict[str, Vector]]], rate: float, notices: list[str]
 ) -> tuple[Vector, dict[str, Vector]]:
-    """Resample all parts to uniform times of their common span."""
+    """Interpolate all parts at uniform times of their common span."""
     first, last = max(float(time[0]) for time, _ in parts), min(float(time[-1]) for time, _ in parts)
     if last - first < 2.0 / rate:
         raise DataError(

@@ -111,7 +111,7 @@ def clock_of_rounded(time: Vector) -> tuple[float, int] | None:
 
 
 def clock_of_stamps(time: Vector) -> StampClock | None:
-    """Return the clock of samples whose stamps do not show it, see `stamp_clock`; None for usable stamps.
+    """Return the clock of samples whose stamps do not show it, see `stamp_clock`; None if the stamps are usable.
 
     Args:
         time: stamps [s], (n,).
@@ -123,7 +123,7 @@ def clock_of_stamps(time: Vector) -> StampClock | None:
 
 
 def check_stamps(where: object, time: Vector) -> None:
-    """Reject stamps that do not show when each sample was taken; the message contains the rate.
+    """Reject stamps that are not the times of the samples; the message contains the rate.
 
     Args:
         where: file, for the message.
@@ -204,7 +204,7 @@ def clock_options(time: Vector) -> tuple[str, ...]:
     """Return the command options that make a record with these times readable; () for uniform times.
 
     --from and --to select the longest part without a gap; --resample at the rate of the samples removes jitter; --rate
-    replaces stamps that do not show when each sample was taken.
+    replaces stamps that are not the times of the samples.
 
     Args:
         time: sample times of a channel [s], shape (n,).

@@ -1,7 +1,8 @@
-"""Bring channels with their own starts or rates to their common span of time.
+"""Bring channels with different starts or rates to their common span of time.
 
-Channel i has the times t_i0 + k T_i. The common span is from max t_i0 to the earliest last time. Channels of one rate
-whose samples coincide there are cut; others need resampling, since a shift by a part of a step is an interpolation.
+Channel i has the times t_i0 + k T_i. The common span begins at max t_i0 and ends at the earliest last time. Channels
+of one rate whose samples coincide there are cut; others need resampling, since a shift by a part of a step is an
+interpolation.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ class Block:
 
 
 def blocks_of(channels: Mapping[str, Channel]) -> list[Block]:
-    """Group channels by their times, in the order of the first channel of each group.
+    """Combine channels with the same times, in the order of the first channel of each group.
 
     Args:
         channels: role to channel with times.
@@ -54,7 +55,7 @@ def blocks_of(channels: Mapping[str, Channel]) -> list[Block]:
 
 
 def cut(where: object, blocks: list[Block]) -> tuple[list[Block], str]:
-    """Cut blocks whose samples coincide to their common span; leave other blocks unchanged.
+    """Return the common span of blocks whose samples coincide; other blocks are unchanged.
 
     Args:
         where: file, for the message.
@@ -79,7 +80,9 @@ def cut(where: object, blocks: list[Block]) -> tuple[list[Block], str]:
         }))  # fmt: skip
     if not all(_coincide(parts[0].time, part.time) for part in parts):
         return blocks, ""
-    whole = Block(time=parts[0].time, channels={role: one for part in parts for role, one in part.channels.items()})
+    whole = Block(
+        time=parts[0].time, channels={role: channel for part in parts for role, channel in part.channels.items()}
+    )
     cover = f"the channels cover different times ({_spans(blocks)})"
     return [whole], f"{cover}: cut to their common span, {first:.6g} to {last:.6g} s"
 
@@ -98,17 +101,21 @@ def span(where: object, blocks: list[Block]) -> tuple[float, float]:
     return first, last
 
 
-def overlap(one: Channel, other: Channel) -> bool:
+def overlap(channel: Channel, other: Channel) -> bool:
     """Return True if two channels have a common span of time; also for a channel without times."""
-    if one.axis is None or other.axis is None:
+    if channel.axis is None or other.axis is None:
         return True
-    step = 2.0 * max(_step(one.axis), _step(other.axis))
-    return bool(min(one.axis[-1], other.axis[-1]) - max(one.axis[0], other.axis[0]) >= step)
+    step = 2.0 * max(_step(channel.axis), _step(other.axis))
+    return bool(min(channel.axis[-1], other.axis[-1]) - max(channel.axis[0], other.axis[0]) >= step)
 
 
 def different_spans(channels: Sequence[Channel]) -> str:
     """Return a message on time histories of a file that begin or end at different times; empty if they do not."""
-    axes = [one.axis for one in channels if one.kind == "time" and one.axis is not None and one.axis.size > 1]
+    axes = [
+        channel.axis
+        for channel in channels
+        if channel.kind == "time" and channel.axis is not None and channel.axis.size > 1
+    ]
     ends = np.array([(axis[0], axis[-1], _step(axis)) for axis in axes]).reshape(-1, 3)
     ends = ends[np.isfinite(ends).all(axis=1)]
     if len(ends) < 2 or (np.ptp(ends[:, :2], axis=0) < ends[:, 2].max()).all():
@@ -143,14 +150,14 @@ def resampling_rate(blocks: list[Block]) -> str:
     return f"{round(rate)}" if rate >= 20.0 else f"{rate:.3g}"
 
 
-def _coincide(one: Vector, other: Vector) -> bool:
+def _coincide(time: Vector, other: Vector) -> bool:
     """Return True for equal sample times within `COINCIDENT` steps and `CLOCK_RESOLUTION`."""
-    if one.size != other.size:
+    if time.size != other.size:
         return False
-    tolerance = COINCIDENT * _step(one) + CLOCK_RESOLUTION
-    if one.size and abs(one[0] - other[0]) > tolerance:
+    tolerance = COINCIDENT * _step(time) + CLOCK_RESOLUTION
+    if time.size and abs(time[0] - other[0]) > tolerance:
         return False  # spares the comparison of long axes
-    return bool(np.allclose(one, other, rtol=0.0, atol=tolerance, equal_nan=True))
+    return bool(np.allclose(time, other, rtol=0.0, atol=tolerance, equal_nan=True))
 
 
 def _step(time: Vector) -> float:

@@ -86,7 +86,7 @@ def split_delay(delay: Delay) -> tuple[float, dict[str, float]]:
 
 
 def channel_delays(channels: Collection[str], delays: Mapping[str, float]) -> dict[str, float]:
-    """Return the delay of each channel that a name, a pattern or its group specifies, in this priority [s].
+    """Return the delays of channels by name, pattern or group, in this priority [s].
 
     Args:
         channels: names of channels of the model.
@@ -95,17 +95,17 @@ def channel_delays(channels: Collection[str], delays: Mapping[str, float]) -> di
     Raises:
         ConfigurationError: a name specifies no channel.
     """
-    found: dict[str, float] = {}
+    delay_of: dict[str, float] = {}
     for name in sorted(delays, key=lambda name: (name in channels, "*" in name or "?" in name)):
         chosen = [channel for channel in channels if group_of(channel) == name or fnmatch.fnmatchcase(channel, name)]
         if not chosen:
             groups = ", ".join(dict.fromkeys(group_of(channel) for channel in channels)) or "none"
             raise ConfigurationError(
-                f"--delay {name}=...: the measurement has no such channel or group; its groups are {groups}; "
+                f"--delay {name}=...: not a channel or group of the measurement; its groups are {groups}; "
                 f"its channels {', '.join(channels) or 'none'}"
             )
-        found |= dict.fromkeys(chosen, delays[name])
-    return found
+        delay_of |= dict.fromkeys(chosen, delays[name])
+    return delay_of
 
 
 def without_delays(chosen: Chosen, delays: Mapping[str, float]) -> Chosen:

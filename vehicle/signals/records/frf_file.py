@@ -49,17 +49,17 @@ class FrfData:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Output of each FRF, (k,)."""
+        """Return the output of each FRF, (k,)."""
         return tuple(name.output for name in self.names)
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Distinct inputs, as "plate_fr"; without unknown ones."""
+        """Return the distinct inputs, as "plate_fr", without unknown inputs."""
         return tuple(dict.fromkeys(name.input for name in self.names if name.motion))
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Name of each FRF in tables and figures, (k,): the output, with its plate if there are several inputs."""
+        """Return the names of the FRFs in tables and figures, (k,): the output, with its plate for several inputs."""
         return tuple(str(name) if len(self.inputs) > 1 else name.output for name in self.names)
 
     def renamed(self, names: Sequence[ResponseName]) -> FrfData:

@@ -60,12 +60,12 @@ class GroupDelay:
 
     def summary(self) -> dict[str, Any]:
         """Return the entry of `compare.json`."""
-        told = math.isfinite(self.delay)
+        finite = math.isfinite(self.delay)
         return {
             "group": self.group,
             "against": self.against,
-            "delay_s": self.delay if told else None,
-            "delay_error_s": self.error if told else None,
+            "delay_s": self.delay if finite else None,
+            "delay_error_s": self.error if finite else None,
             "taken_out_s": self.taken_out,
             "agreeing": self.agreeing,
             "channels": self.channels,
@@ -78,8 +78,8 @@ class GroupDelay:
             step: sampling interval of the comparison [s].
             command: command with the option; empty for the running command.
         """
-        rest = self.delay - self.taken_out
-        if self.against == RUN or not abs(rest) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
+        remainder = self.delay - self.taken_out
+        if self.against == RUN or not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
             return []
         return [
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
@@ -97,10 +97,10 @@ def channel_lags(parts: Sequence[Counterpart], taken_out: Mapping[str, float]) -
         taken_out: channel -> delay that was taken out [s].
     """
     shifts = [(part.channel, part.reliable_shift) for part in parts]
-    known = [(channel, shift) for channel, shift in shifts if shift is not None]
-    middle = float(np.median([shift.middle for _, shift in known])) if known else 0.0
+    estimates = [(channel, shift) for channel, shift in shifts if shift is not None]
+    middle = float(np.median([shift.middle for _, shift in estimates])) if estimates else 0.0
     lags = []
-    for channel, shift in known:
+    for channel, shift in estimates:
         out = taken_out.get(channel, 0.0)
         error = float(np.nan_to_num(shift.shift_error, posinf=0.0))
         lags.append(ChannelLag(channel=channel, lag=out - shift.at(middle), error=error, taken_out=out))
@@ -129,14 +129,14 @@ def group_delays(lags: Sequence[ChannelLag], step: float, reference: str = "") -
     delays = []
     for group in sorted(groups, key=lambda name: name != first):
         lag, error, out, agreeing = _mean(groups[group], step)
-        own = group == first
+        is_first = group == first
         delays.append(
             GroupDelay(
                 group=group,
-                against=RUN if own else first,
-                delay=lag if own else lag - base[0],
-                error=error if own else math.hypot(error, base[1]),
-                taken_out=out if own else out - base[2],
+                against=RUN if is_first else first,
+                delay=lag if is_first else lag - base[0],
+                error=error if is_first else math.hypot(error, base[1]),
+                taken_out=out if is_first else out - base[2],
                 agreeing=agreeing,
                 channels=len(groups[group]),
             )

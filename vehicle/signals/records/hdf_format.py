@@ -30,7 +30,7 @@ LONG = 10
 """Minimum ratio of columns to rows of an array with one channel per row."""
 
 LONG_UNITS = {"days": 86400.0, "hours": 3600.0, "minutes": 60.0}
-"""Units of netCDF times in s, beside those of `vehicle.signals.records.units`."""
+"""Units of netCDF times in s, in addition to those of `vehicle.signals.records.units`."""
 
 NO_VALUES = "This is a netCDF dimension but not a netCDF variable"
 """Begin of the attribute NAME of an array that netCDF writes for a dimension alone; its numbers have no meaning."""

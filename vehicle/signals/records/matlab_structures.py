@@ -71,13 +71,13 @@ def _simulink(label: str, signals: Any) -> Iterator[tuple[str, Vector]]:
         values = np.asarray(element["values"])
         if values.dtype.kind not in "fiub" or not values.size:
             continue
-        own = label if elements.size == 1 else f"{label}({number})"
-        columns = columns_of(f"{own}.values", values.astype(np.float64))
+        element_label = label if elements.size == 1 else f"{label}({number})"
+        columns = columns_of(f"{element_label}.values", values.astype(np.float64))
         text = _word(element["label"]) if "label" in (elements.dtype.names or ()) else ""
         names = [part.strip(" <>") for part in text.split(",")]
         if len(names) != len(columns):
             names = [f"{text}({n})" if text else name for n, (name, _) in enumerate(columns, 1)]
-        yield from ((name or own, values) for name, (_, values) in zip(names, columns, strict=True))
+        yield from ((name or element_label, values) for name, (_, values) in zip(names, columns, strict=True))
 
 
 def _dspace(label: str, record: Mapping[str, Any]) -> Iterator[tuple[str, Vector, str, Vector | None]]:
@@ -104,7 +104,7 @@ def _has(record: Mapping[str, Any], field: str, inner: str) -> bool:
 
 
 def numbers(value: Any) -> Vector | None:
-    """Return a vector of numbers as floats, (n,); None for another array.
+    """Return a vector of numbers as floats, (n,); None if the value is no numeric vector.
 
     Args:
         value: field of a structure.

@@ -136,19 +136,19 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
         if number in buses:
             count = int(getattr(group.channel_group, "cycles_nr", 0))
             if count and not _is_can(group):
-                kind = next(
+                frame_type = next(
                     name for channel in group.channels if (name := str(channel.name).split(".")[0]) in BUS_FRAMES
                 )
-                frames[kind] += count
+                frames[frame_type] += count
             continue
         axes: dict[int, np.ndarray] = {}
         group_name = str(getattr(group.channel_group, "acq_name", "") or "") if len(file.groups) > 1 else ""
-        place = group_name or (f"group {number + 1}" if len(file.groups) > 1 else "")
+        group_label = group_name or (f"group {number + 1}" if len(file.groups) > 1 else "")
         master, seconds, remark = _axis(file, number)
         if master is not None:
-            channels.append(replace(master, place=place))
+            channels.append(replace(master, place=group_label))
         elif remark:
-            notices.append(f"{place or 'the group'}: {remark}")
+            notices.append(f"{group_label or 'the group'}: {remark}")
         for index, channel in enumerate(group.channels):
             if channel.channel_type in MASTERS and str(getattr(file, "version", "4")) >= "4":
                 continue
@@ -164,15 +164,15 @@ def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:
                 values=values.astype(np.float64),
                 unit=signal.unit or "",
                 axis=axis if np.array_equal(axis, times) else times,
-                place=place,
+                place=group_label,
             )
             if master is not None:
-                heights = master.name == "distance" and over_time.quantity == "displacement"
-                function = ROAD_PROFILE if heights else master.function
+                is_profile = master.name == "distance" and over_time.quantity == "displacement"
+                function = ROAD_PROFILE if is_profile else master.function
                 over_time = replace(over_time, axis=None, function=function, remark=remark)
             channels.append(over_time)
     if frames:
-        shown = ", ".join(f"{kind} {count}" for kind, count in frames.items())
+        shown = ", ".join(f"{frame_type} {count}" for frame_type, count in frames.items())
         notices.append(f"frames of other types are left out: {shown}")
     return channels, [*notices, *([f"{skipped} channels without numbers are ignored"] if skipped else [])]
 
@@ -187,19 +187,19 @@ def _axis(file: Any, number: int) -> tuple[Channel | None, float, str]:
         return None, 1.0, ""
     block = file.groups[number].channels[index]
     unit = file.get_channel_unit(group=number, index=index) or ""
-    entry, kind = find_unit(unit), SYNCHRONISATION.get(getattr(block, "sync_type", 1), "time")
-    if kind == "time" and (entry is None or entry.quantity == "time"):
+    entry, quantity = find_unit(unit), SYNCHRONISATION.get(getattr(block, "sync_type", 1), "time")
+    if quantity == "time" and (entry is None or entry.quantity == "time"):
         factor = 1.0 if entry is None else entry.factor
         return None, factor, "" if factor == 1.0 else f"times in {unit!r} are converted to s"
-    if kind == "time" and entry is not None:
-        kind = "distance" if entry.quantity == "displacement" else entry.quantity
-    remark = f"the master {block.name!r} is a {kind}: no times"
-    function = f"function of {kind}"
+    if quantity == "time" and entry is not None:
+        quantity = "distance" if entry.quantity == "displacement" else entry.quantity
+    remark = f"the master {block.name!r} is a {quantity}: no times"
+    function = f"function of {quantity}"
     return (
         Channel(
-            name="distance" if kind == "distance" else block.name,
+            name="distance" if quantity == "distance" else block.name,
             values=np.asarray(file.get_master(number), dtype=np.float64),
-            unit=unit or {"distance": "m", "angle": "rad"}.get(kind, ""),
+            unit=unit or {"distance": "m", "angle": "rad"}.get(quantity, ""),
             function=function if function in NOT_OVER_TIME else "time history",
             remark=remark,
         ),

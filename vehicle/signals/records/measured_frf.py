@@ -42,12 +42,12 @@ def measured_frfs(
     of the plate). Responses to a force are rejected: the inputs of the model are plate displacements.
 
     The input of a response is that of its role, else the plate that the file names: in the name of the channel, as
-    "knuckle_fr_acc_z / plate_fr", or as its reference. A role without a plate selects the responses of a point to all
+    "knuckle_fr_acc_z / plate_fr", or as its reference. Without a plate, a role selects the responses of a point to all
     plates that the file names.
 
     Args:
         measurement: contents of the file.
-        channels: model channel name, such as knuckle_fr_acc_z or knuckle_fr_acc_z/plate_fr, to number, name, pattern or
+        channels: model channel name, as knuckle_fr_acc_z or knuckle_fr_acc_z/plate_fr, to number, name, pattern or
             point in the file.
         choice: selection with units that override those of the file.
         inverted: names of channels whose sign is inverted.

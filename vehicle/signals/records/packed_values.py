@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 SCALINGS = (("scale_factor", "add_offset"), ("conversion", "offset"))
-"""Attributes of factor and offset: CF conventions, NWB. `add_offset` may stand alone, `offset` may not."""
+"""Attributes of factor and offset: CF conventions, NWB. `add_offset` needs no factor, `offset` needs one."""
 
 UNKNOWN_SCALINGS = ("gain", "scale", "scaling", "factor", "slope", "multiplier", "calibration", "sensitivity", "lsb")
-"""Names of attributes that may scale values, in a sense that no convention states."""
+"""Names of attributes that possibly scale the values; no convention defines their meaning."""
 
 SET_BY_USER = 2
 """HDF5 state of a fill value that the program set (H5D_FILL_VALUE_USER_DEFINED); netCDF sets it for missing samples."""
@@ -25,8 +25,8 @@ class Unpacked(NamedTuple):
     """Values of an array.
 
     Attributes:
-        values: unpacked values, NaN for missing ones, shape of the array.
-        fault: reason why the unit does not hold for the values; empty if it does.
+        values: unpacked values, NaN for missing values, shape of the array.
+        fault: reason why the unit is wrong for the values; empty if it is right.
         notices: messages on unpacking.
     """
 
@@ -74,7 +74,7 @@ def unpacked(name: str, dataset: Any) -> Unpacked:
 
 
 def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return which values are missing: equal to a fill value, or outside the valid range.
+    """Return the mask of missing values: equal to a fill value, or outside the valid range.
 
     The valid range is in packed values, except if it has the type of wider, unpacked values (NetCDF User Guide).
     """

@@ -9,7 +9,7 @@ from vehicle.signals.records.text_table import Kind, TextTable, kinds_of
 
 
 def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTable, list[str]]:
-    """Give all rows the cells of the names above, if only texts lie beyond the columns that all rows have.
+    """Extend all rows to the columns of the names above, if all cells outside the common columns are texts.
 
     Args:
         lines: all lines of the file.
@@ -17,7 +17,7 @@ def with_remarks(lines: list[str], table: TextTable) -> tuple[list[str], TextTab
 
     Returns:
         Lines with rows of equal width, the table that begins at its first wide row, and a notice on remarks without a
-        name. The arguments if no row has remarks, or if a number lies beyond the columns.
+        name. The arguments if no row has remarks, or if a number is outside the common columns.
     """
     delimiter, width = table.delimiter, len(table.kinds)
     if not delimiter:
@@ -52,6 +52,6 @@ def _is_row(line: str, delimiter: str, columns: Sequence[Kind]) -> bool:
     kinds = kinds_of(line, delimiter)
     return (
         len(kinds) > len(columns)
-        and all(kind in (column, "missing") for kind, column in zip(kinds, columns, strict=False))
+        and all(cell in (column, "missing") for cell, column in zip(kinds, columns, strict=False))
         and "number" in kinds[: len(columns)]
     )

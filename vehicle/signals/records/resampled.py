@@ -110,7 +110,7 @@ def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: boo
     """Describe the resampling of a record: original times, gaps, filter, accuracy."""
     clock, longest = "uniform times", median
     if not uniform:
-        longest = float(steps.max())  # the spline follows frequencies as far as its widest steps do
+        longest = float(steps.max())  # the widest step limits the frequencies of the spline
         missing = int(np.count_nonzero(steps > 1.5 * median))
         jitter = np.abs(steps[steps <= 1.5 * median] / median - 1.0)
         clock = f"jittered times (steps up to {100.0 * float(jitter.max()):.2g} % off the median)"

@@ -1,4 +1,4 @@
-"""Recognise time stamps that do not show when each sample was taken, and estimate the sampling rate of such records.
+"""Recognise time stamps that are not the times of the samples, and estimate the sampling rate of the record.
 
 A logger that reads its samples in batches, alternates between two delays, or writes whole seconds gives stamps whose
 steps are not those of the samples. The clock of the samples is then known from their number over the span alone:
@@ -35,7 +35,7 @@ BATCHED_SHARE = 0.5
 twice."""
 
 SHORTEST_PAUSE = 0.01
-"""Minimum step between batches that may be a pause [s]: half a period of 50 Hz."""
+"""Minimum step that can be a pause between batches [s]: half a period of 50 Hz."""
 
 LOST_BATCH = 2.5
 """Minimum step between batches, over the median step between batches, that indicates a lost batch [-]."""
@@ -46,7 +46,7 @@ ROUNDED_SHARE = 0.05
 
 
 class StampClock(NamedTuple):
-    """Clock of the samples under stamps that do not show it.
+    """Clock of samples whose stamps are not the times of the samples.
 
     Attributes:
         rate: sampling rate [Hz], the roundest number within the limits.
@@ -66,7 +66,7 @@ class StampClock(NamedTuple):
 
     @property
     def remedy(self) -> str:
-        """Description of the stamps, with the option that replaces them."""
+        """Return a description of the stamps, with the option to replace them."""
         limits = "" if self.lowest == self.highest else f" ({self.lowest:.6g} to {self.highest:.6g} Hz fit)"
         return (
             f"time stamps {self.reason}: they do not show when each sample was taken; set --rate {self.option} for "

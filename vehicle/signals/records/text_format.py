@@ -174,6 +174,8 @@ def fast(rows: list[str], header: Header) -> Vector | None:
 def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
     """Parse all numbers at once, (rows, columns), NaN for missing values; None if `careful` must parse the rows.
 
+    Infinite cells stay infinite: they are no missing values, and the user of the channel refuses them.
+
     Args:
         rows: lines of text.
         header: header with delimiter and number of columns.
@@ -188,7 +190,6 @@ def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
         return None
     if values.shape[1] != len(header.cells) or (key >= 0 and not np.isfinite(values[:, key]).all()):
         return None
-    values[~np.isfinite(values)] = np.nan
     return values
 
 
@@ -230,6 +231,8 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
                                     "value is undefined")  # fmt: skip
                 continue
             if wanted.missing == "mark":
+                if "inf" in cell.lower():
+                    values[index, column] = -np.inf if cell.startswith("-") else np.inf
                 continue
             if not cell and index > 0 and _ends_here(rows[index:], column, header):
                 raise _different_length(place)

@@ -101,7 +101,7 @@ def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[s
     rows = [line for line in lines[start + 1 : start + 1 + AGREEING] if line.strip()]
     parsed = _common([kinds_of(line, delimiter) for line in (lines[start], *rows)]) if delimiter else None
     first = parsed[0] if parsed else kinds_of(lines[start], delimiter)
-    if len(first) < 2 or "number" not in first or not all(kind in (*allowed, "missing") for kind in first):
+    if len(first) < 2 or "number" not in first or not all(cell in (*allowed, "missing") for cell in first):
         return None
     if len(allowed) > 1 and allowed[-1] not in first:
         return None
@@ -115,7 +115,7 @@ def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[s
         merged = combined
     if "text" in merged and not _goes_on(lines[start:], delimiter, merged):
         return None
-    if not all(kind in (*allowed, "missing") for kind in merged):
+    if not all(cell in (*allowed, "missing") for cell in merged):
         return None
     return tuple(merged)
 
@@ -123,7 +123,7 @@ def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[s
 def _common(rows: list[list[Kind]]) -> list[list[Kind]]:
     """Remove the cells of remarks, texts beyond the columns of the shortest row; return other rows unchanged."""
     width = min(map(len, rows))
-    remarks = [kind for row in rows for kind in row[width:]]
+    remarks = [cell for row in rows for cell in row[width:]]
     return [row[:width] for row in rows] if remarks and set(remarks) <= {"text", "missing"} else rows
 
 
@@ -132,12 +132,12 @@ def _joined(first: Sequence[Kind], second: Sequence[Kind]) -> list[Kind] | None:
     if len(first) != len(second):
         return None
     combined: list[Kind] = []
-    for kind, second_kind in zip(first, second, strict=True):
-        if kind == second_kind or second_kind == "missing":
-            combined.append(kind)
-        elif kind == "missing":
+    for first_kind, second_kind in zip(first, second, strict=True):
+        if first_kind == second_kind or second_kind == "missing":
+            combined.append(first_kind)
+        elif first_kind == "missing":
             combined.append(second_kind)
-        elif {kind, second_kind} == {"clock", "text"}:
+        elif {first_kind, second_kind} == {"clock", "text"}:
             combined.append("text")
         else:
             return None
@@ -177,7 +177,7 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
     for column, settled_kind in enumerate(table.kinds):
         cells = [row[column] for row in sampled if column < len(row)]
         kinds = {_kind(cell, table.delimiter) for cell in cells} - {"missing"}
-        if settled_kind == "missing" and not kinds:  # remarks may stand in a few rows
+        if settled_kind == "missing" and not kinds:  # a few rows may contain remarks
             kinds = _kinds_of_column(rows, column, table.delimiter)
         if "other" in kinds:
             kinds = kinds - {"other"} | {"text"}
@@ -193,7 +193,7 @@ def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequ
 
 
 def _kinds_of_column(rows: Sequence[str], column: int, delimiter: str) -> set[Kind]:
-    """Return the types of the cells of a column in all rows, without missing ones."""
+    """Return the types of the cells of a column in all rows, without missing cells."""
     cells = (cells_of(row, delimiter) for row in rows)
     return {_kind(row[column], delimiter) for row in cells if column < len(row) and row[column]} - {"missing"}
 

@@ -123,16 +123,16 @@ def _points(line: bytes) -> list[str]:
     The format gives a name ten letters and a node ten digits; a longer name moves all following columns.
 
     Raises:
-        ValueError: a longer name, and no nodes and directions behind it.
+        ValueError: a longer name without nodes and directions after it.
     """
     fixed, text = cells(line, (5, 10, 5, 10, 11, 10, 4, 11, 10, 4)), raw_text(line)
     whole = all(re.fullmatch(r"(-?\d+)?", fixed[n]) for n in (5, 6, 8, 9))
     if whole and not any(_cut(text, at) and len(fixed[n]) < 10 for at, n in ((41, 5), (66, 8))):
         return fixed
-    words = _WORDS.fullmatch(text[30:])
-    if words is None:
+    match = _WORDS.fullmatch(text[30:])
+    if match is None:
         raise ValueError(f"no nodes and directions in {text[30:].strip()[:40]!r}: names have up to ten letters")
-    return [*fixed[:4], *("" if word.upper() == "NONE" else word for word in words.groups())]
+    return [*fixed[:4], *("" if word.upper() == "NONE" else word for word in match.groups())]
 
 
 def _axis_cells(line: bytes) -> list[str]:
@@ -145,7 +145,7 @@ def _axis_cells(line: bytes) -> list[str]:
 
 
 def _cut(text: str, at: int) -> bool:
-    """Return True if the boundary of two columns lies within a word."""
+    """Return True if the boundary of two columns is within a word."""
     return len(text) > at and not text[at - 1].isspace() and not text[at].isspace()
 
 

@@ -7,8 +7,8 @@ the part outside the column space of H is
 
 with Z the response of the car to its best drive, for which the P S Z of a linear car is zero. The delays minimise the
 sum of |r|^2 over the lines: a search channel by channel, then Gauss-Newton. A delay of all channels alike only moves
-the drive: delays are those against the (lower) median of all channels. The estimate is honest
-as far as the FRFs of the car are: friction, of which H has the mean damping of the last run, moves it, and a second run
+the drive: delays are those against the (lower) median of all channels. The estimate is as
+accurate as the FRFs of the car: friction, of which H has the mean damping of the last run, moves it, and a second run
 with the delay taken out is nearer. Its standard error is that of stretches of lines as observations.
 
 Source: Golub and Pereyra, SIAM J. Numerical Analysis 10(2), 1973, 413-432 (separable least squares: the drive is
@@ -65,8 +65,8 @@ class ChannelDelay:
 
     def advice(self, step: float) -> list[str]:
         """Return a message with the option that takes the rest of the delay out; [] without a significant rest."""
-        rest = self.delay - self.taken_out
-        if not abs(rest) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
+        remainder = self.delay - self.taken_out
+        if not abs(remainder) > max(SHARE_OF_STEP * step, SIGNIFICANT * self.error):
             return []
         return [
             f"{self.channel} {'lags' if self.delay > 0.0 else 'leads'} the other channels by "
@@ -76,7 +76,7 @@ class ChannelDelay:
 
 
 def against_median(delays: Vector) -> Vector:
-    """Return delays against their median, of an even number against the lower of the two middle ones, (k,)."""
+    """Return delays against their median, for an even number against the lower of the two middle delays, (k,)."""
     return np.asarray(delays - np.sort(delays)[(delays.size - 1) // 2])
 
 
@@ -107,19 +107,19 @@ def delays_between(target: Vector, response: Vector, frf: Complex, lines: Lines)
         """Return the contribution of each channel to r, (m, k, k): the last axis is the channel."""
         return np.asarray(outside * (np.exp(1j * omega * delays[:, None]) * y).T[:, None, :])
 
-    rest = -np.einsum("mij,jm->mi", outside, z)
+    offset = -np.einsum("mij,jm->mi", outside, z)
     step = 2.0 * np.pi / float(omega[-1]) / PER_PERIOD
     grid = step * np.arange(-np.ceil(LARGEST_DELAY / step), np.ceil(LARGEST_DELAY / step) + 1)
     for channel in [*range(1, count)] * SEARCHES:
-        own = parts()
-        without = rest + own.sum(axis=2) - own[:, :, channel]
-        still = own[:, :, channel] * np.exp(-1j * omega * delays[channel])[:, None]
+        terms = parts()
+        without = offset + terms.sum(axis=2) - terms[:, :, channel]
+        still = terms[:, :, channel] * np.exp(-1j * omega * delays[channel])[:, None]
         product = np.sum(np.conj(without) * still, axis=1)
         delays[channel] = grid[np.argmin((np.exp(1j * grid[:, None] * omega) @ product).real)]
     for _ in range(ROUNDS):
-        own = parts()
-        jacobian = (1j * omega[:, None, None] * own)[:, :, 1:].reshape(-1, count - 1)
-        residual = (rest + own.sum(axis=2)).ravel()
+        terms = parts()
+        jacobian = (1j * omega[:, None, None] * terms)[:, :, 1:].reshape(-1, count - 1)
+        residual = (offset + terms.sum(axis=2)).ravel()
         real, wanted = (np.concatenate([each.real, each.imag]) for each in (jacobian, residual))
         change = np.linalg.lstsq(real, -wanted, rcond=None)[0]
         delays[1:] += change

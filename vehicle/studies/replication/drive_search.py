@@ -65,13 +65,13 @@ class FoundDrive:
         """Return the delay of each channel against the others; empty unless there are more channels than plates."""
         target, lines = self.plant.target, self.plant.target.lines
         frf = self.plant.frf(lines.frequency)
-        found, errors = delays_between(target.values, self.replication.response, frf, lines)
+        estimates, errors = delays_between(target.values, self.replication.response, frf, lines)
         out = np.array([target.delays.get(channel, 0.0) for channel in target.channels])
-        whole = against_median(found + out)
+        whole = against_median(estimates + out)
         return tuple(
             ChannelDelay(channel=channel, delay=delay, error=error, taken_out=part)
             for channel, delay, error, part in zip(
-                target.channels, whole.tolist(), errors.tolist(), (whole - found).tolist(), strict=True
+                target.channels, whole.tolist(), errors.tolist(), (whole - estimates).tolist(), strict=True
             )
             if math.isfinite(delay)
         )

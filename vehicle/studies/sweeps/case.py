@@ -81,7 +81,7 @@ class Case:
 
     Attributes:
         source: the input, for example a `Signal`.
-        overrides: texts "path=value" of two variations: the first `shared` ones by `Car.load`, the others of that car.
+        overrides: texts "path=value" of two variations: the first `shared` texts by `Car.load`, the others of that car.
         engine: simulation engine, see `Car.run`.
         vehicle: vehicle file; by default the Focus of Bommer 2006.
         shared: number of leading overrides common to the whole study: the car is modified from the car with these

@@ -165,8 +165,8 @@ def sweep(
         A row for each run with its engine, the inputs varying slowest; a failed run is a row with an error message.
 
     Raises:
-        ConfigurationError: a path does not exist, no varied parameter has an effect, an input is missing, or `skip` is
-            out of range.
+        ConfigurationError: a path does not exist, no varied parameter has an effect, an input is missing, or
+            `skip` is out of range.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
     plan = plan_sweep(car, vary, inputs, engine=engine, skip=skip, measure=measure)

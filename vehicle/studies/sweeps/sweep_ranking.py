@@ -102,7 +102,7 @@ def ranked_cars(table: SweepTable) -> RankedCars | None:
     unchanged = [" or ".join(map(value_text, values_of_override(vehicle, path))) for path in paths]
     rows: dict[tuple[str, ...], list[int]] = {}
     for number, case in enumerate(table.cases):
-        cells = tuple(cell or own for cell, own in zip(parameter_cells(case, paths), unchanged, strict=True))
+        cells = tuple(cell or default for cell, default in zip(parameter_cells(case, paths), unchanged, strict=True))
         rows.setdefault(cells, []).append(number)
     # The speed of rolling tyres is a parameter of the input: it has the same value in all cars, or in those of a road.
     varied = [column for column in range(len(paths)) if len({cells[column] for cells in rows}) > 1]

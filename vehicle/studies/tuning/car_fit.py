@@ -70,8 +70,8 @@ def delays_of(target: FrfTarget | LevelTarget | RecordTarget, number: int, start
     lags = target.lags(start) if target.delays.groups else {}
     delays = []
     for group in target.delays.groups:
-        found = [lag for channel, lag in lags.items() if target.delays.fitted.get(channel) == group]
-        begin = start_delay([lag.delay for lag in found], [lag.error for lag in found])
+        group_lags = [lag for channel, lag in lags.items() if target.delays.fitted.get(channel) == group]
+        begin = start_delay([lag.delay for lag in group_lags], [lag.error for lag in group_lags])
         path = f"delay of the {group} of {target.name}" + (f" ({number + 1})" if number else "")
         delays.append(DelayRange(path=path, group=group, target=number, start=begin))
     return delays

@@ -1,7 +1,7 @@
-"""How far causes other than noise move the values of a fit: residuals of a model that is wrong, and lags of sensors.
+"""Sensitivity of fitted values to causes other than noise: residuals of a model that is wrong, and lags of sensors.
 
-The standard errors of a fit treat the residuals as noise: random, with the correlation of neighbours. What they leave
-out is stated beside them.
+The standard errors of a fit treat the residuals as noise: random, with the correlation of neighbours. Two further
+causes are stated in addition.
 
 1. Misfit. The residuals of a wrong model are systematic over whole stretches of time or frequency. Each measurement is
    cut into `STRETCHES` stretches, all rows together, and each stretch is one observation, whatever its residuals r_b:
@@ -9,7 +9,7 @@ out is stated beside them.
        Cov = (J'J)^-1 (G / (G - 1) sum_b g_b g_b') (J'J)^-1,   g_b = J_b' r_b,   G stretches.
 
    For white noise this is the covariance of the noise; a misfit that varies from stretch to stretch adds to it.
-   A misfit that is the same everywhere, as a wrong mass, moves the values and remains unseen.
+   A constant misfit, for example of a wrong mass, moves the values and remains undetected.
 2. Lag. With a lag of half a sample in one channel or in all, the residuals change by dr, and the values by
    (J'J)^-1 J' dr. A fitted delay takes the common lag of its group.
 

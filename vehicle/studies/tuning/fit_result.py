@@ -111,12 +111,12 @@ class TuningResult:
 
     @property
     def delays(self) -> tuple[DelayRange, ...]:
-        """Delays of groups of channels."""
+        """Return the delays of groups of channels."""
         return tuple(unknown for unknown in self.unknowns if isinstance(unknown, DelayRange))
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Path of a parameter of the model to its value."""
+        """Return the values of the parameters of the model by path."""
         return {parameter.path: self.solution[parameter.path] for parameter in self.parameters}
 
     def groups(self, target: int) -> dict[str, float]:

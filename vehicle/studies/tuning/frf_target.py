@@ -194,7 +194,7 @@ class FrfTarget:
         return self.misfit(self.response(model), {})
 
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
-        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
+        """Return the lag of best agreement with a car for each channel; only channels with the same motion."""
         return response_lags(self.data, self.response(model), self.deviation)
 
 
@@ -207,13 +207,13 @@ def response_lags(data: FrfData, response: Complex, deviation: Vector) -> dict[s
         deviation: standard deviation of ln H, (k, m); NaN where a point is excluded.
     """
     weight = np.nan_to_num(1.0 / deviation**2, nan=0.0)
-    found: dict[str, PhaseDelay] = {}
+    lags: dict[str, PhaseDelay] = {}
     for channel, measured, model, trust in zip(data.channels, data.response, response, weight, strict=True):
         lag = phase_delay(data.frequency, model, measured, trust)
         if lag is not None and lag.agreement >= SAME_MOTION:
-            best = found.get(channel)
-            found[channel] = lag if best is None or lag.error < best.error else best
-    return found
+            best = lags.get(channel)
+            lags[channel] = lag if best is None or lag.error < best.error else best
+    return lags
 
 
 def late(response: Complex, frequency: Vector, delays: Vector) -> Complex:

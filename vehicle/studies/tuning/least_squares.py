@@ -7,7 +7,7 @@ row (RMS, and correlation of neighbouring samples) and the fit is repeated with 
 have to be right within a row. The covariance of u is (J' J)^-1 C (J' J)^-1 with the residuals over their scale and
 C = sum rho_ij J_i' J_j, where rho_ij is the correlation of rows i and j of a measurement. It covers the identifiable
 parameters; the other parameters are held at their start. Delays of groups of channels are further unknowns, with
-u = (delay - start) / 1 ms. How far other causes than noise move the values: see `error_sources`.
+u = (delay - start) / 1 ms. See `error_sources` for the effect of other causes than noise.
 
 Source of the covariance: Zellner, Journal of the American Statistical Association 57 (1962): equations whose errors are
 correlated.
@@ -166,10 +166,10 @@ class _Problem:
 
     def response(self, values: Mapping[str, float]) -> list[Any]:
         """Return the response of the model for each target; residuals for a target without delays."""
-        own = {unknown.path: values[unknown.path] for unknown in self.unknowns if isinstance(unknown, Range)}
-        key = tuple(own.values())
+        parameters = {unknown.path: values[unknown.path] for unknown in self.unknowns if isinstance(unknown, Range)}
+        key = tuple(parameters.values())
         if key not in self.responses:
-            model = self.build(own)
+            model = self.build(parameters)
             self.responses = {key: [
                 target.response(model) if isinstance(target, DelayedTarget) else target.residuals(model)
                 for target in self.targets

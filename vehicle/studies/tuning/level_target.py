@@ -134,17 +134,17 @@ class LevelTarget:
 
     @property
     def delays(self) -> ResponseDelays:
-        """Delays of the channels of the record."""
+        """Return the delays of the channels of the record."""
         return self.histories.delays
 
     @property
     def half_sample(self) -> float:
-        """Half the sampling interval of the measurement [s]."""
+        """Return half the sampling interval of the measurement [s]."""
         return self.histories.half_sample
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """Channel of the record of each FRF."""
+        """Return the channel of the record for each FRF."""
         classes = int(self.classes.max()) + 1
         return tuple(name for name in _fitted(self.histories, self.reference) for _ in range(classes))
 
@@ -197,10 +197,10 @@ class LevelTarget:
         return self.misfit(self.response(model), {})
 
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
-        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
-        found = response_lags(self.data, self.response(model), self.deviation)
+        """Return the lag of best agreement with a car for each channel; only channels with the same motion."""
+        lags = response_lags(self.data, self.response(model), self.deviation)
         named = dict(zip(self.data.channels, self.outputs, strict=True))
-        return {named[channel]: lag for channel, lag in found.items()}
+        return {named[channel]: lag for channel, lag in lags.items()}
 
 
 def level_target(

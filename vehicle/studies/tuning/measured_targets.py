@@ -211,9 +211,9 @@ def measured_levels(
             f"--reference {reference}: must be one of {', '.join([*plates, *target.record.channels])}"
         )
     # The plates are those of the input, without noise: the same in a run of any car.
-    if reference in target.record.channels:  # its group has no delay of its own
-        own = target.delays.fitted.get(reference)
-        others = {name: group for name, group in target.delays.fitted.items() if group != own}
+    if reference in target.record.channels:  # the delay of its group is not fitted
+        reference_group = target.delays.fitted.get(reference)
+        others = {name: group for name, group in target.delays.fitted.items() if group != reference_group}
         target = replace(target, delays=replace(target.delays, fitted=others))
     front = [name for name in plates if name[len("plate_")] == wheel[0]]
     run = target.run(driven, channels=list(dict.fromkeys([*front, *(name for name in plates if name == reference)])))

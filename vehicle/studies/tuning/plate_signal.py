@@ -24,7 +24,7 @@ from vehicle.signals.records.reader import read_record
 def plate_choices(asked: Choice, file: Path, signal: object) -> tuple[Choice, Choice | None]:
     """Return the choice for a measurement file, and for the file of its signal; None without chosen plates there.
 
-    The channel name of a plate is that of every one of both files that has it; a number is of the measurement file.
+    The channel name of a plate selects it in both files if they contain it; a number is of the measurement file.
 
     Args:
         asked: all chosen channels.

@@ -158,26 +158,26 @@ class RecordTarget:
         return self.misfit(self.response(model), {})
 
     def lags(self, model: Car) -> dict[str, PhaseDelay]:
-        """Return the lag of each channel in which it agrees best with a car; only channels with the same motion."""
-        found = {}
+        """Return the lag of best agreement with a car for each channel; only channels with the same motion."""
+        lags = {}
         inside, step = np.flatnonzero(self.inside), self.record.step
         measured = self._filtered(np.array(list(self.record.channels.values())))[:, inside]
         for name, values, curve in zip(self.recorded, measured, self.response(model), strict=True):
             shift = time_shift(values, curve, step, -float(self.record.time[inside[0]]))
             if shift is not None and shift.correlation >= SAME_MOTION:
                 error = shift.shift_error if np.isfinite(shift.shift_error) else step
-                found[name] = PhaseDelay(delay=-shift.shift, error=error, agreement=shift.correlation)
-        return found
+                lags[name] = PhaseDelay(delay=-shift.shift, error=error, agreement=shift.correlation)
+        return lags
 
     def _delayed(self, histories: Vector, delays: Vector) -> Vector:
         """Return y(t - d) at the kept samples, by a spline of degree 5; histories (channels, n) are band-limited."""
         rows = []
         for values, delay in zip(histories, delays, strict=True):
-            place = np.clip(self.kept - delay / self.record.step, 0.0, values.size - 1)
+            index = np.clip(self.kept - delay / self.record.step, 0.0, values.size - 1)
             rows.append(
                 values[self.kept]
                 if delay == 0.0
-                else scipy.ndimage.map_coordinates(values, place[None], order=5, mode="nearest")
+                else scipy.ndimage.map_coordinates(values, index[None], order=5, mode="nearest")
             )
         return np.array(rows)
 

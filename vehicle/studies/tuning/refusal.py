@@ -10,11 +10,11 @@ NO_MOTION = 100.0
 """RMS error of a model that does not move, over the RMS of the measurement [%]: that of a mean of zero."""
 
 FIRST = "check delays (--delay), signs (--turn) and units (--unit) of the channels first"
-"""What a user checks before he doubts the model."""
+"""Advice: check the channels before the model is doubted."""
 
 
 def refusal(result: TuningResult, errors: Sequence[tuple[str, float]]) -> str:
-    """Return the reason why the values of a fit are not to be used; empty if there is none.
+    """Return the reason why the values of a fit are unusable; empty if they are usable.
 
     Args:
         result: result of a fit.

@@ -1,4 +1,4 @@
-"""Delays of measured responses against the input of the model: known ones, and an unknown of the fit for each group."""
+"""Delays of measured responses against the input of the model: known, or an unknown of the fit for each group."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from vehicle.signals.records.measured import Measured
 Vector = npt.NDArray[np.float64]
 
 HALF_RANGE = 0.02
-"""Half the range of a delay around its start [s]: half a period at 25 Hz. The start is the delay of best agreement with
+"""Half the range of a delay around its start [s]: half a period at 25 Hz. It starts at the delay of best agreement with
 the car before the fit, so that the fit only has to follow the phases of the car."""
 
 MILLISECOND = 1e-3
@@ -56,9 +56,9 @@ class ResponseDelays:
         )
 
     def settled(self, groups: Mapping[str, float]) -> ResponseDelays:
-        """Return the delays with those of all groups known."""
-        known = {channel: groups.get(group, 0.0) for channel, group in self.fitted.items()}
-        return ResponseDelays(known={**self.known, **known})
+        """Return the delays with known values for all groups."""
+        fitted = {channel: groups.get(group, 0.0) for channel, group in self.fitted.items()}
+        return ResponseDelays(known={**self.known, **fitted})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -89,7 +89,7 @@ class DelayRange:
 
     @property
     def half_width(self) -> float:
-        """Half the distance of the limits of u [-]."""
+        """Return half the distance of the limits of u [-]."""
         return HALF_RANGE / MILLISECOND
 
     def value(self, u: float) -> float:
@@ -110,7 +110,10 @@ class DelayRange:
 
 
 def start_delay(delays: Sequence[float], errors: Sequence[float]) -> float:
-    """Return the start of a delay [s]: the median of the channels, of two the one with the smaller error, 0 of none."""
+    """Return the start of a delay [s]: the median of the channels, or 0 without channels.
+
+    Of two channels, the delay with the smaller error is the start.
+    """
     if not delays:
         return 0.0
     if len(delays) == 2:
@@ -119,26 +122,26 @@ def start_delay(delays: Sequence[float], errors: Sequence[float]) -> float:
 
 
 def response_delays(
-    measured: Measured, channels: Sequence[str], known: Mapping[str, float], *, contained: bool
+    measured: Measured, channels: Sequence[str], delays: Mapping[str, float], *, contained: bool
 ) -> ResponseDelays:
     """Return the known delays of channels against the input, and the groups of the others.
 
     Args:
         measured: the measurement.
         channels: fitted channels.
-        known: group, channel or pattern to delay [s].
+        delays: group, channel or pattern to delay [s].
         contained: the plates of the measurement are the input; else that of another file.
 
     Raises:
         ConfigurationError: a name specifies no channel, or plates with different delays.
     """
     every = [*(measured.record.channels if measured.record else ()), *(measured.frf.channels if measured.frf else ())]
-    found = channel_delays(tuple(dict.fromkeys([*every, *channels])), known)
-    plates = {found.get(name, 0.0) for name in every if group_of(name) == PLATES} if contained else {0.0}
+    delay_of = channel_delays(tuple(dict.fromkeys([*every, *channels])), delays)
+    plates = {delay_of.get(name, 0.0) for name in every if group_of(name) == PLATES} if contained else {0.0}
     if len(plates) > 1:
         raise ConfigurationError(f"--delay: plates with different delays {sorted(plates)} s; set one, plates=TIME")
     base = max(plates, default=0.0)
     return ResponseDelays(
-        known={name: found[name] - base for name in channels if name in found},
-        fitted={name: group_of(name) for name in channels if name not in found},
+        known={name: delay_of[name] - base for name in channels if name in delay_of},
+        fitted={name: group_of(name) for name in channels if name not in delay_of},
     )

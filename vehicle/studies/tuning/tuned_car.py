@@ -78,7 +78,7 @@ class TunedCar:
 
     @property
     def settings(self) -> tuple[str, ...]:
-        """Values of --set that make the fitted car beside the options of the start car; empty if the fit is refused."""
+        """Return the values of --set for the fitted car, in addition to the start car; empty if the fit is refused."""
         if self.refusal:
             return ()
         values = self.result.values
