@@ -28,7 +28,7 @@ def main() -> None:
     found.add_argument("--engine", default="reduced")
     options = found.parse_args()
     print(f"{'car':<12} {'road':<5} {'tyre':<28} {'x':>7} {'y':>7} {'z':>7} {'sum':>7} {'vector':>7}  m/s2")
-    for name in ("sedan", "focus_road"):
+    for name in ("kinematic_reference", "focus_road"):
         for road in "AB":
             for words, (chosen, overrides) in CASES.items():
                 numbers: dict[str, object] = {

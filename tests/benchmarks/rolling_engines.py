@@ -34,7 +34,7 @@ def main() -> None:
     found.add_argument("--speed", type=float, default=80.0)
     found.add_argument("--channels", type=int, default=6)
     options = found.parse_args()
-    for name in ("sedan", "focus_road"):
+    for name in ("kinematic_reference", "focus_road"):
         for road in options.roads.split(","):
             numbers = dict.fromkeys(("tyre", "rate", "seed", "coherence", "patch", "contact"))
             numbers |= {"duration": options.duration if road in CLASSES else None}

@@ -1,6 +1,6 @@
 """Share of the difference of both engines on rolling tyres that is the second order of the equations of motion.
 
-python -m tests.benchmarks.second_order [--cars sedan,focus_road] [--roads C] [--duration 8] [--speed 80]
+python -m tests.benchmarks.second_order [--cars kinematic_reference,focus_road] [--roads C] [--duration 8] [--speed 80]
 
 Even is the part of the difference that keeps its sign with the road, over the RMS of MuJoCo. What remains of it: arc,
 after the arc of the own wheel on the kinematics rig, c s^2/2; fit, after the best linear combination of the products of
@@ -41,7 +41,7 @@ RISE = 0.01
 def main() -> None:
     """Print the table for each car and road."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cars", default="sedan,focus_road")
+    parser.add_argument("--cars", default="kinematic_reference,focus_road")
     parser.add_argument("--roads", default="C", help="classes or obstacles, as cleat:20x50")
     parser.add_argument("--duration", type=float, default=8.0)
     parser.add_argument("--speed", type=float, default=80.0)

@@ -41,8 +41,11 @@ def mirror_errors(car: Car, engine: str) -> dict[str, float]:
 
 
 def test_the_reduced_engine_mirrors():
-    """Both runs sum over the poles in another order, in double precision: 1e-8 of the motion is far above that."""
-    assert max(mirror_errors(Car.load("sedan", SYMMETRIC), "reduced").values()) < 1e-8
+    """Both runs sum over the poles in another order: round-off, with and without friction.
+
+    It is 1e-9 of the motion, 9.5e-9 along x of the rear knuckles; ten times that for other processors and libraries.
+    """
+    assert max(mirror_errors(Car.load("sedan", SYMMETRIC), "reduced").values()) < 1e-7
 
 
 def test_mujoco_mirrors_with_an_error_of_first_order():

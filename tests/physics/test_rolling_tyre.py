@@ -162,7 +162,11 @@ def test_locked_wheel_at_no_speed_is_the_standing_tyre() -> None:
     """Spin held to the hub and V = 0: the sedan on springs k_x, k_y; with weight a round tyre rolls under its load."""
     carcass = [3.58e5, 1.03e5]
     common = ["gravity=0", *(f"{axle}.bushings.tyre.trail=0" for axle in AXLES)]
-    standing = [f"{axle}.bushings.tyre.stiffness=[{carcass[0]}, {carcass[1]}, 310526.0]" for axle in AXLES]
+    standing = [
+        f"{axle}.bushings.tyre.stiffness.{direction}={stiffness}"
+        for axle in AXLES
+        for direction, stiffness in zip("xy", carcass, strict=True)
+    ]
     still = Car.load("sedan", [*common, *standing])
     car = Car.load("sedan", [*common, "driving.speed=1e-9"])
     system, rolling = car.matrices.system, Rows(car.model.model).layout.rolling

@@ -33,6 +33,7 @@ GROUPS = {
 
 def parser() -> Parser:
     """Return the parser of the options."""
+    from vehicle.studies.design.car_class import CLASSES
     from vehicle.studies.design.stated_numbers import StatedNumbers, option
 
     parser = command_parser("new", "Make a car from a template car and its masses, lengths and frequencies.")
@@ -40,10 +41,16 @@ def parser() -> Parser:
     parser.add_argument(
         "--from",
         dest="source",
-        required=True,
         metavar="CAR",
         help="template: a shipped car with four wheels, as sedan or focus_road, the file of a car, or chrono:FILE.json "
-        "of a vehicle of Project Chrono",
+        "of a vehicle of Project Chrono; sedan by default with --class. Axles and powertrain are scaled by the mass",
+    )
+    parser.add_argument(
+        "--class",
+        dest="car_class",
+        choices=CLASSES,
+        help="class of the car: default masses, lengths and ride frequencies; electric-suv has an electric drive, "
+        "no engine",
     )
     parser.add_argument(
         "--chrono-tyre",
@@ -93,7 +100,11 @@ def _job(options: argparse.Namespace) -> None:
         raise ConfigurationError(f"NAME {str(options.folder)!r}: its last part must be letters, digits, '_', '.', '-'")
     if name in CARS and options.folder == Path(name):
         raise ConfigurationError(f"NAME {name}: is the name of a shipped car, which --vehicle would read; take another")
-    stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia")})
+    stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia", "car_class")})
+    if options.source is None:
+        if stated.car_class is None:
+            raise ConfigurationError("--from: missing; name a template, as --from sedan, or state --class")
+        options.source = "sedan"
     foreign = Path(options.source.removeprefix(PREFIX)) if options.source.startswith(PREFIX) else None
     if options.chrono_tyre is not None and foreign is None:
         raise ConfigurationError(

@@ -1,4 +1,4 @@
-"""Ideal joints: the sedan's strut and twist beam against own solvers, and five rods on the places of its strut.
+"""Ideal joints: strut and twist beam of a car against own solvers, and five rods on the places of its strut.
 
 Asked for are 1e-3 mm and 1e-4 degree.
 """
@@ -6,6 +6,7 @@ Asked for are 1e-3 mm and 1e-4 degree.
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,20 +19,19 @@ from tests.engines.simulation.strut import camber_and_toe, strut_geometry
 from tests.validation import validated
 from vehicle.engines.simulation.axle_statics import AxleStatics, WheelPose
 from vehicle.errors import SimulationError
-from vehicle.model.parameters.shipped import VEHICLES
-from vehicle.model.parameters.toml_file import read_table
+from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 
 Vector = npt.NDArray[np.float64]
 
-SEDAN = VEHICLES / "sedan" / "vehicle.toml"
+REFERENCE = "kinematic_reference"
 FREEDOMS = ("lateral_m", "longitudinal_m", "camber_deg", "toe_deg")
 
 
 @pytest.fixture(scope="module")
-def sedan() -> Car:
-    return Car.load(SEDAN)
+def reference() -> Car:
+    return Car.load(REFERENCE)
 
 
 def lifted(car: Car, axle: str) -> AxleStatics:
@@ -52,10 +52,10 @@ def require_pose(words: str, pose: WheelPose, moved: Vector, turn: Vector) -> No
 
 
 @pytest.mark.parametrize("travel", [-0.06, 0.04, 0.07])
-def test_the_strut_of_the_sedan(sedan, travel):
-    right, left = lifted(sedan, "front").solve([travel, travel])
-    moved, turn = strut_geometry(sedan.vehicle.points, travel)
-    require_pose(f"strut of the sedan at {1e3 * travel:g} mm", right, moved, turn)
+def test_the_strut_of_the_reference(reference, travel):
+    right, left = lifted(reference, "front").solve([travel, travel])
+    moved, turn = strut_geometry(reference.vehicle.points, travel)
+    require_pose(f"strut of the reference at {1e3 * travel:g} mm", right, moved, turn)
     assert abs(right.toe_deg) > 0.5 and abs(right.lateral_m) > 1e-3
     assert [getattr(left, name) for name in FREEDOMS] == pytest.approx([getattr(right, name) for name in FREEDOMS])
 
@@ -74,32 +74,34 @@ def about(point: Vector, axis: Vector, place: Vector, height: float) -> tuple[Ve
 
 
 @pytest.mark.parametrize("travel", [-0.06, 0.04, 0.07])
-def test_the_beam_swings_about_its_pivots(sedan, travel):
-    pivot, center = (np.array(sedan.vehicle.points[f"{name}_rr"]) for name in ("pivot", "wheel_center"))
+def test_the_beam_swings_about_its_pivots(reference, travel):
+    pivot, center = (np.array(reference.vehicle.points[f"{name}_rr"]) for name in ("pivot", "wheel_center"))
     moved, turn = about(pivot, np.array([0.0, 1.0, 0.0]), center, travel)
-    require_pose(f"twist beam at {1e3 * travel:g} mm", lifted(sedan, "rear").solve([travel, travel])[0], moved, turn)
+    require_pose(
+        f"twist beam at {1e3 * travel:g} mm", lifted(reference, "rear").solve([travel, travel])[0], moved, turn
+    )
     assert abs(moved[0]) > 1e-4
 
 
-def test_the_beam_twists_about_its_shear_centre(sedan):
+def test_the_beam_twists_about_its_shear_centre(reference):
     """Wheels against each other: each half turns about the line from its pivot to the middle of the beam.
 
     That is exact for small travel alone: the axes of the hinge part with the square of the turn, and only bushings
     give way to that.
     """
-    points, travel = sedan.vehicle.points, 1e-3
+    points, travel = reference.vehicle.points, 1e-3
     pivot, beam, center = (np.array(points[f"{name}_rr"]) for name in ("pivot", "beam", "wheel_center"))
     middle = beam * [1.0, 0.0, 1.0]
     moved, turn = about(pivot, middle - pivot, center, travel)
-    pose = lifted(sedan, "rear").solve([travel, -travel])[0]
+    pose = lifted(reference, "rear").solve([travel, -travel])[0]
     require_pose("twist beam, wheels 1 mm against each other", pose, moved, turn)
     assert abs(pose.camber_deg) > 0.02 and abs(pose.toe_deg) > 1e-3
     with pytest.raises(SimulationError, match=r"leave a gap of 0\.0.* mm .*: ask for less travel, or let its bushings"):
-        lifted(sedan, "rear").solve([0.03, -0.03])
+        lifted(reference, "rear").solve([0.03, -0.03])
 
 
 def rods(reach: float) -> dict[str, Any]:
-    """The sedan on five rods in front: three on the places of its arm and its tie rod, two that hold the strut top.
+    """The car on five rods in front: three on the places of its arm and its tie rod, two that hold the strut top.
 
     A point of the knuckle's line stays at the strut top where rods across that line hold it; over a travel s along
     the line they yield by s^2 / 2 l.
@@ -107,7 +109,7 @@ def rods(reach: float) -> dict[str, Any]:
     Args:
         reach: length l of these two [m].
     """
-    table = read_table(SEDAN)
+    table = vehicle_table(Path(REFERENCE))
     p, old = table["front"]["hardpoints"], table["front"]
     line = np.subtract(p["strut_top"], p["damper_bottom"])
     along = np.cross(line, [0.0, 1.0, 0.0])
@@ -138,9 +140,9 @@ def rods(reach: float) -> dict[str, Any]:
     return {**copy.deepcopy(table), "front": front}
 
 
-def test_five_rods_on_the_places_of_a_strut_have_its_kinematics(sedan):
+def test_five_rods_on_the_places_of_a_strut_have_its_kinematics(reference):
     """Slopes are the same whatever the length of the two rods; over travel, what parts them falls as one over it."""
-    strut = lifted(sedan, "front")
+    strut = lifted(reference, "front")
     axles = [lifted(Car(vehicle_of(rods(reach))), "front") for reach in (1.25, 2.5)]
 
     def found(axle: AxleStatics, travel: float) -> Vector:

@@ -31,7 +31,7 @@ FIVE = ("trailing_upper", "trailing_lower", "upper", "lower_front", "lower_rear"
 
 @pytest.fixture(scope="module")
 def cars() -> dict[str, Car]:
-    return {name: Car.load(name) for name in ("focus_road", "sedan")}
+    return {name: Car.load(name) for name in ("focus_road", "sedan", "kinematic_reference")}
 
 
 def right_points(car: Car, axle: str) -> dict[str, Vector]:
@@ -70,7 +70,7 @@ def strut_lines(p: dict[str, Vector]) -> list[tuple[Vector, Vector]]:
 
 
 @pytest.mark.parametrize("travel", [-0.04, 0.0, 0.04])
-@pytest.mark.parametrize("name", ["focus_road", "sedan"])
+@pytest.mark.parametrize("name", ["focus_road", "sedan", "kinematic_reference"])
 def test_macpherson_struts(cars, name, travel):
     car = cars[name]
     p = right_points(car, "front")
@@ -123,9 +123,10 @@ def test_five_links(cars, travel):
     assert math.isnan(found.caster_deg) and math.isnan(found.scrub_radius_m)
 
 
-def test_twist_beam(cars):
+@pytest.mark.parametrize("name", ["sedan", "kinematic_reference"])
+def test_twist_beam(cars, name):
     """Both wheels swing about the pivots; against each other each half turns about pivot and middle of the beam."""
-    p = right_points(cars["sedan"], "rear")
+    p = right_points(cars[name], "rear")
     pivot, centre, contact = p["pivot"], p["wheel_center"], p["tyre_patch"]
 
     def swinging(axis: Vector) -> tuple[Vector, Vector]:
@@ -134,8 +135,8 @@ def test_twist_beam(cars):
 
     bounce = swinging(np.array([0.0, 1.0, 0.0]))
     roll = swinging(p["beam"] * [1.0, 0.0, 1.0] - pivot)
-    found = computed(cars["sedan"], "rear")
-    require_centres("twist beam of the sedan", found, centres(bounce, roll, centre, contact, -1.0))
+    found = computed(cars[name], "rear")
+    require_centres(f"twist beam of {name}", found, centres(bounce, roll, centre, contact, -1.0))
     # In the side view the swing centre is the pivot.
     assert found.side_swing_arm_m == pytest.approx(centre[0] - pivot[0], abs=1e-6)
     assert found.side_swing_height_m == pytest.approx(pivot[2] - contact[2], abs=1e-6)

@@ -1,4 +1,4 @@
-"""The sedan: a car of another make from its file alone; its source is typed here a second time."""
+"""The sedan and the kinematic reference: another make, from files; its source is typed here again."""
 
 from __future__ import annotations
 
@@ -30,8 +30,13 @@ def sedan():
     return Car.load(VEHICLES / "sedan" / "vehicle.toml")
 
 
-def test_its_points_are_those_of_the_source(sedan):
-    points = {name: np.array(point) for name, point in sedan.vehicle.points.items()}
+@pytest.fixture(scope="module")
+def reference():
+    return Car.load("kinematic_reference")
+
+
+def test_its_points_are_those_of_the_source(reference):
+    points = {name: np.array(point) for name, point in reference.vehicle.points.items()}
     centre = 0.5 * (points["wheel_center_fl"] + points["wheel_center_fr"])
     for name, (forward, left, up) in POINTS.items():
         np.testing.assert_allclose(points[f"{name}_fl"] - centre, [-forward, -left, up], atol=1e-12)
@@ -44,8 +49,8 @@ def test_its_points_are_those_of_the_source(sedan):
     np.testing.assert_allclose(np.cross(way, line), 0.0, atol=1e-6)
 
 
-def test_its_masses_are_those_of_the_source(sedan):
-    mass: dict[str, float] = {part.name: part.numbers.mass for part in sedan.vehicle.composition.parts}
+def test_its_masses_are_those_of_the_source(reference):
+    mass: dict[str, float] = {part.name: part.numbers.mass for part in reference.vehicle.composition.parts}
 
     def front(*names: str) -> float:
         return sum(mass[f"{name}_fr"] for name in names)
@@ -55,7 +60,7 @@ def test_its_masses_are_those_of_the_source(sedan):
     strut = ("damper_bottom", "damper_top", "suspension_mount", "main_spring_lower", "main_spring_upper")
     assert front(*strut) == pytest.approx(13.5)
     assert front("tyre") == pytest.approx(18.0 + 11.2)
-    assert sedan.vehicle.body.mass + mass["engine"] == pytest.approx(1442.1)
+    assert reference.vehicle.body.mass + mass["engine"] == pytest.approx(1442.1)
 
 
 def test_its_damper_is_that_of_the_source():

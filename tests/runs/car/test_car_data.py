@@ -263,7 +263,7 @@ def test_summary_is_json_and_lines_are_short(shown, cars):
         assert len(summary["parameters"]) == len(data.parameters) > 150
         for value in (data, data.axles[0], data.parameters[5]):
             assert "\n" not in repr(value)
-    assert repr(shown["sedan"]) == "CarData(sedan, 1698 kg, 51 % in front, CoG 484 mm high)"
+    assert repr(shown["sedan"]) == "CarData(sedan, 1653 kg, 51 % in front, CoG 489 mm high)"
 
 
 def test_a_rolling_car_is_shown_at_its_speed(shown):

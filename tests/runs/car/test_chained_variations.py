@@ -120,7 +120,7 @@ def test_both_engines_of_a_sweep_run_the_car_of_the_second_step():
 def test_the_line_that_a_fit_prints_makes_the_fitted_car():
     """A fit varies the car that `--set` has made; its line beside those options is one variation with them."""
     start = Car.load("sedan", ["body.inertia.iyy=2500"])
-    result = SimpleNamespace(values={"body.mass": 1500.0})
+    result = SimpleNamespace(values={"body.mass": 1500.0}, unknowns=())
     tuned = TunedCar(start=start, result=cast(TuningResult, result), measurements=(), engine="reduced", final=None)
     printed = [*start.overrides, *tuned.settings]
     assert Car.load("sedan", printed).vehicle == tuned.fitted.vehicle

@@ -134,7 +134,7 @@ def test_failed_rows_are_no_success(signal, tmp_path, capsys):
 
 def test_the_engine_and_its_reason_are_told_before_the_runs():
     """On class C parts rotate beyond the valid range of the reduced engine; on class A they do not."""
-    car, change = Car.load("sedan"), {"front.damper.viscous": [1500.0]}
+    car, change = Car.load("sedan"), {"rear.damper.viscous": [1600.0]}
     roads = [Road("A", speed=80.0, duration=4.0), Road("C", speed=50.0, duration=4.0)]
     (note,) = plan_sweep(car, change, roads).engine_notes()
     assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
@@ -181,6 +181,6 @@ def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
 
 def test_a_varied_parameter_without_effect_is_noted():
     car, road = Car.load("sedan"), Road("B", speed=80, duration=6)
-    (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000]}, road).notes
+    (note,) = plan_sweep(car, {"front.damper.viscous": [1000, 2000], "rear.damper.viscous": [1000]}, road).notes
     assert note.startswith("front.damper.viscous=1000: without effect; it belongs to front.damper.viscous_law")
     assert not plan_sweep(car, {"front.damper.coulomb_friction": [40, 80]}, road).notes

@@ -7,10 +7,10 @@ with the road, as all that is linear does, so on a random road both are uncorrel
     E = Theta RMS(a_z^2) / max |a_z|,    S^2 = S_1^2 + E^2,    loss of RMS = 1 - S_1 / S,
 
 with the largest rotation Theta of the parts at the wheel and a rotation in proportion to a_z, S_1 being the RMS of the
-reduced engine and S that of the car. E of `sedan` and `focus_road` in MuJoCo, on classes A to C at 50 to 120 km/h and
-on cleats of 5 to 20 mm, is 0.4 to 1.7 times this value along x of the rear knuckles and along y (0 where both sides
-cancel), 0.1 to 0.6 times along x of the front knuckles. Equations and exact values:
-`docs/theory/reduced-engine.md`.
+reduced engine and S that of the car. E of `kinematic_reference` and `focus_road` in MuJoCo, on classes A to C at 50 to
+120 km/h and on cleats of 5 to 20 mm, is 0.4 to 1.7 times this value along x of the rear knuckles and along y (0 where
+both sides cancel), 0.1 to 0.6 times along x of the front knuckles. `sedan`, whose trailing arms are longer, has 1.3 to
+2.1 times this value at the rear knuckles. Equations and exact values: `docs/theory/reduced-engine.md`.
 """
 
 from __future__ import annotations

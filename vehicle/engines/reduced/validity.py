@@ -27,9 +27,9 @@ one rear wheel of `focus_road` driven, where it is a tenth of the vertical accel
 
 ERROR_ON_CLASS_C = "comfort within 0.4 %, lateral acceleration of a knuckle within 15 %"
 """Difference of the reduced engine from MuJoCo on class C, for messages. Measured with the shipped cars on four wheels
-at 50, 80 and 120 km/h, 20 s, MuJoCo at its own step: unweighted comfort of `sedan` 0.12 % up to 80 km/h and 0.38 % at
-120 km/h, of the other cars at most 0.06 %, weighted comfort at most 0.06 %; lateral acceleration of a knuckle 3 to 5 %
-at 50 km/h and 13 to 15 % at 120 km/h, where linear tyres pull for a moment in place of lifting off."""
+at 50, 80 and 120 km/h, 20 s, MuJoCo at its own step: unweighted comfort of `kinematic_reference` 0.12 % up to 80 km/h
+and 0.38 % at 120 km/h, of the other cars at most 0.06 %, weighted comfort at most 0.06 %; lateral acceleration of a
+knuckle 3 to 5 % at 50 km/h and 13 to 15 % at 120 km/h, where linear tyres pull for a moment in place of lifting off."""
 
 REMEDY = ": use the MuJoCo engine"
 """End of a warning that names the engine to use."""

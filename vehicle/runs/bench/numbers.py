@@ -28,8 +28,8 @@ RAIL = tuple(f"seat_rail_acc_{axis}" for axis in AXES)
 
 FRF_STEP = 5e-4
 """Maximum time step of the second run [s]. Linear parts are exact at any step; with friction, FRFs differ from those at
-1/64 ms by 0.04 to 0.15 % (RMS, 2 to 50 Hz, `focus` and `focus_road` and `sedan`), 2 % of their standard error where the
-dampers slip."""
+1/64 ms by 0.04 to 0.15 % (RMS, 2 to 50 Hz, `focus`, `focus_road`, `kinematic_reference`), 2 % of their standard error
+where the dampers slip."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle.engines.simulation.axle_curves import design_axle, position_rate
+from vehicle.engines.simulation.axle_curves import design_axle, design_slopes, position_rate
 from vehicle.engines.simulation.axle_ride import axle_ride
 from vehicle.engines.simulation.wheel_geometry import WheelGeometry
 from vehicle.runs.car.axle import direction_to_middle
@@ -68,6 +68,7 @@ class AxleData:
         tyre_n_per_m: vertical stiffness of the tyre.
         ride_rate_n_per_m: wheel rate and tyre in series.
         ride_frequency_hz: undamped frequency of the sprung mass on the ride rate.
+        bump_steer_deg_per_m: toe-in per wheel travel in the design position, with ideal joints.
         roll: roll stiffness.
         geometry: roll centre, swing arms, support angles, steering axis.
         ideal: True if geometry and ratios are those of ideal joints; False if ideal joints lock the
@@ -94,6 +95,7 @@ class AxleData:
     tyre_n_per_m: float
     ride_rate_n_per_m: float
     ride_frequency_hz: float | None
+    bump_steer_deg_per_m: float
     roll: RollStiffness
     geometry: WheelGeometry
     ideal: bool
@@ -162,6 +164,7 @@ def axle_data(car: Any, name: str) -> AxleData:
         tyre_n_per_m=ride.tyre.stiffness,
         ride_rate_n_per_m=ride.ride.stiffness,
         ride_frequency_hz=None if math.isnan(ride.ride_frequency) else ride.ride_frequency,
+        bump_steer_deg_per_m=design_slopes(moving)["toe_deg_per_m"] or 0.0,
         roll=RollStiffness(springs=ride.roll_springs, bars=ride.roll_bars, tyres=ride.tyre_roll.stiffness),
         geometry=geometry,
         ideal=moving.ideal,

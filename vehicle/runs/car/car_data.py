@@ -18,6 +18,7 @@ from vehicle.names import point_words
 from vehicle.runs.car.axle import axle_names, car_at_rest, mass_and_cog
 from vehicle.runs.car.axle_data import AxleData, axle_data
 from vehicle.runs.car.motion_figures import MotionFigure, motion_figures
+from vehicle.runs.car.usual_figures import UsualFigure, usual_figures
 from vehicle.threads import one_blas_thread
 
 
@@ -82,7 +83,18 @@ class CarData:
             entry["roll"] |= {"suspension": axle.roll.suspension, "total": axle.roll.total}
             percent = self.support_percent(axle) or (None, None)
             entry |= {"brake_support_percent": percent[0], "drive_support_percent": percent[1]}
-        return {**plain, "front_share": _plain(self.front_share), "roll_share": self.roll_share}
+        usual = [{**dataclasses.asdict(figure), "unusual": figure.unusual} for figure in self.usual]
+        return {
+            **plain,
+            "front_share": _plain(self.front_share),
+            "roll_share": self.roll_share,
+            "usual": _plain(usual),
+        }
+
+    @property
+    def usual(self) -> tuple[UsualFigure, ...]:
+        """Figures of the car and of its axles with their usual ranges."""
+        return usual_figures(self)
 
     @property
     def front_share(self) -> float:

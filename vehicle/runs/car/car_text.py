@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from vehicle.model.parameters.parameter_list import Parameter, value_text
 from vehicle.names import point_words
-from vehicle.runs.car.axle_data import AxleData
 from vehicle.runs.car.car_data import CarData
 from vehicle.runs.car.motion_figures import MINIMUM_SHARE, MotionFigure
-
-DEGREES = math.pi / 180.0
-"""One degree [rad]."""
+from vehicle.runs.car.usual_figures import axle_figures, car_figures, motion_values, usual_figures, usual_range
 
 SOURCE_WIDTH = 60
 """Maximum number of letters of a source in the table of parameters."""
@@ -47,38 +44,6 @@ def number(value: float | None, decimals: int = 0) -> str:
     return "-" if value is None or not math.isfinite(value) else f"{value:z.{decimals}f}"
 
 
-AXLE_ROWS: dict[str, Callable[[AxleData], str]] = {
-    "template": lambda axle: axle.template,
-    "static wheel load, right / left [N]": lambda axle: " / ".join(number(load) for load in axle.load_n.values()),
-    "sprung mass [kg]": lambda axle: number(axle.sprung_kg, 1),
-    "unsprung mass, both wheels [kg]": lambda axle: number(axle.unsprung_kg, 1),
-    "track [mm]": lambda axle: number(1e3 * axle.track_m),
-    "loaded tyre radius [mm]": lambda axle: number(1e3 * axle.radius_m),
-    "spring stiffness [N/mm]": lambda axle: number(_milli(axle.spring_n_per_m), 2),
-    "motion ratio, spring / wheel": lambda axle: number(axle.spring_ratio, 3),
-    "motion ratio, damper / wheel": lambda axle: number(axle.damper_ratio, 3),
-    "damping constant, sliding [N s/m]": lambda axle: number(axle.damper_n_s_per_m),
-    "wheel rate [N/mm]": lambda axle: number(_milli(axle.wheel_rate_n_per_m), 2),
-    "  spring times ratio squared [N/mm]": lambda axle: number(_milli(axle.spring_at_wheel_n_per_m), 2),
-    "tyre stiffness [N/mm]": lambda axle: number(_milli(axle.tyre_n_per_m), 1),
-    "ride rate [N/mm]": lambda axle: number(_milli(axle.ride_rate_n_per_m), 2),
-    "ride frequency [Hz]": lambda axle: number(axle.ride_frequency_hz, 2),
-    "roll stiffness, springs [N m/deg]": lambda axle: number(axle.roll.springs * DEGREES),
-    "roll stiffness, anti-roll bar or beam [N m/deg]": lambda axle: number(axle.roll.bars * DEGREES),
-    "roll stiffness, tyres [N m/deg]": lambda axle: number(axle.roll.tyres * DEGREES),
-    "roll stiffness, all in series [N m/deg]": lambda axle: number(axle.roll.total * DEGREES),
-    "roll centre above ground [mm]": lambda axle: number(1e3 * axle.geometry.roll_centre_height_m, 1),
-    "front-view swing arm [m]": lambda axle: number(axle.geometry.front_swing_arm_m, 2),
-    "side-view swing arm [m]": lambda axle: number(axle.geometry.side_swing_arm_m, 2),
-    "support angle, brake force [deg]": lambda axle: number(axle.geometry.brake_support_deg, 2),
-    "support angle, drive force [deg]": lambda axle: number(axle.geometry.drive_support_deg, 2),
-    "caster [deg]": lambda axle: number(axle.geometry.caster_deg, 2),
-    "kingpin inclination [deg]": lambda axle: number(axle.geometry.kingpin_inclination_deg, 2),
-    "caster trail [mm]": lambda axle: number(1e3 * axle.geometry.caster_trail_m, 1),
-    "scrub radius [mm]": lambda axle: number(1e3 * axle.geometry.scrub_radius_m, 1),
-}
-"""Rows of the table of axles."""
-
 SUPPORT_NOTE = (
     "anti-dive, anti-lift and anti-squat: for an axle that takes all of the brake or drive force; the vehicle file has "
     "no distribution, so multiply by the share of the axle"
@@ -91,17 +56,14 @@ FIGURES_NOTE = (
 )
 
 
-def _milli(value: float | None) -> float | None:
-    return None if value is None else 1e-3 * value
-
-
 def car_tables(data: CarData) -> list[TextTable]:
-    """Return the tables of a car: the whole car, its axles, its headline figures.
+    """Return the tables of a car: the whole car, its figures with their usual ranges, its axles, its headline
+    figures.
 
     Args:
         data: the car.
     """
-    return [_whole_car(data), _axles(data), figures_table(data.figures)]
+    return [_whole_car(data), _usual(data), _axles(data), figures_table(data.figures)]
 
 
 def car_text(data: CarData) -> str:
@@ -138,28 +100,24 @@ def _whole_car(data: CarData) -> TextTable:
     return TextTable(title="Car", heads=(), rows=tuple(rows))
 
 
+def _usual(data: CarData) -> TextTable:
+    """Return the figures of the whole car; below them a note on each figure of car or axle outside its usual range."""
+    rows = tuple((figure.name, figure.value_text, figure.range_text) for figure in car_figures(data))
+    notes = tuple(f"! {figure}" for figure in usual_figures(data) if figure.unusual)
+    return TextTable(title="Figures", heads=("whole car", "value", "usual"), rows=rows, notes=notes)
+
+
 def _axles(data: CarData) -> TextTable:
-    rows = [(name, *(cell(axle) for axle in data.axles)) for name, cell in AXLE_ROWS.items()]
-    notes: tuple[str, ...] = ()
-    if data.wheelbase_m is not None:
-        total = [sum(getattr(axle.roll, part) for axle in data.axles) for part in ("suspension", "total")]
-        shares = [
-            ("share of roll stiffness, suspension [%]", "suspension", total[0]),
-            ("share of roll stiffness, with tyres [%]", "total", total[1]),
-        ]
-        position = list(AXLE_ROWS).index("roll centre above ground [mm]")
-        rows[position:position] = [
-            (name, *(number(100.0 * getattr(axle.roll, part) / whole, 1) for axle in data.axles))
-            for name, part, whole in shares
-        ]
-        percent = [data.support_percent(axle) or (math.nan, math.nan) for axle in data.axles]
-        position = [row[0] for row in rows].index("caster [deg]")
-        rows[position:position] = [
-            ("anti-dive (front) or anti-lift (rear), braking [%]", *(number(brake, 1) for brake, _ in percent)),
-            ("anti-lift (front) or anti-squat (rear), driving [%]", *(number(drive, 1) for _, drive in percent)),
-        ]
-        notes = (SUPPORT_NOTE,)
-    heads = ("axle; values of one wheel: the right one", *(axle.name for axle in data.axles))
+    loads = [" / ".join(number(load) for load in axle.load_n.values()) for axle in data.axles]
+    rows = [
+        ("template", *(axle.template for axle in data.axles), ""),
+        ("static wheel load, right / left [N]", *loads, ""),
+    ]
+    for row in axle_figures(data):
+        ranges = list(dict.fromkeys(figure.range_text for figure in row))
+        rows.append((row[0].name, *(figure.value_text for figure in row), "; ".join(ranges)))
+    heads = ("axle; values of one wheel: the right one", *(axle.name for axle in data.axles), "usual")
+    notes = (SUPPORT_NOTE,) if data.wheelbase_m is not None else ()
     return TextTable(title="Axles", heads=heads, rows=tuple(rows), notes=notes)
 
 
@@ -176,14 +134,18 @@ def figures_table(figures: Sequence[MotionFigure]) -> TextTable:
         cells = []
         for state in states:
             figure = by_state[motion, state]
-            ratio = None if figure.damping_ratio is None else 100.0 * figure.damping_ratio
+            frequency, ratio = motion_values(figure)
             modes = [f"{number(mode.frequency_hz, 2)} ({number(100.0 * mode.share)} %)" for mode in figure.modes]
-            cells += [number(figure.frequency_hz, 2), number(ratio, 1), ", ".join(modes) or "-"]
-        rows.append((motion, *cells))
+            cells += [frequency.value_text, ratio.value_text, ", ".join(modes) or "-"]
+        rows.append((motion, *cells, usual_range(motion)))
     heads = (f"{state} [Hz]" for state in states)
     return TextTable(
         title=f"Headline figures, dampers {' and '.join(states)}",
-        heads=("figure", *(word for head in heads for word in (head, "damping [%]", "modes with it [Hz] (share)"))),
+        heads=(
+            "figure",
+            *(word for head in heads for word in (head, "damping [%]", "modes with it [Hz] (share)")),
+            "usual, sliding [Hz]; [%]",
+        ),
         rows=tuple(rows),
         notes=(FIGURES_NOTE,),
     )

@@ -18,12 +18,13 @@ def car_section(car: Car) -> Markup:
     """Return drawing and tables of a car, as of `python -m vehicle show`; all parameters are folded."""
     data = car.show()
     wire = car_wireframe(car.model)
-    whole, axles, figures = car_tables(data)
+    whole, usual, axles, figures = car_tables(data)
     parameters = parameter_table(data.parameters, shortened=False)
     return joined(
         [
             drawing(lambda path: plot_car(path, wire, data, SIZE), f"Drawing of {data.name} with dimensions"),
             _table(whole),
+            _table(usual),
             _halves(axles),
             _table(figures),
             *(tag("p", note) for note in data.notes),

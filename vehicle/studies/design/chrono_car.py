@@ -79,7 +79,7 @@ def new_chrono_car(name: str, path: Path, tyre_file: Path | None, stated: Stated
         file = Path(folder) / "vehicle.toml"
         file.write_text(imported.text, encoding="utf-8")
         if stated != StatedNumbers():
-            result = new_car(name, file, stated)
+            result = new_car(name, file, stated, scale=False)
             return dataclasses.replace(result, notes=imported.notes + result.notes)
         table = {**imported.car.vehicle.table, "name": name}
         car = Car(vehicle_of(table))

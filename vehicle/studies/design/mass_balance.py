@@ -7,6 +7,7 @@ and I_b is then taken about c_b. The parts are those of the compiled model: axle
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -20,7 +21,7 @@ from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
-from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
+from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry
 from vehicle.studies.design.moved_points import Sources
 from vehicle.studies.design.stated_numbers import StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar
@@ -62,9 +63,7 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
     before = car_masses(template_model := kerb_model(template.table, template))
     loads = axle_loads(template_model, template)
     share = loads["rear"] / sum(loads.values())
-    mass, front, rear = stated.kerb_mass, stated.front_axle_load, stated.rear_axle_load
-    if mass is None:
-        mass = before.mass if front is None or rear is None else front + rear
+    mass, front, rear = kerb_mass(stated, before.mass), stated.front_axle_load, stated.rear_axle_load
     wheelbase = stated.wheelbase or template.wheelbase
     if rear is not None:
         share = rear / mass
@@ -82,10 +81,11 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
         )
     parts = car_masses(kerb_model(table, template), body=False)
     if mass - parts.mass < LIGHTEST_BODY:
+        minimum = LIGHTEST_BODY / (1.0 - parts.mass / mass) if parts.mass < mass else parts.mass + LIGHTEST_BODY
         raise ConfigurationError(
-            f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts of {template.name} already "
-            f"weigh {parts.mass:.1f} kg; must be at least {parts.mass + LIGHTEST_BODY:.1f} kg, or start from a car "
-            "with lighter parts"
+            f"{option('kerb_mass')} {mass:g} kg: the axles, the engine and the other parts, scaled from "
+            f"{template.name}, weigh {parts.mass:.1f} kg and leave {mass - parts.mass:.1f} kg for the body, must be at "
+            f"least {LIGHTEST_BODY:g} kg; state {math.ceil(minimum)} kg or more"
         )
     radius = stated.tyre_radius or template.tyre_radius
     ground = template.wheels["front"][0].center[2] - radius
@@ -104,6 +104,14 @@ def balanced(table: dict[str, Any], template: TemplateCar, stated: StatedNumbers
             break
         along -= error * wheelbase
     return table, _sources(template, stated, parts.mass, template_indices(template, before))
+
+
+def kerb_mass(stated: StatedNumbers, of_template: float) -> float:
+    """Return the kerb mass of a new car [kg]: stated, the sum of both axle loads, or that of the template."""
+    front, rear = stated.front_axle_load, stated.rear_axle_load
+    if stated.kerb_mass is not None:
+        return stated.kerb_mass
+    return of_template if front is None or rear is None else front + rear
 
 
 def template_indices(template: TemplateCar, before: MassProperties) -> tuple[float, float, float]:

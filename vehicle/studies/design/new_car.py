@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from vehicle.engines.simulation.car_masses import car_masses
 from vehicle.errors import SimulationError
@@ -17,12 +16,13 @@ from vehicle.model.parameters.template import own_templates
 from vehicle.model.parameters.value_sources import value_sources
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
+from vehicle.studies.design.car_class import POWERTRAIN, of_class, powertrain
 from vehicle.studies.design.car_file import vehicle_text
-from vehicle.studies.design.inertia_survey import SURVEY, AxleGeometry
-from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_model
+from vehicle.studies.design.mass_balance import axle_loads, balanced, kerb_mass, kerb_model
 from vehicle.studies.design.moved_points import Sources, moved_points
 from vehicle.studies.design.ride_solution import Target, new_car_of, quantities, solved, targets_of
-from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers
+from vehicle.studies.design.scaled_parts import scaled_parts
+from vehicle.studies.design.stated_numbers import AXLES, NAMES, StatedNumbers, option
 from vehicle.studies.design.template_car import TemplateCar, template_car
 from vehicle.threads import one_blas_thread
 
@@ -70,13 +70,14 @@ class NewCar:
 
 
 @one_blas_thread()
-def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
+def new_car(name: str, source: Path | str, stated: StatedNumbers, *, scale: bool = True) -> NewCar:
     """Make a new car.
 
     Args:
         name: name of the new car.
         source: template: name of a shipped car, or a vehicle file.
-        stated: numbers of the new car; all others are those of the template, or estimated.
+        stated: numbers of the new car; all others are those of its class or of the template, or estimated.
+        scale: False keeps masses, stiffnesses and tyres of axles and powertrain of the template, see `scaled_parts`.
 
     Returns:
         The car, whose numbers are met within `LOADS_MET` and `FREQUENCIES_MET`.
@@ -85,10 +86,20 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
         ConfigurationError: a car that cannot be; the message has the number that must change.
         SimulationError: a number is not met.
     """
+    stated = of_class(stated)
     template = template_car(source)
+    template_mass = car_masses(kerb_model(template.table, template)).mass
+    ratio = kerb_mass(stated, template_mass) / template_mass if scale else 1.0
+    engine = powertrain(stated.car_class)
+    template = template.with_powertrain(engine)
     table, sources = moved_points(template, stated)
+    before = value_sources(template.file)
+    table, scaled = scaled_parts(table, template, ratio, powertrain=engine is None)
+    of_parts = {path: f"{text}: {before[path]}" if path in before else text for path, text in scaled.items()}
     table, of_body = balanced(table, template, stated)
-    sources |= of_body | _curves(table, template, stated)
+    sources |= of_parts | of_body | _curves(table, template, stated)
+    if engine is not None:
+        sources["engine"] = f"class {stated.car_class}: {POWERTRAIN}"
     if stated.load:
         table["load"] = dict(stated.load)
         sources |= {f"load.{load}": "given" for load in stated.load}
@@ -103,8 +114,8 @@ def new_car(name: str, source: Path | str, stated: StatedNumbers) -> NewCar:
         "Behind each value: [unit] where it comes from: given, estimated by ..., or the template with its own source.\n"
         "Frame: x to the rear, y to the driver's right, z up. SI units."
     )
-    text = vehicle_text(car.vehicle, header, sources, template.name, value_sources(template.file))
-    return NewCar(car=car, text=text, checks=checks, notes=_notes(car, template, stated))
+    text = vehicle_text(car.vehicle, header, sources, template.name, before)
+    return NewCar(car=car, text=text, checks=checks, notes=_notes(car, template, stated, ratio))
 
 
 def template_files(source: Path, car: Car) -> list[Path]:
@@ -198,24 +209,66 @@ def _require_met(checks: tuple[Check, ...]) -> None:
             )
 
 
-def _notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> tuple[str, ...]:
-    """Return the notes: inertia outside the survey, values of the template, parts left out."""
-    kerb = kerb_model(car.vehicle.table, template)
-    whole = car_masses(kerb)
-    wheels = {wheel.name: wheel for wheel in car.vehicle.composition.wheels}
-    pairs = [[wheels[wheel.name] for wheel in template.wheels[word]] for word in AXLES]
-    track = float(np.mean([right.center[1] - left.center[1] for right, left in pairs]))
-    behind, ahead = float(whole.cog[0]) - pairs[0][0].center[0], pairs[1][0].center[0] - float(whole.cog[0])
-    indices = AxleGeometry(track=track, front=behind, rear=ahead).indices(whole.mass, np.diag(whole.inertia).tolist())
-    notes = []
-    for (word, index), value in zip(SURVEY.items(), indices, strict=True):
-        if not index.least <= value <= index.most:
-            notes.append(
-                f"{word} is {value:.3f}, outside the range of 73 measured cars, {index.least} to {index.most}: check "
-                "inertia, pitch frequency and axle loads, or take --inertia survey"
-            )
-    notes.append(
-        f"as in {template.name}: parts of axles and engine, bushings, mounts, damper friction, tyre slip; these values "
-        "are marked 'template' in the file"
+DAMPING = ("damping_ratio_front", "damping_ratio_rear", "damper_curve_front", "damper_curve_rear")
+"""Numbers of the dampers."""
+
+FOLLOWS: dict[str, tuple[str, ...]] = {
+    "mass [kg]": ("kerb_mass", "front_axle_load", "rear_axle_load"),
+    "load on the front axle [%]": ("front_axle_load", "rear_axle_load", "cog_x"),
+    "track over twice the CoG height": ("cog_height", "track_front", "track_rear"),
+    "wheelbase [mm]": ("wheelbase",),
+    "k_x / mean track": ("roll_inertia",),
+    "k_y^2 / a b": ("pitch_inertia", "pitch_frequency"),
+    "k_z^2 / a b": ("yaw_inertia", "pitch_frequency"),
+    "track [mm]": ("track",),
+    "loaded tyre radius [mm]": ("tyre_radius",),
+    "spring stiffness [N/mm]": ("ride_frequency",),
+    "wheel rate [N/mm]": ("ride_frequency",),
+    "ride rate [N/mm]": ("ride_frequency",),
+    "ride frequency [Hz]": ("ride_frequency",),
+    "damping constant, sliding [N s/m]": ("damping_ratio", "damper_curve"),
+    "tyre stiffness [N/mm]": ("wheel_hop",),
+    "tyre deflection, static [mm]": ("wheel_hop",),
+    "roll stiffness, springs [N m/deg]": ("ride_frequency",),
+    "roll stiffness, anti-roll bar or beam [N m/deg]": ("roll_stiffness",),
+    "roll stiffness, all in series [N m/deg]": ("roll_stiffness", "ride_frequency"),
+    "heave [Hz]": ("ride_frequency_front", "ride_frequency_rear"),
+    "pitch [Hz]": ("pitch_frequency", "ride_frequency_front", "ride_frequency_rear"),
+    "roll [Hz]": ("roll_stiffness_front", "roll_stiffness_rear"),
+    **dict.fromkeys((f"{motion}, damping [%]" for motion in ("heave", "pitch", "roll")), DAMPING),
+    "wheel hop [Hz]": ("wheel_hop",),
+    "wheel hop, damping [%]": ("damping_ratio", "damper_curve"),
+    "share of roll stiffness, suspension [%]": ("roll_stiffness",),
+    "share of roll stiffness, with tyres [%]": ("roll_stiffness",),
+}
+"""Stated numbers that a figure of the car follows from, without the word of an axle; all others are the template's."""
+
+
+def _unusual_notes(car: Car, template: TemplateCar, stated: StatedNumbers) -> Iterator[str]:
+    """Yield a note for each figure outside its usual range, with its origin; the loads of the car are left out."""
+    kerb = new_car_of({key: value for key, value in car.vehicle.table.items() if key != "load"}, template)
+    axle_words = {template.axle(word): word for word in AXLES}
+    for figure in kerb.show().usual:
+        if not figure.unusual:
+            continue
+        names = [
+            name if hasattr(stated, name) else f"{name}_{axle_words[figure.axle]}"
+            for name in FOLLOWS.get(figure.name, ())
+        ]
+        origins = [f"follows from {stated.stated(name)}" if isinstance(getattr(stated, name), float) else
+                   f"follows from {option(name)}" for name in names if getattr(stated, name) is not None]  # fmt: skip
+        otherwise = f"from the template {template.name}"
+        if names:
+            otherwise += f"; state {' or '.join(map(option, names))}"
+        yield f"unusual: {figure}; {', '.join(origins) or otherwise}"
+
+
+def _notes(car: Car, template: TemplateCar, stated: StatedNumbers, ratio: float) -> tuple[str, ...]:
+    """Return the notes: figures outside their usual ranges, values of the template, parts left out."""
+    scaled = "" if ratio == 1.0 else f"scaled by the kerb mass ({ratio:.3f} of that of {template.name}): "
+    return (
+        *_unusual_notes(car, template, stated),
+        f"as in {template.name}: {scaled}parts of axles and powertrain, bushings, mounts, damper friction, tyres; "
+        "these values are marked 'template' in the file",
+        *(f"not taken over from {template.name}: {text}" for text in template.left_out),
     )
-    return (*notes, *(f"not taken over from {template.name}: {text}" for text in template.left_out))

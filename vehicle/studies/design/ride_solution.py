@@ -21,6 +21,7 @@ from vehicle.engines.simulation.axle_ride import axle_rides
 from vehicle.engines.simulation.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.quantity import field_quantity
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.model.parameters.whole_body import put
 from vehicle.runs.car import Car
@@ -38,7 +39,24 @@ MOST_STEPS = 40
 LARGEST_STEP = 4.0
 """Largest factor by which one step may change a parameter."""
 LEAST = 1e-3
-"""Factor on a parameter of the template below which the target requires a negative value."""
+"""Least factor on a parameter; the largest is its inverse."""
+
+TYRE_SAG = (0.006, 0.05)
+"""Least and largest static deflection of a tyre [m]: a solid tyre, and a flat tyre."""
+BISECTIONS = 12
+"""Steps of the search for the last possible car: the factor is then within 0.2 % for a bound of 1000."""
+LIMITS = {"wheel_hop": " (static deflection of 50 to 6 mm)"}
+"""Reason of the limits of a parameter, by the name of the quantity."""
+WIDENS = {
+    "ride_frequency": "Softer or stiffer tyres (--wheel-hop-front, -rear) and another axle load move the interval.",
+    "damping_ratio": "Dampers at 0.1 m/s count: state a value inside, or a --damper-curve.",
+    "wheel_hop": "Lighter wheels and brakes raise it, heavier ones lower it: change parts.*.mass of this axle in the "
+    "file of the template, or state another kerb mass, which scales them.",
+    "roll_stiffness": "The springs give the least value: a lower ride frequency or a narrower track lowers it.",
+    "pitch_frequency": "The moments of a real body limit it: state other ride frequencies, axle loads, roll or yaw "
+    "inertia.",
+}
+"""Advice on the interval that can be reached, by the name of the quantity."""
 
 SPRING_FORCES = ("stiffness", "table.force")
 """Parameters of a spring that are proportional to its force."""
@@ -147,42 +165,174 @@ def solved(table: Mapping[str, Any], template: TemplateCar, targets: Sequence[Ta
         targets: quantities to be met.
 
     Raises:
-        ConfigurationError: a target requires a negative parameter, or the springs cannot support the car.
+        ConfigurationError: a target cannot be reached; the message has the interval that can be reached.
         SimulationError: the iteration does not converge.
     """
+    problem = RideProblem(table=table, template=template, targets=tuple(targets))
+    try:
+        factors, unreached = problem.solved_factors()
+    except ConfigurationError as error:
+        raise problem.explained_error(error) from None
+    if unreached is not None:
+        raise problem.unreachable_error(unreached)
+    return scaled(table, targets, factors)
 
-    def deviation(factors: Vector) -> Vector:
-        changed = scaled(table, targets, factors)
-        _require_inertia(changed, targets)
-        try:
-            values = quantities(new_car_of(changed, template), template)
-        except ConfigurationError as error:
-            values_text = ", ".join(f"{option(target.name)} {target.value:.4g}" for target in targets)
-            raise ConfigurationError(f"with {values_text}: {error}") from None
-        return np.array([values[target.name] / target.value - 1.0 for target in targets])
 
-    factors = np.ones(len(targets))
-    residual = deviation(factors)
-    jacobian = np.empty((len(targets), len(targets)))
-    for column in range(len(targets)):
-        moved = factors.copy()
-        moved[column] += DIFFERENCE
-        jacobian[:, column] = (deviation(moved) - residual) / DIFFERENCE
-    for _ in range(MOST_STEPS):
-        if np.max(np.abs(residual)) < SOLVED:
-            return scaled(table, targets, factors)
-        aim = factors - np.linalg.lstsq(jacobian, residual, rcond=None)[0]
-        bounded = np.clip(aim, factors / LARGEST_STEP, factors * LARGEST_STEP)
-        _require_positive(bounded, targets, residual)
-        step, last = bounded - factors, residual
-        factors = bounded
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RideProblem:
+    """Targets of a new car and the parameters to be solved for.
+
+    Attributes:
+        table: vehicle table with lengths, masses and loads of the new car.
+        template: the template car.
+        targets: quantities to be met.
+    """
+
+    table: Mapping[str, Any]
+    template: TemplateCar
+    targets: tuple[Target, ...]
+
+    def values(self, factors: Vector) -> dict[str, float]:
+        """Return the quantities of the car with factors on the parameters of the targets.
+
+        Raises:
+            ConfigurationError: the car cannot be.
+        """
+        changed = scaled(self.table, self.targets, factors)
+        _require_inertia(changed, self.targets)
+        return quantities(new_car_of(changed, self.template), self.template)
+
+    def factor_bounds(self) -> tuple[Vector, Vector]:
+        """Return the lower and the upper bound of the factor on the parameter of each target."""
+        lower, upper = np.full((2, len(self.targets)), [[LEAST], [1.0 / LEAST]])
+        for index, target in enumerate(self.targets):
+            if target.name.startswith("wheel_hop"):
+                load = _mean_load(self.table, self.template, target.name.rpartition("_")[2])
+                stiffness = value_at(self.table, target.paths[0].removesuffix(".z"))[2]
+                lower[index], upper[index] = (load / (sag * stiffness) for sag in reversed(TYRE_SAG))
+        return lower, upper
+
+    def solved_factors(self) -> tuple[Vector, int | None]:
+        """Return the factors that meet the targets, and the index of a target out of reach of its parameter.
+
+        A parameter stays at its bound while its target requires more; the other targets are solved without it.
+
+        Raises:
+            ConfigurationError: an iterate is no car.
+            SimulationError: the iteration does not converge.
+        """
+        aims = np.array([target.value for target in self.targets])
+        lower, upper = self.factor_bounds()
+
+        def deviation(factors: Vector) -> Vector:
+            values = self.values(factors)
+            return np.asarray([values[target.name] / target.value - 1.0 for target in self.targets])
+
+        factors = np.clip(np.ones(len(aims)), lower, upper)
         residual = deviation(factors)
-        jacobian += np.outer(residual - last - jacobian @ step, step) / (step @ step)
-    worst = int(np.argmax(np.abs(residual)))
-    raise SimulationError(
-        f"{option(targets[worst].name)} {targets[worst].value:g}: not met within {MOST_STEPS} steps, deviation "
-        f"{100.0 * residual[worst]:.2f} %; state a value nearer to that of {template.name}, or leave it out"
-    )
+        jacobian = np.empty((len(aims), len(aims)))
+        for column in range(len(aims)):
+            moved = factors.copy()
+            moved[column] += DIFFERENCE * factors[column]
+            jacobian[:, column] = (deviation(moved) - residual) / (DIFFERENCE * factors[column])
+        for _ in range(MOST_STEPS):
+            # A quantity grows with the parameter of its target; pitch, which does not, meets the limits of Iyy first.
+            held = ((factors <= lower) & (residual > SOLVED)) | ((factors >= upper) & (residual < -SOLVED))
+            free = ~held
+            if not np.any(np.abs(residual[free]) >= SOLVED):
+                return factors, int(np.argmax(held)) if np.any(held) else None
+            step = np.zeros(len(aims))
+            step[free] = -np.linalg.lstsq(jacobian[np.ix_(free, free)], residual[free], rcond=None)[0]
+            low, high = np.maximum(lower, factors / LARGEST_STEP), np.minimum(upper, factors * LARGEST_STEP)
+            step = np.clip(factors + step, low, high) - factors
+            factors, last = factors + step, residual
+            residual = deviation(factors)
+            jacobian += np.outer(residual - last - jacobian @ step, step) / (step @ step)
+        worst = int(np.argmax(np.abs(residual)))
+        raise SimulationError(
+            f"{option(self.targets[worst].name)} {aims[worst]:g}: not met within {MOST_STEPS} steps, deviation "
+            f"{100.0 * residual[worst]:.2f} %; state a value nearer to that of {self.template.name}, or leave it out"
+        )
+
+    def reachable_interval(self, index: int) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return the interval that a target can reach, and the factors on its parameter at both ends.
+
+        All other targets are met at both ends. If that is impossible at a bound, the last possible factor replaces it.
+
+        Args:
+            index: index of the target.
+        """
+        lower, upper = self.factor_bounds()
+        ends = [self.last_end(index, float(bound[index])) for bound in (lower, upper)]
+        values = sorted(value for _, value in ends)
+        return (values[0], values[-1]), (ends[0][0], ends[1][0])
+
+    def value_at_factor(self, index: int, factor: float) -> float:
+        """Return the quantity of a target with a factor on its parameter, all other targets met.
+
+        Raises:
+            ConfigurationError, SimulationError: the other targets cannot be met.
+        """
+        target, others = self.targets[index], (*self.targets[:index], *self.targets[index + 1 :])
+        table = scaled(self.table, [target], np.array([factor]))
+        # Of the target itself only the limits of its parameter count.
+        _require_inertia(table, [target])
+        problem = RideProblem(table=table, template=self.template, targets=others)
+        factors, unreached = problem.solved_factors()
+        if unreached is not None:
+            raise ConfigurationError(f"{option(others[unreached].name)}: out of reach")
+        return problem.values(factors)[target.name]
+
+    def last_end(self, index: int, bound: float) -> tuple[float, float]:
+        """Return factor and quantity at a bound, or at the last factor between 1 and the bound that is possible.
+
+        Raises:
+            ConfigurationError, SimulationError: a factor of 1 is impossible too.
+        """
+        possible, impossible, factor, value = 1.0, bound, bound, math.nan
+        for _ in range(BISECTIONS):
+            try:
+                value = self.value_at_factor(index, factor)
+            except (ConfigurationError, SimulationError):
+                impossible = factor
+            else:
+                possible = factor
+            if possible == bound:
+                break
+            factor = math.sqrt(possible * impossible)
+        return possible, value if math.isfinite(value) else self.value_at_factor(index, possible)
+
+    def unreachable_error(self, index: int) -> ConfigurationError:
+        """Return the error of a target that cannot be reached, with the interval and what widens it."""
+        target = self.targets[index]
+        (low, high), factors = self.reachable_interval(index)
+        path = target.paths[0]
+        value = value_at(self.table, path.removesuffix(".z"))
+        value = value[2] if path.endswith(".z") else value[-1] if isinstance(value, list | tuple) else value
+        unit = self.template.vehicle.quantity_of(path).get("unit", "-")
+        first, last = (f"{factor * value:.4g}" for factor in factors)
+        name = target.name.removesuffix("_front").removesuffix("_rear")
+        of = field_quantity(StatedNumbers, target.name)["unit"]
+        return ConfigurationError(
+            f"{option(target.name)} {target.value:g} {'' if of == '-' else of}: cannot be reached; reachable are "
+            f"{low:.4g} to {high:.4g} {'' if of == '-' else of}, with {path} from {first} to {last} {unit}"
+            f"{LIMITS.get(name, '')}. {WIDENS[name]}".replace(" :", ":").replace(" ,", ",")
+        )
+
+    def explained_error(self, error: ConfigurationError) -> ConfigurationError:
+        """Return the error of an iterate that is no car: of the target whose parameter it names, with its interval."""
+        for index, target in enumerate(self.targets):
+            names = (option(target.name), *(path.removesuffix(".z") for path in target.paths))
+            if any(name in str(error) for name in names):
+                return self.unreachable_error(index)
+        values = ", ".join(f"{option(target.name)} {target.value:.4g}" for target in self.targets)
+        return ConfigurationError(f"with {values}: {error}")
+
+
+def _mean_load(table: Mapping[str, Any], template: TemplateCar, word: str) -> float:
+    """Return the mean static load of the wheels of an axle [N]."""
+    loads = new_car_of(table, template).model.static.tyre_load
+    return float(np.mean([loads[wheel.name] for wheel in template.wheels[word]]))
 
 
 def _require_inertia(table: Mapping[str, Any], targets: Sequence[Target]) -> None:
@@ -196,16 +346,6 @@ def _require_inertia(table: Mapping[str, Any], targets: Sequence[Target]) -> Non
                     f"kg m2 of the body, must be between {abs(izz - ixx):.0f} and {ixx + izz:.0f} kg m2 (Ixx "
                     f"{ixx:.0f}, Izz {izz:.0f}); check it against the ride frequencies, or leave it out"
                 )
-
-
-def _require_positive(factors: Vector, targets: Sequence[Target], residual: Vector) -> None:
-    """Raise an error for a target that requires a negative parameter."""
-    for factor, target, deviation in zip(factors, targets, residual, strict=True):
-        if factor < LEAST:
-            raise ConfigurationError(
-                f"{option(target.name)} {target.value:g}: needs a negative {target.paths[0]}; with it near zero the "
-                f"other parts of the car still give {target.value * (1.0 + deviation):.3g}; state a higher value"
-            )
 
 
 def scaled(table: Mapping[str, Any], targets: Sequence[Target], factors: Vector) -> dict[str, Any]:

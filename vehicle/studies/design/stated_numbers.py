@@ -26,7 +26,10 @@ HOP: dict[str, Any] = {"at_least": 4.0, "at_most": 30.0, "why": "wheels of cars 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class StatedNumbers:
-    """Numbers of a car; None: not stated. `option` returns its name on a command line."""
+    """Numbers of a car; None: not stated. `option` returns its name on a command line.
+
+    `of_class` has the names of the numbers that are those of the class of the car.
+    """
 
     kerb_mass: float | None = quantity(
         "kg", "mass of the car without the loads of [load]", above=0.0, at_most=2e4, default=None
@@ -92,6 +95,8 @@ class StatedNumbers:
         above=0.0,
         default=None,
     )
+    car_class: str | None = quantity("-", "class of the car, for default numbers", default=None)
+    of_class: tuple[str, ...] = ()
     load: Mapping[str, dict] = field(default_factory=dict)  # type: ignore[type-arg]
 
     def __post_init__(self) -> None:
@@ -124,16 +129,23 @@ class StatedNumbers:
         return getattr(self, f"{name}_{axle}")
 
     def stated(self, name: str) -> str:
-        """Return the text of a number: "kerb mass 1450 kg (given)"."""
+        """Return the text of a number: "kerb mass 1450 kg (given)", or "(class small)" for a number of the class."""
         unit = self.__dataclass_fields__[name].metadata["unit"]
         unit = "" if unit == "-" else f" {unit}"
-        return f"{name.replace('_', ' ')} {getattr(self, name):g}{unit} (given)"
+        return f"{name.replace('_', ' ')} {getattr(self, name):g}{unit} ({self.origin(name)})"
+
+    def origin(self, name: str) -> str:
+        """Return where a number comes from: "given" or "class small"."""
+        return f"class {self.car_class}" if name in self.of_class else "given"
 
 
 LOADS_AGREE = 5e-4
 """Largest deviation of the sum of two axle loads from the kerb mass, as a share of it: half of the promised 0.1 %."""
 
-NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in ("load", "inertia"))
+NOT_NUMBERS = ("load", "inertia", "car_class", "of_class")
+"""Fields that are no numbers of a car."""
+
+NAMES = tuple(entry.name for entry in dataclasses.fields(StatedNumbers) if entry.name not in NOT_NUMBERS)
 
 
 def option(name: str) -> str:

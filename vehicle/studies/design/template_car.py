@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -62,6 +63,22 @@ class TemplateCar:
     def ground(self) -> float:
         """Return the height of the plates under the front wheels [m]."""
         return self.wheels["front"][0].patch[2]
+
+    def with_powertrain(self, engine: Mapping[str, Any] | None) -> TemplateCar:
+        """Return the template with another powertrain; itself for None.
+
+        Args:
+            engine: table of the powertrain.
+
+        Raises:
+            ConfigurationError: the template has no table `engine`.
+        """
+        if engine is None:
+            return self
+        if "engine" not in self.table:
+            raise ConfigurationError(f"--class: {self.name} has no table engine for the powertrain; start from sedan")
+        table = {**self.table, "engine": copy_table(engine)}
+        return dataclasses.replace(self, table=table, vehicle=vehicle_of(table, self.file.parent))
 
     def track(self, word: str) -> float:
         """Return the distance of the wheels of an axle [m]."""
