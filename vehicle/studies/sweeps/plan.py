@@ -187,8 +187,9 @@ def changes_of(vary: Variations) -> Sequence[tuple[str, ...]]:
         changes = vary
     else:
         changes = [tuple(assignments(each)) for each in vary]
-        if () not in changes and len({frozenset(_values(each)) for each in changes}) > 1:
-            changes = [(), *changes]
+        # The first variation is the base if all others change its parameters too.
+        if changes and not all(_values(changes[0]).keys() <= _values(each).keys() for each in changes):
+            changes = [(), *changes] if () not in changes else changes
     if not any(changes):
         raise ConfigurationError("vary: no variation; pass {PATH: [VALUE, ...]}, as {'damper.viscous': [1500, 2000]}")
     return changes
