@@ -43,10 +43,10 @@ def parser() -> Parser:
         dest="source",
         metavar="CAR",
         help="template: a shipped car with four wheels, as sedan or focus_road, the file of a car, or chrono:FILE.json "
-        "of a vehicle of Project Chrono; sedan by default with --class. Axles and powertrain are scaled by the mass",
+        "of a vehicle of Project Chrono; sedan by default with --car-class. Axles and powertrain are scaled by the mass",
     )
     parser.add_argument(
-        "--class",
+        "--car-class",
         dest="car_class",
         choices=CLASSES,
         help="class of the car: default masses, lengths and ride frequencies; electric-suv has an electric drive, "
@@ -103,7 +103,7 @@ def _job(options: argparse.Namespace) -> None:
     stated = stated_numbers(options.numbers, {key: getattr(options, key) for key in (*NAMES, "inertia", "car_class")})
     if options.source is None:
         if stated.car_class is None:
-            raise ConfigurationError("--from: missing; name a template, as --from sedan, or state --class")
+            raise ConfigurationError("--from: missing; name a template, as --from sedan, or state --car-class")
         options.source = "sedan"
     foreign = Path(options.source.removeprefix(PREFIX)) if options.source.startswith(PREFIX) else None
     if options.chrono_tyre is not None and foreign is None:

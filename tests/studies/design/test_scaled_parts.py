@@ -66,13 +66,13 @@ def test_stated_numbers_precede_those_of_the_class():
     stated = StatedNumbers(car_class="small", kerb_mass=1050.0, front_axle_load=640.0)
     values = {check.name: check.value for check in new_car("one", "sedan", stated).checks}
     assert values["kerb_mass"] == pytest.approx(1050.0) and values["front_axle_load"] == pytest.approx(640.0, rel=1e-3)
-    with pytest.raises(ConfigurationError, match="--class: found 'bus', must be one of small, sedan, van"):
+    with pytest.raises(ConfigurationError, match="--car-class: found 'bus', must be one of small, sedan, van"):
         new_car("one", "sedan", StatedNumbers(car_class="bus"))
 
 
 def test_a_template_or_a_class_is_needed(tmp_path, capsys):
     assert main([str(tmp_path / "mine"), "--kerb-mass", "1000"]) == 2
-    assert "--from: missing; name a template, as --from sedan, or state --class" in capsys.readouterr().err
+    assert "--from: missing; name a template, as --from sedan, or state --car-class" in capsys.readouterr().err
 
 
 def test_an_unusual_figure_of_the_template_is_named():

@@ -76,7 +76,9 @@ class TemplateCar:
         if engine is None:
             return self
         if "engine" not in self.table:
-            raise ConfigurationError(f"--class: {self.name} has no table engine for the powertrain; start from sedan")
+            raise ConfigurationError(
+                f"--car-class: {self.name} has no table engine for the powertrain; start from sedan"
+            )
         table = {**self.table, "engine": copy_table(engine)}
         return dataclasses.replace(self, table=table, vehicle=vehicle_of(table, self.file.parent))
 
