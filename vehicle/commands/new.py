@@ -43,7 +43,7 @@ def parser() -> Parser:
         dest="source",
         metavar="CAR",
         help="template: a shipped car with four wheels, as sedan or focus_road, the file of a car, or chrono:FILE.json "
-        "of a vehicle of Project Chrono; sedan by default with --car-class. Axles and powertrain are scaled by the mass",
+        "of a vehicle of Project Chrono; sedan by default with --car-class. Axles and powertrain scale with the mass",
     )
     parser.add_argument(
         "--car-class",
