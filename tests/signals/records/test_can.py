@@ -2,11 +2,11 @@
 
 import random
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.failing_inputs import FAILING, beside_the_project
 from tests.signals.records.can_logs import CONTAINERS, Frame, asc, mf4, write_log
 from tests.validation import validated
 from vehicle.commands.comfort import main as comfort
@@ -18,7 +18,6 @@ from vehicle.signals.records.record_comfort import evaluate_comfort
 
 pytest.importorskip("asammdf")
 
-FAILING = Path(__file__).parents[3].parent / "shared" / "data" / "failing-inputs"
 SEAT = {"x": "Seat_X", "y": "Seat_Y", "z": "Seat_Z"}
 
 DBC = """VERSION ""
@@ -45,6 +44,7 @@ def weighted(name, database, channels):
     return evaluate_comfort(FAILING / name, choice=choice).weighted_rms
 
 
+@beside_the_project
 def test_a_value_table_names_raw_values_and_keeps_factor_and_offset():
     with_table = weighted("one_bus.log", "imu_with_val.dbc", SEAT)
     assert with_table == weighted("one_bus.log", "imu.dbc", SEAT)
@@ -54,6 +54,7 @@ def test_a_value_table_names_raw_values_and_keeps_factor_and_offset():
     )  # fmt: skip
 
 
+@beside_the_project
 def test_two_buses_are_two_channels(capsys):
     first = weighted("two_buses.log", "imu.dbc", {axis: f"{name} can0" for axis, name in SEAT.items()})
     assert first["z"] == pytest.approx(0.2696, abs=5e-5)
@@ -69,6 +70,7 @@ def test_two_buses_are_two_channels(capsys):
     assert "'Seat_Z can0'" in (said := capsys.readouterr().err) and "'Seat_Z can1'" in said
 
 
+@beside_the_project
 def test_frames_of_can_fd_are_read():
     found = read_record(FAILING / "fd.log", [FAILING / "fd.dbc"])
     channels = {one.name: one for one in found.channels}

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.failing_inputs import FAILING, beside_the_project
 from tests.signals.records.logger_files import LVM
 from tests.validation import validated
 from vehicle.__main__ import main
@@ -22,7 +23,6 @@ from vehicle.signals.records.measured import read_measured
 from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.uff_writer import write as write_uff
 
-FAILING = Path(__file__).parents[3].parent / "shared" / "data" / "failing-inputs"
 BOTH = {"plate_fl_displacement": "Plate FL", "knuckle_fl_acc_z": "Plate FL acceleration"}
 
 
@@ -40,6 +40,7 @@ def measurement(*channels):
     return Measurement(path=Path("record.x"), format="test", channels=channels)
 
 
+@beside_the_project
 def test_starts_of_tdms_are_read_and_the_channels_cut():
     """The second channel is the second difference of the first, with the start time that the file states."""
     pytest.importorskip("nptdms")
@@ -169,6 +170,7 @@ def master(path, kind, unit, name="s", heights="m"):
         file.save(path, overwrite=True)
 
 
+@beside_the_project
 def test_a_master_of_distance_is_a_road():
     pytest.importorskip("asammdf")
     path = FAILING / "master_distance.mf4"

@@ -1,10 +1,9 @@
 """Packed arrays of HDF5 and netCDF: factor, offset, fill values, valid range, time coordinate."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
+from tests.failing_inputs import FAILING, beside_the_project
 from tests.validation import validated
 from vehicle.errors import DataError
 from vehicle.signals.records.choice import Choice, choose
@@ -13,7 +12,6 @@ from vehicle.signals.records.record_comfort import evaluate_comfort
 
 h5py = pytest.importorskip("h5py")
 
-FAILING = Path(__file__).parents[3].parent / "shared" / "data" / "failing-inputs"
 NAN = np.nan
 S = {"scale_factor": 0.05}
 PACKED = np.array([-200, -100, 0, 100, 200, 300], dtype=np.int16)
@@ -30,6 +28,7 @@ def array(tmp_path, values=PACKED, fillvalue=None, **attributes):
     return channel, found.notices
 
 
+@beside_the_project
 def test_factor_and_offset_of_a_netcdf_file():
     choice = Choice(channels={"z": "seat_z", "time": "time"})
     found = evaluate_comfort(FAILING / "packed.nc", choice=choice)
