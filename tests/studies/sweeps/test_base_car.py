@@ -8,7 +8,7 @@ import pytest
 from tests.studies.sweeps.sweep_samples import ShortRoad
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
-from vehicle.studies.sweeps.plan import changes_of, sweep
+from vehicle.studies.sweeps.plan import changes_of, plan_sweep, sweep
 from vehicle.studies.sweeps.sweep_page import best_sentences
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn
 from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
@@ -63,3 +63,6 @@ def test_a_sweep_without_any_effect_is_refused():
     """The front dampers of the sedan are tables, so their constants have no effect."""
     with pytest.raises(ConfigurationError, match=r"every run would be the same car: front\.damper\.viscous=1500\.0"):
         sweep(Car.load("sedan"), {"front.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], engine="reduced")
+    # On all axles they have an effect at the rear.
+    plan = plan_sweep(Car.load("sedan"), {"*.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], engine="reduced")
+    assert len(plan.cases) == 2 and "without effect" in plan.notes[0]

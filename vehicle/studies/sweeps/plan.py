@@ -12,7 +12,7 @@ from vehicle.engines.reduced.validity import ERROR_ON_CLASS_C
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.body_notices import body_rules
 from vehicle.model.parameters.idle import idle_parameters
-from vehicle.model.parameters.paths import assignments
+from vehicle.model.parameters.paths import assignments, meant
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
@@ -120,7 +120,7 @@ def plan_sweep(
     cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
     paths = [text.partition("=")[0] for text in _one_of_each_path(changes)]
     idle = _idle_notes(vehicle, car.overrides, changes)
-    if len(idle) == len(paths):
+    if idle and _all_idle(vehicle, car.overrides, _one_of_each_path(changes)):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
         cases=cases,
@@ -228,6 +228,16 @@ def _idle_notes(file: Path | None, overrides: Sequence[str], changes: Sequence[S
         return idle_parameters(load_vehicle(file, [*overrides, *each]), each)
     except ConfigurationError:
         return ()  # the row contains the reason
+
+
+def _all_idle(file: Path | None, overrides: Sequence[str], change: Sequence[str]) -> bool:
+    """Return True if no parameter that a variation sets has an effect, on none of the axles that a path means."""
+    vehicle = load_vehicle(file, [*overrides, *change])
+    return all(
+        idle_parameters(vehicle, [f"{whole}={text.partition('=')[2]}"])
+        for text in change
+        for whole in meant(vehicle.table, text.partition("=")[0].strip())
+    )
 
 
 def _one_of_each_path(changes: Sequence[Sequence[str]]) -> tuple[str, ...]:
