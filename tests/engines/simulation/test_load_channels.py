@@ -141,6 +141,21 @@ def test_forces_move_the_body(bumped):
     )  # fmt: skip
 
 
+def test_the_torque_of_a_joint_is_that_of_its_angle(bumped):
+    """At the instant of the sample, not a step later; the torsion bar has no damping."""
+    joint = bumped.car.vehicle.composition.joint_springs[0].joint
+    generated = bumped.car.model.model.joint(joint)
+    assert bumped.car.model.model.dof_damping[generated.dofadr[0]] == 0.0
+    angle = bumped.recording.poses[:, generated.qposadr[0]] - bumped.car.model.model.qpos_spring[generated.qposadr[0]]
+    stiffness = bumped.car.vehicle.composition.joint_springs[0].stiffness
+    found = bumped[f"{joint}_torque"][at_poses(bumped)]
+    assert np.ptp(found) > 1.0
+    validated(
+        "Bushings, springs and stops", "torque of a torsion bar on a bump", found, -stiffness * angle,
+        peak=1e-9, unit="N m", source="closed form: -K phi at the stored poses",
+    )  # fmt: skip
+
+
 def test_a_bushing_over_a_sine_cycle():
     """f = -K r - B r': amplitude -(K + i w B) R, and pi w B |R|^2 dissipated in each cycle."""
     car = Car.load(None, ["damper.coulomb_friction=0"])

@@ -8,24 +8,26 @@ force of an ideal joint follows from the equation of motion,
 with the nonlinear damper forces phi, the forces g of the laws over displacement that K lacks, and the forces of rolling
 tyres on the slope of the road that Bc z' lacks. K contains the rotation of the preloads, so this f is in world axes. In
 the axes of a carrier that rotates by theta it is f - theta x p. If joints constrain a motion twice, f is the least-norm
-solution.
+solution. A rolling tyre on the slope of the road has the force F_0/V (z' + e) along x beside that of its slip.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.linear.car_matrices import CarMatrices
-from vehicle.engines.linear.displacement_laws import BUSHING, SPRING, DisplacementLaw, law_rows
+from vehicle.engines.linear.displacement_laws import BUSHING, DIFFERENCE_STEP, SPRING, STOP, DisplacementLaw, law_rows
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
 from vehicle.engines.simulation.rows import Rows
+from vehicle.model.laws.curve import Curve
+from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
 
@@ -66,6 +68,11 @@ class LoadRows:
         selected = [self.names.index(name) for name in names if name in self.names]
         arrays = {name: getattr(self, name)[selected] for name in self.__slots__ if name != "names"}
         return LoadRows(names=tuple(self.names[index] for index in selected), **arrays)
+
+    def __add__(self, other: LoadRows) -> LoadRows:
+        """Return these loads followed by others."""
+        arrays = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in self.__slots__[1:]}
+        return LoadRows(names=(*self.names, *other.names), **arrays)
 
 
 def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
@@ -129,6 +136,18 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
                 static_sum + float(static[axis]),
                 {key: term[axis] + others.get(key, 0.0) for key, term in terms.items()},
             )
+    for tyre, plate, speed in zip(
+        rows.layout.rolling.tyres, rows.layout.rolling.plates, rows.layout.rolling.speeds, strict=True
+    ):
+        wheel, on_plate = system.inputs[plate], np.eye(len(system.inputs))[plate]
+        along = on_plate * (preload[bushings.rows[tyre, 2]] / speed)
+        static, slip = terms_of[f"tyre_{wheel}_force_x"]
+        terms_of[f"tyre_{wheel}_slip_force_x"] = static, slip
+        terms_of[f"tyre_{wheel}_slope_force_x"] = 0.0, {"height_rate": along, "slope": along}
+        terms_of[f"tyre_{wheel}_force_x"] = static, {**slip, "height_rate": along, "slope": along}
+    stops = stop_rows(matrices, [damper.law for damper in car.vehicle.composition.dampers])
+    for index, name in enumerate(stops.names):
+        terms_of[name] = float(stops.static[index]), {field: getattr(stops, field)[index] for field in fields}
     for index, ((name, row), stiffness) in enumerate(
         zip(load_places.springs, rows.layout.springs.stiffness, strict=True)
     ):
@@ -156,6 +175,29 @@ def load_rows(car: CarModel, matrices: CarMatrices) -> LoadRows:
         for field, width in zip(fields, widths, strict=True)
     }
     return LoadRows(names=load_places.names, static=np.array([static for static, _ in selected]), **arrays)
+
+
+def stop_rows(matrices: CarMatrices, dampers: Sequence[Damper]) -> LoadRows:
+    """Return the forces F(0) + k d + g of the stops of dampers, positive in extension, as rows of loads.
+
+    Args:
+        matrices: matrices of the car.
+        dampers: laws of the dampers, in the order of the inputs of the system.
+    """
+    names, static, displacement, law = [], [], [], []
+    for index, (wheel, damper) in enumerate(zip(matrices.system.inputs, dampers, strict=False)):
+        if damper.stop is None:
+            continue
+        curve = Curve.through(damper.stop.displacement, damper.stop.force)
+        below, force, above = curve.force(np.array([-DIFFERENCE_STEP, 0.0, DIFFERENCE_STEP]))
+        names.append(f"damper_{wheel}_stop_force")
+        static.append(force)
+        displacement.append((above - below) / (2.0 * DIFFERENCE_STEP) * matrices.system.slide_rows[index])
+        law.append([float(one.element[:2] == (STOP, index)) for one in matrices.laws])
+    size = matrices.system.size
+    rows = displacement_rows(matrices, np.reshape(displacement, (len(names), size)))
+    by_law = np.reshape(law, (len(names), len(matrices.laws)))
+    return replace(rows, names=tuple(names), static=np.array(static), law=by_law)
 
 
 def displacement_rows(matrices: CarMatrices, rows: Vector) -> LoadRows:

@@ -83,8 +83,8 @@ def simulate_batch(
     """Simulate a batch of cars of one topology on the same plates with the reduced engine.
 
     The values of a car are bitwise independent of the other cars. Cars with controlled or strongly coupled dampers,
-    or with a pole near zero, are simulated one at a time in double precision: the bits of `simulate_reduced` at the
-    same step.
+    with a pole near zero, or with a stop in a recorded damper force are simulated one at a time in double precision:
+    the bits of `simulate_reduced` at the same step.
 
     Args:
         models: pole models of the cars, with the same wheels, dampers, bodies and channels.
@@ -108,7 +108,7 @@ def simulate_batch(
     table = np.empty((len(channels), len(models), samples))
     statistics: dict[int, Statistics] = {}
     factors = _single_precision_factors(
-        models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels]
+        models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels], channels
     )
     for car in {*range(len(models))} - {*factors}:
         run = simulate_reduced(
@@ -157,7 +157,11 @@ def simulate_batch(
 
 
 def _single_precision_factors(
-    models: Sequence[PoleModel], dampers: Sequence[Sequence[Damper]], timestep: float, columns: Sequence[int]
+    models: Sequence[PoleModel],
+    dampers: Sequence[Sequence[Damper]],
+    timestep: float,
+    columns: Sequence[int],
+    channels: Sequence[str],
 ) -> dict[int, CarFactors]:
     """Return the factors of the cars for which single precision is sufficient, by their index.
 
@@ -165,11 +169,15 @@ def _single_precision_factors(
         models, dampers: pole models and damper laws of the cars.
         timestep: time step [s].
         columns: indices of the driven plates.
+        channels: names of the recorded channels; the force of a stop, part of that of its damper, is a load.
     """
+    wheels = models[0].matrices.system.inputs
+    forces = [f"damper_{wheel}_force" in channels for wheel in wheels]
     suitable = [
         car
         for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
-        if not any(law.controlled for law in laws) and np.min(np.abs(model.poles)) >= SLOWEST
+        if not any(law.controlled or (law.stop and force) for law, force in zip(laws, forces, strict=False))
+        and np.min(np.abs(model.poles)) >= SLOWEST
     ]
     rolling, by_car = models[0].slope.shape[1] > 0, dict[int, CarFactors]()
     suitable.sort(key=lambda car: _nonlinear_elements(models[car]))

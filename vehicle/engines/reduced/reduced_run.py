@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vehicle.engines.linear.load_rows import LoadRows
+from vehicle.engines.linear.load_rows import LoadRows, stop_rows
 from vehicle.engines.reduced.finite_rotation import rotation_notices
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, slope_loads
@@ -57,10 +57,17 @@ def simulate_reduced(
     """
     inputs = model.matrices.system.inputs
     wheeled = wheel_channels(inputs, [f"damper_{wheel}" for wheel in inputs])
-    names = (*model.matrices.system.outputs, *wheeled) if channels is None else tuple(channels)
+    asked = (*model.matrices.system.outputs, *wheeled) if channels is None else tuple(channels)
+    # The force of a damper is that of its law and that of its stop.
+    stops = stop_rows(model.matrices, dampers)
+    stops = stops.only([name.replace("_force", "_stop_force") for name in asked])
+    names = (*asked, *(name for name in stops.names if name not in asked))
     samples, every = time_steps(signal, record_rate, step or LONGEST_STEP)
     interval, rolling = 1.0 / record_rate, present_load and model.slope.shape[1] > 0
-    loads = loads and loads.only(names)
+    loads = loads and loads.only(asked)
+    if len(names) > len(asked):
+        more = stops.only(names[len(asked) :])
+        loads = loads + more if loads else more
     # The force of a load at an instant contains the mean forces of the dampers in both adjacent steps.
     forces = [f"friction_{index}" for index in range(len(dampers))] if loads else []
     forces += [f"law_{index}" for index in range(len(model.laws))] if loads else []
@@ -80,10 +87,12 @@ def simulate_reduced(
     time = uniform_time(samples=samples, timestep=interval)
     if loads and tyres:
         tyre_forces = dict(zip(tyres.values(), table[len(names) + len(forces) :, 0], strict=True))
-        added = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)
-        for load, history in zip(loads.names, added, strict=True):
+        on_slopes = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)
+        for load, history in zip(loads.names, on_slopes, strict=True):
             table[names.index(load), 0] += history
-    histories = dict(zip(names, table[: len(names), 0], strict=True))
+    for stop in stops.names:
+        table[names.index(stop.replace("_stop_force", "_force")), 0] += table[names.index(stop), 0]
+    histories = dict(zip(asked, table[: len(asked), 0], strict=True))
     statistics = group.statistics(validity, samples, clock.perf_counter() - started)
     one_sided = [wheel for wheel in inputs if wheel in model.matrices.one_sided]
     notices = (
@@ -93,7 +102,7 @@ def simulate_reduced(
     return Recording(
         time=time,
         channels=histories,
-        units=channel_units(names),
+        units=channel_units(asked),
         excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
         pose_time=np.zeros(0),
         poses=np.zeros((0, 0)),

@@ -3,18 +3,21 @@
 The force of a constraint row is the sum of solver force and explicit force, preload included. A connection has three
 rows in world axes; with the frame R of its carrier f = R' (f_solved + f_explicit). This force acts on the moving part,
 its opposite on the carrier. A main spring has one row along its line, positive in compression.
+
+The force along x of a rolling tyre is that of the slip, by the row, and that of the slope of the road, F_z tan(beta)
+with the load of the row (`vehicle.engines.simulation.rolling_tyres`); `tyre_<wheel>_force_x` is their sum.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.element_records import Index, Indices
+from vehicle.engines.simulation.element_records import Index, Indices, Layout
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
 from vehicle.names import AXES
 
@@ -73,13 +76,17 @@ class LoadPlaces:
         bodies = [rows.layout.modes.body, *carriers, *parts]
         self.bodies: Index = np.array(list(dict.fromkeys(bodies)), dtype=np.int64)
 
-    def channels(self, total: Vector, frames: Vector, springs: Vector) -> dict[str, Vector]:
+    def channels(
+        self, total: Vector, frames: Vector, springs: Vector, stops: Mapping[str, Vector], slopes: Mapping[str, Vector]
+    ) -> dict[str, Vector]:
         """Compute the load channels of samples.
 
         Args:
             total: forces of all rows [N]; (samples, rows).
             frames: position [m] and axes of `bodies`; (samples, 12 b).
             springs: position and velocity of the joints with a spring; (samples, 2 j).
+            stops: force of the stop of each damper [N] by the name of the damper; (samples,) each.
+            slopes: force of each rolling tyre on the slope of the road [N] by wheel; (samples,) each.
 
         Returns:
             Requested channels by name; (samples,) each.
@@ -95,6 +102,11 @@ class LoadPlaces:
                 # A hydromount has the forces of rubber and fluid.
                 channel = f"{name}_force_{axis}"
                 channels[channel] = channels.get(channel, 0.0) + force[:, column]
+        channels |= {f"{damper}_stop_force": force for damper, force in stops.items()}
+        for wheel, force in slopes.items():
+            slip, slope = (f"tyre_{wheel}_{term}_force_x" for term in ("slip", "slope"))
+            whole = f"tyre_{wheel}_force_x"
+            channels[slip], channels[slope], channels[whole] = channels[whole], force, channels[whole] + force
         channels |= {f"{name}_force": total[:, row] for name, row in self.springs}
         for number, (name, stiffness, damping, unstrained) in enumerate(self.joints):
             position, velocity = springs[:, 2 * number], springs[:, 2 * number + 1]
@@ -111,6 +123,19 @@ def spring_coordinates(car: CarModel, model: mujoco.MjModel) -> Indices:
     """Return position and velocity coordinate of each joint with a spring in the model of a run; (j, 2)."""
     joints = [model.joint(spring.joint) for spring in car.vehicle.composition.joint_springs]
     return np.array([(joint.qposadr[0], joint.dofadr[0]) for joint in joints], dtype=np.int64).reshape(-1, 2)
+
+
+def slope_forces(explicit: Vector, slope_velocity: Vector, layout: Layout) -> Vector:
+    """Return the force of each rolling tyre along x on the slope of the road [N], (samples, r).
+
+    Args:
+        explicit: explicit forces of all rows [N]; (samples, rows).
+        slope_velocity: speed times slope of the road at each plate [m/s]; (samples, w).
+        layout: elements of the model.
+    """
+    rolling = layout.rolling
+    load = explicit[:, layout.bushings.rows[rolling.tyres, 2]]
+    return np.asarray(np.maximum(load, 0.0) * slope_velocity[:, rolling.plates] / rolling.speeds)
 
 
 def equality_rows(model: mujoco.MjModel) -> dict[str, int]:

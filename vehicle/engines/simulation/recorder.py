@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.engines.simulation.damper_force import damper_forces
+from vehicle.engines.simulation.damper_force import damper_forces, has_stops, stop_forces
 from vehicle.engines.simulation.force_curves import curve_of
-from vehicle.engines.simulation.load_channels import LoadPlaces, spring_coordinates
+from vehicle.engines.simulation.load_channels import LoadPlaces, slope_forces, spring_coordinates
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Energies, Recording, Statistics
@@ -70,6 +70,7 @@ class Recorder:
         loads = [name for name in requested if name not in self.settings]
         self.loads = LoadPlaces(car, rows, loads) if loads else None
         joints = spring_coordinates(car, model)
+        strokes = np.column_stack([e.dampers.places, e.dampers.dofs])[: len(self.dampers) * has_stops(e)]
         self.sites = np.array([model.site(f"place/{point}").id for point in self.places], dtype=np.int64)
         self.sources = Sources(
             position=data.qpos,
@@ -89,7 +90,7 @@ class Recorder:
             origins=data.xpos,
             spring_rates=np.concatenate([joints[:, 1], np.unique(e.fluids.dofs)]),
             load_bodies=joints[:0, 0].copy() if self.loads is None else self.loads.bodies,
-            load_springs=joints[:0] if self.loads is None else joints,
+            load_springs=np.concatenate([strokes, joints[: len(joints) * bool(loads)]]),
             contact=rows.state.contact,
             rubber=rows.state.rubber,
             heading=rows.state.heading,
@@ -235,11 +236,14 @@ class Recorder:
         e, bushings = self.rows.layout, self.rows.layout.bushings
         total = b.solved + b.explicit
         damper_force = damper_forces(b.actuator, total, e)
+        stop_force, strokes = np.zeros_like(damper_force), 2 * len(self.dampers) * has_stops(e)
+        if strokes:
+            stop_force = stop_forces(b.load_springs[:, :strokes:2], e)
         velocity = motion.velocity[steps]
         tyre = total[:, bushings.rows[e.tyres][:, 2]]
         for column, damper in enumerate(self.dampers):
             self.channels[f"{damper}_velocity"][chunk] = b.damper_velocity[:, column]
-            self.channels[f"{damper}_force"][chunk] = damper_force[:, column]
+            self.channels[f"{damper}_force"][chunk] = damper_force[:, column] + stop_force[:, column]
         for column, wheel in enumerate(self.wheels):
             self.channels[f"tyre_{wheel}_force_z"][chunk] = tyre[:, column]
             self.channels[f"plate_{wheel}_displacement"][chunk] = motion.displacement[steps, column]
@@ -250,7 +254,11 @@ class Recorder:
         for name in self.settings:
             self.channels[name][chunk] = b.coefficient[:, self.dampers.index(name.removesuffix("_coefficient"))]
         if self.loads is not None:
-            for name, values in self.loads.channels(total, b.load_frames, b.load_springs).items():
+            stops = dict(zip(self.dampers, stop_force.T, strict=True))
+            on_slope = slope_forces(b.explicit, motion.slope_velocity[steps], e)
+            slopes = {self.wheels[plate]: force for plate, force in zip(e.rolling.plates, on_slope.T, strict=True)}
+            springs = b.load_springs[:, strokes:]
+            for name, values in self.loads.channels(total, b.load_frames, springs, stops, slopes).items():
                 self.channels[name][chunk] = values
         # The work against the static load is exact and much larger than the dissipated energy, so keep it separate.
         static = self.rows.weights.preload[bushings.rows[e.tyres, 2]]

@@ -33,7 +33,8 @@ class Sources(NamedTuple):
         dampers: velocity coordinates of the dampers; (w,).
         spring_rates: velocity coordinates of the joints with a spring and of fluids, for the energy; (j,).
         load_bodies: ids of the bodies whose frames the loads need; none in a run without loads; (b,).
-        load_springs: position and velocity coordinates of the joints with a spring; none without loads; (j, 2).
+        load_springs: position and velocity coordinates of the dampers if one has a stop, then, in a run with loads, of
+            the joints with a spring; (j, 2).
     """
 
     position: Vector
@@ -62,7 +63,7 @@ class Sources(NamedTuple):
 
 
 class Samples(NamedTuple):
-    """Buffers with a row for each sample; only load channels use `load_frames` and `load_springs`.
+    """Buffers with a row for each sample; only load channels use `load_frames`, they and stops `load_springs`.
 
     `poses` has a row for each stored pose; `modal_pull` is a working array.
     """
@@ -176,7 +177,8 @@ def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
 def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
     """Store forces, rates and positions of the present time.
 
-    MuJoCo's velocity is that of the middle of a step; `half` times the acceleration extrapolates to the present.
+    MuJoCo's velocity is that of the middle of a step; `half` times the acceleration extrapolates to the present. After
+    a step, with `half` negative, the positions of the joints are those of its end.
     """
     for point in range(s.sites.shape[0]):
         for axis in range(3):
@@ -209,5 +211,5 @@ def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector,
             b.load_frames[row, 12 * body + 3 + entry] = s.orientation[s.load_bodies[body], entry]
     for spring in range(s.load_springs.shape[0]):
         point, dof = s.load_springs[spring, 0], s.load_springs[spring, 1]
-        b.load_springs[row, 2 * spring] = s.position[point]
+        b.load_springs[row, 2 * spring] = s.position[point] + min(2.0 * half, 0.0) * s.velocity[dof]
         b.load_springs[row, 2 * spring + 1] = s.velocity[dof] + half * s.acceleration[dof]

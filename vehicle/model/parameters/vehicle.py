@@ -181,7 +181,8 @@ class Vehicle:
         Forces `<connection>_force_<axis>` [N] on the moving part, in the axes of the carrier; `<spring>_force` [N] of
         the main springs, compression positive; `<joint>_torque` [N m] or `<joint>_spring_force` [N] of springs in
         joints, on the child of the joint; `suspension_travel_<wheel>` [m] of the wheel centre against the body,
-        upwards from the design position.
+        upwards from the design position. Parts of a sum: `<damper>_stop_force` of `<damper>_force`, and of
+        `tyre_<wheel>_force_x` of a rolling tyre `tyre_<wheel>_slip_force_x` and `tyre_<wheel>_slope_force_x`.
         """
         car, kinds = (
             self.composition,
@@ -189,6 +190,9 @@ class Vehicle:
         )
         ends = {"slide": "spring_force"}
         channels = [f"{link.name}_force_{axis}" for link in car.connections for axis in AXES]
+        channels += [f"{link.name}_{term}_force_x" for link in car.connections if link.rolling
+                     for term in ("slip", "slope")]  # fmt: skip
+        channels += [f"{damper.name}_stop_force" for damper in car.dampers if damper.law.stop]
         channels += [f"{spring.name}_force" for spring in car.springs]
         channels += [f"{spring.joint}_{ends.get(kinds[spring.joint], 'torque')}" for spring in car.joint_springs]
         channels += [f"suspension_travel_{wheel}" for wheel in self.wheels]

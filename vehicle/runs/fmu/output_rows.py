@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.load_rows import stop_rows
 from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import LARGEST_ANGLE, rotating_bodies, rotation_outputs, tyre_outputs
@@ -96,7 +97,11 @@ class Watched:
 
 
 def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], OutputRows]:
-    """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers."""
+    """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers.
+
+    Raises:
+        ConfigurationError: no output is left, or a damper with a recorded force has a stop that acts at rest.
+    """
     model, vehicle = car.poles.without_laws(), car.vehicle
     system, d = model.matrices.system, len(vehicle.composition.dampers)
     units, dampers = channel_units(channels), [damper.name for damper in vehicle.composition.dampers]
@@ -122,6 +127,10 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
         if name in tyres:
             rows = _linear(model, model.outputs([name]), np.array([car.static.tyre_load[tyres[name]]]))
             add(Output(name=name, unit="N", meaning="vertical force of the tyre on the wheel"), rows)
+    # While this car is valid, a stop with a clearance has no force.
+    stops = stop_rows(model.matrices, [damper.law for damper in vehicle.composition.dampers])
+    acting = [name for name, force, row in zip(stops.names, stops.static, stops.displacement, strict=True)
+              if force or row.any()]  # fmt: skip
     for index, damper in enumerate(dampers):
         nothing = _linear(model, _no_outputs(model))
         for ending, reading, title in (
@@ -131,6 +140,11 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
         ):
             name = f"{damper}_{ending}"
             if name in channels:
+                if reading == FORCE and name.replace("_force", "_stop_force") in acting:
+                    raise ConfigurationError(
+                        f"{name}: the stop of this damper acts at rest, and an FMU and the sliders of a report do not "
+                        "have its force; leave this channel out, or move the stop away from rest"
+                    )
                 add(Output(name=name, unit=units[name], meaning=title, kind=reading, damper=index), nothing)
     loads = [name for name in channels if name in vehicle.load_channels]
     if loads:
