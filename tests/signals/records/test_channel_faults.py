@@ -5,6 +5,7 @@ import importlib
 import numpy as np
 import pytest
 
+from tests.benchmarks.clipped_channels import BANDS, LEVELS, RATES, WITH_RESTS, limited, sound
 from tests.benchmarks.record_alignment import made_pair
 from vehicle.signals.excitation.input_files import find_input, shipped_inputs
 from vehicle.signals.excitation.signal_file import read_signal
@@ -27,6 +28,26 @@ def test_a_clipped_record(level, digits):
     assert [one[0] for one in clipped(-values)] == ["smallest value"]
     (said,) = faults({"z": values}, TIME)
     assert said.startswith("z: clipped?") and "--from S and --to S" in said
+
+
+@pytest.mark.parametrize("band", BANDS)
+@pytest.mark.parametrize("rate", RATES)
+def test_clipped_records_of_all_bands(band, rate):
+    """A seed of the benchmark, not one of its table: found wherever more than 1 % of the samples are flat."""
+    for level in LEVELS:
+        flat, found = limited(band, level, rate, [100])
+        assert found == flat and (flat == 1 or level >= 2.5), level
+
+
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("seed", [100, 101])
+def test_sound_records_of_all_kinds(rate, seed):
+    names = []
+    for name, values in sound(rate, seed):
+        names.append(name)
+        assert clipped(values) == [], name
+        assert name in WITH_RESTS or stuck(values, np.arange(values.size) / rate) is None, name
+    assert len(names) == 15
 
 
 RISE = np.clip((TIME - 5.0) / 0.2, 0.0, 1.0)

@@ -119,6 +119,8 @@ def _axis(
     rms = weighted_rms(weighted)
     dose = vibration_dose_value(step, weighted)
     transient = mtvv(step, settled, average=average)
+    # The RMS of a ratio is that of the span of its maximum: with another RMS a crest factor can be below 1.
+    settled_rms = weighted_rms(settled)
     remarks = []
     if duration < weighting(name).shortest_record_s * (1.0 - 1e-9):
         remarks.append(
@@ -131,19 +133,20 @@ def _axis(
         remarks.append(
             f"MTVV and crest factor leave out the first {weighting(name).settling_s:g} s, in which {name} settles; "
             f"with them MTVV is {mtvv(step, weighted, average=average):.3g} instead of {transient:.3g} m/s2 and the "
-            f"peak {with_it:.3g} instead of {peak:.3g} m/s2 (--offset keep for a record that starts at rest)"
+            f"peak {with_it:.3g} instead of {peak:.3g} m/s2; the weighted RMS, {rms:.3g} m/s2 with them, is "
+            f"{settled_rms:.3g} m/s2 without (--offset keep for a record that starts at rest)"
         )
     values = {
         "weighting": name,
         "multiplying_factor": factor,
         "weighted_rms": rms,
         "mtvv": transient,
-        "crest_factor": crest_factor(settled, rms),
+        "crest_factor": crest_factor(settled),
         "vdv": dose,
         "estimated_vdv": estimated_vibration_dose_value(rms, duration),
         "msdv": sickness,
         "msdv_weighting": MOTION_SICKNESS,
-        "mtvv_ratio": transient / rms if rms > 0.0 else None,
+        "mtvv_ratio": transient / settled_rms if settled_rms > 0.0 else None,
         "vdv_ratio": dose / (rms * duration**0.25) if rms > 0.0 else None,
     }
     return values, remarks
@@ -192,7 +195,8 @@ def evaluate(
     The filters are at rest before the record. For a simulated record that starts at rest this is exact. For a record
     cut out of a ride, mean and drift (sensor offset, gravity) are a step at the first sample, whose response must
     decay. So the maxima (MTVV, crest factor) and the MSDV are evaluated after each filter has settled (3.5 s; Wf
-    17.5 s). RMS and VDV include the whole record; `offset_effect` returns the effect of the mean on them.
+    17.5 s), and crest factor and `mtvv_ratio` are their ratios to the RMS of the same span. RMS and VDV include the
+    whole record; `offset_effect` returns the effect of the mean on them.
 
     Args:
         time_step: sampling interval [s].

@@ -63,15 +63,16 @@ def mtvv(
     return float(np.sqrt(max(float(running), 0.0)))
 
 
-def crest_factor(weighted: ArrayLike, rms: float | None = None) -> float | None:
-    """Return the crest factor max|a_w| / RMS [-]; None for a record of zeros. Source: ISO 2631-1:1997, 6.2.1.
+def crest_factor(weighted: ArrayLike) -> float | None:
+    """Return the crest factor max|a_w| / RMS [-], at least 1; None for a record of zeros.
 
     Args:
         weighted: evaluated part of the weighted record [m/s2], shape (n,).
-        rms: RMS of the whole measurement [m/s2]; RMS of `weighted` by default.
+
+    Source: ISO 2631-1:1997, 6.2.1.
     """
     record = _one(weighted)
-    rms = weighted_rms(record) if rms is None else rms
+    rms = weighted_rms(record)
     return float(np.abs(record).max() / rms) if rms > 0.0 else None
 
 

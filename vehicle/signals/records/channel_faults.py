@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.signals.records.clock import PAUSE
 from vehicle.signals.records.table import Vector
@@ -24,6 +25,20 @@ OUTWEIGHS = 2.0
 """Minimum ratio of samples at the extreme to samples in that band for a clipped channel [-]. A Gaussian record clipped
 at three standard deviations has 6, at one standard deviation 13; a rounded sine without clipping has 1."""
 
+NEXT_VALUES = 3
+"""Number of values next to an extreme value whose samples are counted together: a rounded sine has as many at its
+extreme as at the next three."""
+
+SWITCHING = 0.6
+"""Minimum share of the samples at the largest or smallest value of a channel that switches between both [-]. A Gaussian
+record would have to be clipped at half of its standard deviation."""
+
+RESTING = 0.5
+"""Minimum share of the samples at the extreme value of a side at which a channel rests [-]: its median is no limit."""
+
+LEAST_OF_TWO = 0.1
+"""Minimum share of each of both values in their samples [-]; a record that rests at its smallest value has one side."""
+
 CORNER = 0.25
 """Minimum ratio of the last step before the flat part to the RMS step for a clipped channel [-]: a physical plateau
 begins with a small step, a clipped one at the speed of the motion."""
@@ -34,6 +49,10 @@ MOTIONS = ("displacement", "velocity", "acceleration", "angle", "angular velocit
 STUCK_PERIODS = 5.0
 """Minimum constant duration of a stuck channel, in mean intervals between crossings of the mean: in a Gaussian record
 with a band of one octave, 1 of 1e4 intervals is longer."""
+
+CERTAIN_PERIODS = 20.0
+"""Constant duration of a stuck channel that is shorter than a pause, in the same intervals: in a record of the last
+digits, whose intervals are distributed exponentially, 1 of 5e8 is longer."""
 
 OTHERS_MOVE = 0.2
 """Minimum RMS of another channel in the constant part, over its RMS in the whole record, that counts as motion [-]."""
@@ -76,8 +95,11 @@ def faults(
 def clipped(values: Vector) -> list[tuple[str, float, float]]:
     """Return the clipped sides of a channel: "largest value" or "smallest value", that value, share of the samples.
 
-    A side is clipped if more samples are at its extreme value than in the band next to it, and if the flat parts
-    begin and end at the speed of the motion.
+    The time for which a smooth signal is within d of its extreme falls to zero with d; that of a clipped signal does
+    not. So a side is clipped if more samples are at its extreme value than in the band next to it, and than at the next
+    values together: in a sine of a whole number of samples, or after rounding, all values are repeated. The flat parts
+    must begin and end at the speed of the motion. A side that is flat most of the time, or for longer at an end of the
+    record than anywhere else, is at rest there, and a channel that switches between two values is no clipped one.
 
     Args:
         values: samples, (n,).
@@ -85,33 +107,78 @@ def clipped(values: Vector) -> list[tuple[str, float, float]]:
     spread, span = float(np.std(values)), float(np.ptp(values))
     steps = np.diff(values)
     moving = steps[steps != 0.0]
-    if not (span > 0.0 and moving.size):
+    if not (span > 0.0 and moving.size) or switches(values):
         return []
     pace = float(np.sqrt(np.mean(moving**2)))
     sides = []
     for side, sign in (("largest value", 1.0), ("smallest value", -1.0)):
         level = float(np.max(sign * values))
-        at_extreme = sign * values >= level - EQUAL * span
+        below = level - sign * values
+        at_extreme = below <= EQUAL * span
         count = int(np.count_nonzero(at_extreme))
-        nearby = int(np.count_nonzero(sign * values >= level - NEIGHBOURHOOD * spread)) - count
-        adjacent = int(np.count_nonzero(at_extreme[1:] & at_extreme[:-1]))
-        if count < LEAST_CLIPPED or count < OUTWEIGHS * nearby or 2 * adjacent < count:
-            continue  # a sine with four samples per period reaches its extremes in single samples
-        # Use the second-last step before a flat part: clipping shortens the last step.
-        entered = np.flatnonzero(at_extreme[2:] & ~at_extreme[1:-1]) + 1
-        left = np.flatnonzero(at_extreme[:-2] & ~at_extreme[1:-1])
-        edges = np.concatenate(
-            [np.abs(values[entered] - values[entered - 1]), np.abs(values[left + 2] - values[left + 1])]
-        )
-        if edges.size and float(np.median(edges)) >= CORNER * pace:
+        nearby = int(np.count_nonzero(below <= NEIGHBOURHOOD * spread)) - count
+        if count < LEAST_CLIPPED or count < OUTWEIGHS * max(nearby, _at_next_values(below, EQUAL * span)):
+            continue
+        edges = _edges(values, at_extreme)
+        if not edges.size or count >= RESTING * values.size or _at_rest(at_extreme):
+            continue
+        if float(np.median(edges)) >= CORNER * pace:
             sides.append((side, sign * level, count / values.size))
     return sides
+
+
+def switches(values: Vector) -> bool:
+    """Return True for a channel that is at its largest or smallest value most of the time, as a square wave.
+
+    Args:
+        values: samples, (n,).
+    """
+    low, high = float(np.min(values)), float(np.max(values))
+    margin = EQUAL * (high - low)
+    ends = [float(np.mean(values >= high - margin)), float(np.mean(values <= low + margin))]
+    return min(ends) > 0.0 and sum(ends) >= SWITCHING and min(ends) >= LEAST_OF_TWO * sum(ends)
+
+
+def _at_next_values(below: Vector, margin: float) -> int:
+    """Return the number of samples at the next three values of a side.
+
+    Args:
+        below: distances of the samples from the extreme value, (n,).
+        margin: maximum difference of equal values.
+    """
+    count = 0
+    for _ in range(NEXT_VALUES):
+        rest = below[below > margin]
+        if not rest.size:
+            break
+        nearest = float(np.min(rest))
+        here = (rest >= nearest) & (rest <= nearest + margin)
+        count += int(np.count_nonzero(here))
+        below = rest[~here]
+    return count
+
+
+def _edges(values: Vector, at_extreme: npt.NDArray[np.bool_]) -> Vector:
+    """Return the size of the second-last step before each flat part and after it; clipping shortens the last one."""
+    entered = np.flatnonzero(at_extreme[2:] & ~at_extreme[1:-1]) + 1
+    left = np.flatnonzero(at_extreme[:-2] & ~at_extreme[1:-1])
+    return np.concatenate([np.abs(values[entered] - values[entered - 1]), np.abs(values[left + 2] - values[left + 1])])
+
+
+def _at_rest(at_extreme: npt.NDArray[np.bool_]) -> bool:
+    """Return True if the longest flat part is at the beginning or the end of the record."""
+    changes = np.flatnonzero(np.diff(at_extreme.astype(np.int8), prepend=0, append=0))
+    begins, ends = changes[::2], changes[1::2]
+    at_ends = (begins == 0) | (ends == at_extreme.size)
+    lengths = ends - begins
+    return bool(np.max(lengths, where=at_ends, initial=0) >= np.max(lengths, where=~at_ends, initial=0))
 
 
 def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> tuple[float, float] | None:
     """Return begin and end [s] of the longest implausibly constant part of a channel; None without such a part.
 
-    A constant beginning is accepted; so is a constant end, unless another channel moves there.
+    A constant beginning is accepted; so is a constant end, unless another channel moves there. Nothing is said of a
+    channel that switches between two values.
 
     Args:
         values: samples, (n,).
@@ -120,7 +187,7 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     """
     away = values - values.mean()
     crossings = int(np.count_nonzero(away[1:] * away[:-1] < 0.0))
-    if crossings < 2:
+    if crossings < 2 or switches(values):
         return None
     part = constant_part(values)
     rested = _rested_at_the_ends(values)
@@ -132,7 +199,8 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     begin, end = max(candidates, key=lambda part_bounds: float(time[part_bounds[1]] - time[part_bounds[0]]))
     length = float(time[end] - time[begin])
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
-    minimum = max(PAUSE, STUCK_PERIODS * max(moving, 0.0) / crossings)
+    interval = max(moving, 0.0) / crossings
+    minimum = max(STUCK_PERIODS * interval, min(PAUSE, CERTAIN_PERIODS * interval))
     return (float(time[begin]), float(time[end])) if length >= minimum else None
 
 
