@@ -37,7 +37,7 @@ BELOW = EVERYWHERE | {"compiler", "threads", "version"}
 
 ROOMS: dict[str, set[str]] = {
     "parameters": {"records"},
-    "laws": {"compiler", "parameters"},
+    "laws": {"compiler", "parameters", "records"},
     "records": {"analysis"},
     "excitation": {"analysis", "records"},
     "flexbody": {"analysis", "parameters", "records"},
@@ -55,7 +55,7 @@ ROOMS: dict[str, set[str]] = {
     | {"rendering", "simulation", "threads"},
     "bench": {"analysis", "assembly", "car", "excitation", "linear", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "shapes", "threads"},
-    "fmu": {"car", "laws", "parameters", "reduced", "version"},
+    "fmu": {"car", "laws", "linear", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
     | {"simulation"},

@@ -11,6 +11,7 @@ from vehicle.compiler import numba_module
 from vehicle.model.laws.controller_fmu import Controller, read_controller
 from vehicle.model.laws.function_address import result_at
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+from vehicle.signals.records.reader import digest
 
 CALLS = 1_000_000
 
@@ -24,7 +25,7 @@ def time_per_call(folder: Path, version: str) -> float:
     """
     control = half_car_rider_parameters().semi_active
     path = controller_fmu(folder / "skyhook.fmu", version)
-    controller = Controller(read_controller(path), "damper", control, 1e-3, [])
+    controller = Controller(read_controller(path, digest(path)), "damper", control, 1e-3, [])
     numba = numba_module()
 
     @numba.njit  # type: ignore[untyped-decorator]

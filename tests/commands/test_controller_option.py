@@ -27,17 +27,25 @@ def controllers_of(car):
     return [(control.law, control.fmu) for control in controls if control is not None]
 
 
-def test_all_dampers_with_a_control_have_the_controller(tmp_path, monkeypatch):
+def test_all_dampers_with_a_control_have_the_controller(tmp_path, monkeypatch, capsys):
     folder = tmp_path / "my contröllers"
     folder.mkdir()
     controller_fmu(folder / "skyhook.fmu")
     # The path is relative to the folder of the command, in the results it is a whole path.
     monkeypatch.chdir(tmp_path)
     option = ["--vehicle", "focus_road", "--controller", "my contröllers/skyhook.fmu"]
+    assert shaker.main([*ROAD, *option, "--output", "run"]) == 2
+    said = capsys.readouterr().err
+    assert "native code, which runs with all your rights" in said and "--trust" in said and not Path("run").exists()
+    option.append("--trust")
     assert shaker.main([*ROAD, *option, "--output", "run"]) == 0
     car = load_vehicle(tmp_path / "run" / "vehicle.toml")
     assert controllers_of(car) == 4 * [("fmu", str(folder / "skyhook.fmu"))]
     assert tomllib.loads((tmp_path / "run" / "vehicle.toml").read_text())["front"]["damper"]["control"]["law"] == "fmu"
+    # The file of the run has the digest: it runs again without the option, and not with another controller.
+    again = ["--vehicle", "run/vehicle.toml"]
+    assert shaker.main([*(word for word in ROAD if word != "--quiet"), *again, "--output", "again"]) == 0
+    assert f"controller  {folder / 'skyhook.fmu'} runs as native code with all your rights" in capsys.readouterr().out
     comfort = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert shaker.main([*ROAD, *option[:2], "--set", "*.control.law=skyhook", "--output", "own"]) == 0
     expected = json.loads((tmp_path / "own" / "summary.json").read_text())
@@ -64,7 +72,9 @@ def test_a_car_without_controls_and_a_bad_fmu_are_refused(tmp_path, capsys):
     assert shaker.main([*ROAD, "--vehicle", "sedan", "--controller", str(path), "--output", str(tmp_path / "a")]) == 2
     assert "no damper of sedan has a table control with the limits" in capsys.readouterr().err
     bad = controller_fmu(tmp_path / "bad.fmu", output="c")
-    option = ["--vehicle", "focus_road", "--controller", str(bad), "--output", str(tmp_path / "b")]
+    option = ["--vehicle", "focus_road", "--controller", str(bad), "--trust", "--output", str(tmp_path / "b")]
     assert shaker.main([*ROAD, *option]) == 3
     assert "bad.fmu: found inputs body_velocity, wheel_velocity and outputs c" in capsys.readouterr().err
     assert not (tmp_path / "b").exists()
+    assert shaker.main([*ROAD, "--vehicle", "sedan", "--trust", "--output", str(tmp_path / "c")]) == 2
+    assert "--trust: no damper of sedan has a controller in an FMU" in capsys.readouterr().err

@@ -15,6 +15,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.runs.fmu.fmu_file import write_fmu
+from vehicle.signals.records.reader import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)
@@ -28,11 +29,16 @@ def car_with(law, *values):
     return Car.load("focus_road", [f"{axle}.damper.control.{text}" for axle in ("front", "rear") for text in texts])
 
 
+def trusted(path):
+    return f"fmu={path}", f"fmu_sha256={digest(path)}"
+
+
 @pytest.mark.parametrize(("engine", "version"), [("reduced", "2"), ("reduced", "3"), ("mujoco", "2")])
 def test_a_skyhook_controller_equals_the_own_law(tmp_path, engine, version):
     path = controller_fmu(tmp_path / "skyhook.fmu", version)
     own, outside = (
-        car.run(ROAD, engine=engine, channels=OBSERVED) for car in (car_with("skyhook"), car_with("fmu", f"fmu={path}"))
+        car.run(ROAD, engine=engine, channels=OBSERVED)
+        for car in (car_with("skyhook"), car_with("fmu", *trusted(path)))
     )
     assert np.ptp(own["damper_fr_coefficient"]) > 2000.0
     for name in OBSERVED:
@@ -44,7 +50,7 @@ def test_a_skyhook_controller_equals_the_own_law(tmp_path, engine, version):
 
 
 def test_each_run_begins_anew(tmp_path):
-    car = car_with("fmu", f"fmu={controller_fmu(tmp_path / 'skyhook.fmu')}")
+    car = car_with("fmu", *trusted(controller_fmu(tmp_path / "skyhook.fmu")))
     first, second = (car.run(ROAD, engine="reduced", channels=OBSERVED) for _ in range(2))
     for name in OBSERVED:
         np.testing.assert_array_equal(first[name], second[name])
@@ -53,7 +59,7 @@ def test_each_run_begins_anew(tmp_path):
 @pytest.mark.parametrize("engine", ["reduced", "mujoco"])
 def test_a_failure_stops_the_run_with_its_time(tmp_path, engine):
     path = controller_fmu(tmp_path / "faulty.fmu", parameters=(*PARAMETERS, "skyhook_share"))
-    car = car_with("fmu", f"fmu={path}", "skyhook_share=0.75")
+    car = car_with("fmu", *trusted(path), "skyhook_share=0.75")
     with pytest.raises(SimulationError, match=r"^damper_fr: controller faulty\.fmu reports an error at t = 0\.1000 s"):
         car.run(ROAD, engine=engine)
 
@@ -67,6 +73,6 @@ def test_a_missing_file_is_said_before_a_run():
 
 
 def test_an_fmu_of_a_car_refuses_a_controller_in_it(tmp_path):
-    car = car_with("fmu", f"fmu={controller_fmu(tmp_path / 'skyhook.fmu')}")
+    car = car_with("fmu", *trusted(controller_fmu(tmp_path / "skyhook.fmu")))
     with pytest.raises(ConfigurationError, match="does not contain another FMU: set law = skyhook, and in the other"):
         write_fmu(car, tmp_path / "car.fmu")

@@ -66,7 +66,13 @@ def parser() -> Parser:
         type=Path,
         metavar="FILE.fmu",
         help="controller of all semi-active dampers, FMI 2.0 or 3.0 co-simulation: velocities in, coefficient out; an "
-        "instance for each damper",
+        "instance for each damper; runs its native code with all your rights, so it needs --trust",
+    )
+    car.add_argument(
+        "--trust",
+        action="store_true",
+        help="run the native code of the controller, or of those in the vehicle file; its SHA-256 goes into the "
+        "vehicle file of the run, where it stands for the option",
     )
     engine_option(parser, "mujoco")
     skip_option(parser)
@@ -156,7 +162,7 @@ def _job(options: argparse.Namespace) -> None:
     report_name = None if options.report is None else report_path(options, output)
     if options.timestep is not None:
         overrides.append(f"solver.timestep={options.timestep!r}")
-    if options.controller is not None:
+    if options.controller is not None or options.trust:
         overrides += _controller_overrides(options)
 
     from vehicle.errors import SimulationError
@@ -173,6 +179,10 @@ def _job(options: argparse.Namespace) -> None:
     measured = measured_beside(options, channels or car.vehicle.channels, choice.units if choice else ())
     # A car that cannot be run is refused before anything is written.
     car.check(engine)
+    controls = [damper.law.controlled for damper in car.vehicle.composition.dampers]
+    for file in dict.fromkeys(control.fmu for control in controls if control and control.law == FMU):
+        if not options.quiet:
+            print(f"controller  {file} runs as native code with all your rights")
     road = None if drive is None else drive.summary(signal)
     signal = signal if drive is None else replace(signal, source=drive.name)
     with output_folder(output, force=options.force, protect=inputs) as folder:
@@ -265,27 +275,41 @@ def _check_signal(options: argparse.Namespace, signal: Signal) -> None:
 
 
 def _controller_overrides(options: argparse.Namespace) -> list[str]:
-    """Return the overrides that give all semi-active dampers the controller of --controller.
+    """Return the overrides of --controller, for all semi-active dampers, and of --trust, for all controllers in FMUs.
 
     Raises:
-        ConfigurationError: no damper of the car has limits of its coefficient.
+        ConfigurationError: no damper of the car has limits of its coefficient, or there is nothing to trust.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.signals.records.reader import digest
 
     vehicle = load_vehicle(options.vehicle, options.overrides)
-    paths = dict.fromkeys(damper.path for damper in vehicle.composition.dampers if damper.law.control is not None)
+    controls = {damper.path: control for damper in vehicle.composition.dampers if (control := damper.law.control)}
+    if options.controller is None:
+        files = {path: Path(control.fmu) for path, control in controls.items() if control.law == FMU and control.fmu}
+        files = {path: file for path, file in files.items() if file.is_file()}
+        if not files:
+            raise ConfigurationError(
+                f"--trust: no damper of {vehicle.name} has a controller in an FMU; leave it out, or add --controller"
+            )
+        return [f"{path}.control.fmu_sha256={digest(file)}" for path, file in files.items()]
+    paths = list(controls)
     if not paths:
         raise ConfigurationError(
             f"--controller {options.controller}: no damper of {vehicle.name} has a table control with the limits of "
             "its coefficient; take --vehicle focus_road, or add [front.damper.control]: docs/vehicle-file.md"
         )
+    if options.trust and not options.controller.is_file():
+        raise ConfigurationError(f"--controller {options.controller}: there is no such file; set the path of an FMU")
     file = options.controller.resolve().as_posix()
     if not PATH_PATTERN.fullmatch(file):
         raise ConfigurationError(
             f"--controller {file}: the path has a quotation mark, bracket, # or backslash, which a vehicle file does "
             "not accept in paths; rename or move the FMU"
         )
-    return [f"{path}.control.{text}" for path in paths for text in (f"law={FMU}", f"fmu={file}")]
+    texts = [f"law={FMU}", f"fmu={file}"]
+    texts += [f"fmu_sha256={digest(options.controller)}"] if options.trust else []
+    return [f"{path}.control.{text}" for path in paths for text in texts]
 
 
 def _check_numbers(options: argparse.Namespace) -> None:

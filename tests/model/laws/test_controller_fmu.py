@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import zipfile
 from dataclasses import replace
 from typing import Any
 
@@ -20,6 +21,7 @@ from vehicle.model.laws.controller_call import NOT_FINITE, READINGS, SET, STATUS
 from vehicle.model.laws.controller_fmu import Controller, controllers, read_controller
 from vehicle.model.laws.function_address import result_at
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
+from vehicle.signals.records.reader import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)
@@ -30,7 +32,14 @@ VERSIONS = pytest.mark.parametrize("version", ["2", "3"])
 
 
 def started(path, control=SKYHOOK, messages=None):
-    return Controller(read_controller(path), "damper_fr", control, STEP, [] if messages is None else messages)
+    return Controller(
+        read_controller(path, digest(path)), "damper_fr", control, STEP, [] if messages is None else messages
+    )
+
+
+def outside(control, path):
+    """A control whose law is that of an FMU with its digest."""
+    return replace(control, law="fmu", fmu=str(path), fmu_sha256=digest(path))
 
 
 def speeds(count=200):
@@ -58,12 +67,12 @@ def test_both_forms_of_the_call_equal_the_own_law(tmp_path, version):
 
 @VERSIONS
 def test_a_damper_with_period_delay_and_rate_equals_the_own_law(tmp_path, version):
-    path = str(controller_fmu(tmp_path / "skyhook.fmu", version))
+    path = controller_fmu(tmp_path / "skyhook.fmu", version)
     own = replace(SKYHOOK, control_period=3e-3, delay=2e-3, rate=2e5)
-    record, outside = (in_steps(pack(control), STEP) for control in (own, replace(own, law="fmu", fmu=path)))
-    past, other = at_rest(record), at_rest(outside)
-    laws = np.array([outside])
-    with controllers(laws, [("damper_fr", replace(own, law="fmu", fmu=path))], STEP) as check:
+    record, other_record = (in_steps(pack(control), STEP) for control in (own, outside(own, path)))
+    past, other = at_rest(record), at_rest(other_record)
+    laws = np.array([other_record])
+    with controllers(laws, [("damper_fr", outside(own, path))], STEP) as check:
         for step, (body, wheel) in enumerate(speeds()):
             act(record, step, body, wheel, past)
             act(laws[0], step, body, wheel, other)
@@ -93,7 +102,7 @@ def test_values_and_times_of_the_sensors(tmp_path, sensor, wanted):
 def test_the_coefficient_stays_within_the_damper(tmp_path):
     # Without parameters the gain of the FMU is 1000, and its limits are wider than those of the damper.
     path = controller_fmu(tmp_path / "wide.fmu", parameters=())
-    control = replace(SKYHOOK, minimum_damping=400.0, maximum_damping=600.0, law="fmu", fmu=str(path))
+    control = outside(replace(SKYHOOK, minimum_damping=400.0, maximum_damping=600.0), path)
     laws = np.array([in_steps(pack(control), STEP)])
     with controllers(laws, [("damper_fr", control)], STEP):
         found = [float(demanded(laws[0], body, wheel)) for body, wheel in speeds()]
@@ -154,16 +163,34 @@ def test_an_unsuitable_fmu_is_refused_with_the_remedy(tmp_path, case):
     options, error, text = REFUSED[case]
     path = controller_fmu(tmp_path / "bad.fmu", **options)
     with pytest.raises(error) as caught:
-        read_controller(path)
+        read_controller(path, digest(path))
     assert str(caught.value).startswith(f"controller {path}: ") and text in str(caught.value)
 
 
 def test_a_file_that_is_missing_or_no_fmu_is_refused(tmp_path):
     with pytest.raises(ConfigurationError, match="there is no such file; set the path of an FMU"):
-        read_controller(tmp_path / "none.fmu")
+        read_controller(tmp_path / "none.fmu", "")
     (tmp_path / "text.fmu").write_text("no archive")
     with pytest.raises(DataError, match=r"cannot be read as an FMU .*; export it as FMI 2\.0 or 3\.0 co-simulation"):
-        read_controller(tmp_path / "text.fmu")
+        read_controller(tmp_path / "text.fmu", digest(tmp_path / "text.fmu"))
+
+
+def test_native_code_runs_only_with_its_digest(tmp_path):
+    path = controller_fmu(tmp_path / "skyhook.fmu")
+    with pytest.raises(ConfigurationError, match=f'native code.* fmu_sha256 = "{digest(path)}" .* --trust'):
+        read_controller(path, None)
+    with pytest.raises(ConfigurationError, match=r"the file has changed; if you trust the new one, set its digest"):
+        read_controller(path, digest(path)[::-1])
+
+
+@pytest.mark.parametrize(("size", "found"), [(300, "0.279 GiB unpacked, must be at most 0.186 GiB"),
+                                             (150, "to 1, must be at most 200 to 1")])  # fmt: skip
+def test_an_fmu_that_would_fill_the_disk_is_refused_before_it_is_unpacked(tmp_path, size, found):
+    path = controller_fmu(tmp_path / "skyhook.fmu")
+    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("resources/zeros.bin", bytes(size * 10**6))
+    with pytest.raises(DataError, match=f"cannot be read as an FMU .*{found}"):
+        read_controller(path, digest(path))
 
 
 @VERSIONS
@@ -181,4 +208,4 @@ def test_without_fmpy_the_extra_is_named(tmp_path, monkeypatch):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     monkeypatch.setitem(sys.modules, "fmpy", None)
     with pytest.raises(MissingPartError, match=r"needs FMPy.*pip install 'vehicle-on-shaker\[fmu\]'"):
-        read_controller(path)
+        read_controller(path, digest(path))

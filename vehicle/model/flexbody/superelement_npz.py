@@ -14,6 +14,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.superelement_toml import FORMAT, RIGID, given_rigid, head_of, numbers
+from vehicle.signals.records.unpacked_size import require_archive
 
 _ARRAYS = {
     "positions": "position_m",
@@ -36,6 +37,7 @@ def of_arrays(raw: bytes) -> Superelement:
         DataError: not an npz file, incomplete, an unknown array, or a failed check of `check_superelement`.
     """
     try:
+        require_archive("the npz", io.BytesIO(raw))
         with np.load(io.BytesIO(raw), allow_pickle=False) as file:
             content = {name: np.asarray(file[name]) for name in file.files}
         head = json.loads(str(content.get("head", "null")))

@@ -1,5 +1,8 @@
 """Controller of a semi-active damper in an FMU: FMI 2.0 or 3.0 co-simulation, an instance for each damper and run.
 
+An FMU is native code, which runs with all rights of the user. So it is loaded only if the car has its digest, which
+says that somebody has checked where this very file comes from, and it unpacks within limits.
+
 `controller_call` has names and timing of the variables. Each instance has its own copy of the library, so that a
 library with global variables serves several dampers. An instance is made at the beginning of a run and freed at its
 end, so that runs are independent. FMPy reads and loads the FMU; it is imported only for a car with such a controller.
@@ -8,8 +11,11 @@ end, so that runs are independent. FMPy reads and loads the FMU; it is imported 
 from __future__ import annotations
 
 import ctypes
+import hashlib
+import io
 import shutil
 import tempfile
+import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -22,6 +28,10 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
 from vehicle.model.laws import controller_call as call
 from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
+from vehicle.signals.records.unpacked_size import require_archive
+
+LARGEST = 200e6
+"""Maximum size of an FMU, packed and unpacked [byte]: libraries for all platforms have some 10 MB."""
 
 REALS = ("Real", "Float64")
 """Types of the variables in FMI 2.0 and 3.0."""
@@ -43,6 +53,7 @@ class ControllerFile:
 
     Attributes:
         path: the file.
+        content: its bytes.
         description: model description of FMPy.
         sensors: index in `SENSORS` of each input. inputs: value references of the inputs.
         output: value reference of the coefficient.
@@ -50,6 +61,7 @@ class ControllerFile:
     """
 
     path: Path
+    content: bytes
     description: Any
     sensors: tuple[int, ...]
     inputs: tuple[int, ...]
@@ -57,22 +69,38 @@ class ControllerFile:
     parameters: Mapping[str, int]
 
 
-def read_controller(path: Path) -> ControllerFile:
+def read_controller(path: Path, digest: str | None) -> ControllerFile:
     """Read and check the FMU of a controller.
 
     Args:
         path: the file.
+        digest: SHA-256 of the file that may run, in hexadecimal digits.
 
     Raises:
-        ConfigurationError: the file is missing.
-        DataError: the file is no FMU for co-simulation, its variables have other names, or it has no library for this
-            platform.
+        ConfigurationError: the file is missing, or its digest is missing or another one.
+        DataError: the file is too large, no FMU for co-simulation, its variables have other names, or it has no
+            library for this platform.
         MissingPartError: FMPy is not installed.
     """
     fmpy = _fmpy()
     if not path.is_file():
         raise ConfigurationError(f"controller {path}: there is no such file; set the path of an FMU")
+    if path.stat().st_size > LARGEST:
+        raise DataError(f"controller {path}: {path.stat().st_size / 1e6:.4g} MB, must be at most {LARGEST / 1e6:g} MB")
+    content = path.read_bytes()
+    found = hashlib.sha256(content).hexdigest()
+    if digest is None:
+        raise ConfigurationError(
+            f"controller {path}: an FMU is native code, which runs with all your rights; if you trust its source, add "
+            f'fmu_sha256 = "{found}" to its table control, or give --trust to shaker'
+        )
+    if digest.lower() != found:
+        raise ConfigurationError(
+            f"controller {path}: its SHA-256 is {found}, in the vehicle file fmu_sha256 is {digest}: the file has "
+            "changed; if you trust the new one, set its digest"
+        )
     try:
+        require_archive("its archive", io.BytesIO(content), limit=LARGEST)
         description = fmpy.read_model_description(str(path), validate=False)
         platforms = fmpy.supported_platforms(str(path))
     except Exception as error:
@@ -87,10 +115,10 @@ def read_controller(path: Path) -> ControllerFile:
             f"controller {path}: the FMU has no library for {fmpy.platform}, but for {_listed(platforms)}; "
             "export it on this platform, or compile its sources: python -m fmpy compile FILE.fmu"
         )
-    return _with_variables(path, description)
+    return _with_variables(path, content, description)
 
 
-def _with_variables(path: Path, description: Any) -> ControllerFile:
+def _with_variables(path: Path, content: bytes, description: Any) -> ControllerFile:
     """Return a controller with the references of its variables.
 
     Raises:
@@ -109,6 +137,7 @@ def _with_variables(path: Path, description: Any) -> ControllerFile:
         )
     return ControllerFile(
         path=path,
+        content=content,
         description=description,
         sensors=tuple(call.SENSORS.index(name) for name in inputs),
         inputs=tuple(numbers[name].valueReference for name in inputs),
@@ -159,7 +188,8 @@ class Controller:
     def _start(self, control: SemiActiveDamper) -> None:
         """Load and initialize the FMU, and write the memory for the calls."""
         fmpy, file, second = _fmpy(), self.file, self.file.description.fmiVersion == "2.0"
-        fmpy.extract(str(file.path), self.folder)
+        with zipfile.ZipFile(io.BytesIO(file.content)) as archive:  # what was checked, not what is there now
+            archive.extractall(self.folder)
         slave = self.slave = fmpy.instantiate_fmu(
             self.folder, file.description, "CoSimulation", logger=self._logger(second), require_functions=False
         )
@@ -247,17 +277,18 @@ def controllers(
     Raises:
         ConfigurationError, DataError, MissingPartError, SimulationError: see `read_controller` and `Controller`.
     """
-    files: dict[str, ControllerFile] = {}
+    files: dict[tuple[str, str | None], ControllerFile] = {}
     messages: list[str] = []
     with ExitStack() as stack:
         started = []
         stack.callback(laws["controller"].fill, 0.0)
         for index, (name, control) in enumerate(dampers):
             if control.law == FMU and control.fmu is not None:
-                if control.fmu not in files:
-                    files[control.fmu] = read_controller(Path(control.fmu))
+                key = control.fmu, control.fmu_sha256
+                if key not in files:
+                    files[key] = read_controller(Path(control.fmu), control.fmu_sha256)
                 period = float(laws["period"][index]) * timestep
-                controller = Controller(files[control.fmu], name, control, period, messages)
+                controller = Controller(files[key], name, control, period, messages)
                 stack.callback(controller.close)
                 started.append(controller)
                 laws["controller"][index] = float(controller.memory.ctypes.data)
@@ -278,8 +309,9 @@ def require_controllers(controls: Iterable[SemiActiveDamper | None]) -> None:
     Raises:
         ConfigurationError, DataError, MissingPartError: see `read_controller`.
     """
-    for path in dict.fromkeys(control.fmu for control in controls if control and control.law == FMU):
-        read_controller(Path(path or ""))
+    chosen = [control for control in controls if control and control.law == FMU]
+    for path, digest in dict.fromkeys((control.fmu, control.fmu_sha256) for control in chosen):
+        read_controller(Path(path or ""), digest)
 
 
 def _fmpy() -> Any:

@@ -35,6 +35,9 @@ class SemiActiveDamper:
 
     law: str = quantity("-", "control law", choices=(PASSIVE, *LAWS, FMU), default=PASSIVE)
     fmu: str | None = quantity("-", "FMU of the controller, of the law fmu", is_file=True, default=None)
+    fmu_sha256: str | None = quantity(
+        "-", "SHA-256 of this FMU: only the file with it runs, as native code with all rights", default=None
+    )
     minimum_damping: float = quantity("N s/m", "softest setting cmin", at_least=0.0)
     maximum_damping: float = quantity("N s/m", "firmest setting cmax", above=0.0, at_most=1e6)
     skyhook_damping: float = quantity("N s/m", "damper between body and sky", at_least=0.0)

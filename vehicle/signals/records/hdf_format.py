@@ -20,6 +20,7 @@ from vehicle.signals.records.pandas_frames import frame_channels
 from vehicle.signals.records.reader import digest, extra
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_unit
+from vehicle.signals.records.unpacked_size import require_unpacked
 
 PLAIN_CLASSES = frozenset(
     ("double", "single", "logical", "char", "struct", "cell", "function_handle", "canonical empty")
@@ -50,6 +51,7 @@ def read(path: Path) -> Measurement:
     start = ""
     try:
         with h5py.File(path, "r") as file:
+            require_unpacked(path, _size(file, h5py), path.stat().st_size)
             if any("MATLAB_class" in item.attrs for item in file.values()):
                 objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
                 names = [name for name in file if not name.startswith("#") and name not in objects]
@@ -76,6 +78,13 @@ def read(path: Path) -> Measurement:
         start=start,
         notices=tuple(notices),
     )
+
+
+def _size(file: Any, h5py: Any) -> float:
+    """Return the size of all arrays of a file [byte], unpacked."""
+    sizes: list[float] = []
+    file.visititems(lambda _, item: sizes.append(float(item.nbytes)) if isinstance(item, h5py.Dataset) else None)
+    return sum(sizes)
 
 
 def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[Channel, ...], str]:

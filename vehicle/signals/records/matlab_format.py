@@ -18,6 +18,7 @@ from vehicle.signals.records.matlab_structures import columns_of, is_structure, 
 from vehicle.signals.records.reader import digest
 from vehicle.signals.records.table import Vector
 from vehicle.signals.records.units import find_ratio, find_unit
+from vehicle.signals.records.unpacked_size import require_unpacked
 
 
 def read(path: Path) -> Measurement:
@@ -250,7 +251,7 @@ def _signal(path: Path, label: str, record: Mapping[str, Any]) -> list[Channel]:
 
 def _check_elements(path: Path) -> dict[str, str]:
     """Check the elements of a version 5 file; return name and class of its objects."""
-    size = path.stat().st_size
+    size, unpacked = path.stat().st_size, 0
     objects: dict[str, str] = {}
     with path.open("rb") as file:
         head = file.read(128)
@@ -269,10 +270,16 @@ def _check_elements(path: Path) -> dict[str, str]:
             body = file.read(count)
             if data_type == COMPRESSED:
                 try:
-                    body = zlib.decompress(body)
-                except zlib.error as error:
+                    # The tag of the element inside has its size.
+                    stream = zlib.decompressobj()
+                    inside = struct.unpack(f"{order}II", stream.decompress(body, 8))[1]
+                    unpacked += inside
+                    require_unpacked(path, unpacked, size)
+                    body = stream.decompress(stream.unconsumed_tail, inside + 1)
+                    if len(body) != inside or not stream.eof:
+                        raise zlib.error("incomplete or truncated stream, or one of another size than its tag")
+                except (zlib.error, struct.error) as error:
                     raise DataError(f"{path}: element at byte {position}: {error}; save the file again") from None
-                body = body[8:]
             check_matrix(path, body, order, f"element at byte {position}")
             named_object = object_name(path, body, order) if data_type in (MATRIX, COMPRESSED) else None
             if named_object is not None:

@@ -19,6 +19,7 @@ from vehicle.signals.records.can_frames import FD_LENGTHS, IDENTIFIER_BITS, BusL
 from vehicle.signals.records.channel import NOT_OVER_TIME, ROAD_PROFILE, Channel, Measurement
 from vehicle.signals.records.reader import digest, extra
 from vehicle.signals.records.units import find_unit
+from vehicle.signals.records.unpacked_size import require_unpacked
 
 BUS_FRAMES = frozenset(
     f"{bus}_{kind}"
@@ -63,6 +64,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
                 buses = {n for n, group in enumerate(file.groups) if _is_bus(group)}
                 for group in file.groups:
                     _check_size(path, group, size)
+                require_unpacked(path, sum(map(_unpacked, file.groups)), size)
                 log = merged([_frames(file, number) for number in sorted(buses)])
                 channels, notices = _channels(file, buses)
                 start, program = str(file.start_time), f"MDF {file.version}"
@@ -256,6 +258,12 @@ def _frames(file: Any, number: int) -> BusLog:
             extended.tolist(),
         ),
     )
+
+
+def _unpacked(group: Any) -> float:
+    """Return the size of the values and times of a group in memory [byte], as its headers state it."""
+    cycles = float(getattr(group.channel_group, "cycles_nr", 0))
+    return cycles * max(float(getattr(group.channel_group, "samples_byte_nr", 0)), 8.0 * len(group.channels))
 
 
 def _forget() -> None:

@@ -13,13 +13,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.records.table import Header, Record, Table, Wanted, name_and_unit
-from vehicle.signals.records.text import MEMORY_LIMIT
-
-FREELY = 100_000_000
-"""Maximum size of arrays that are read at any compression ratio [byte]: a constant channel of one hour is smaller."""
-
-DENSEST = 200
-"""Maximum compression ratio of larger arrays [-]: sensor noise gives up to 20, zeros 1000."""
+from vehicle.signals.records.unpacked_size import require_unpacked
 
 
 def read(path: Path, wanted: Wanted) -> Table:
@@ -96,16 +90,7 @@ def _wanted_arrays(path: Path) -> list[str]:
                 names.append(entry.filename.removesuffix(".npy"))
                 size += max(math.prod(shape) * dtype.itemsize, entry.file_size)
                 packed += entry.compress_size
-    if size > MEMORY_LIMIT:
-        raise DataError(
-            f"{path}: its arrays need {size / 1024**3:.3g} GiB of memory, must be at most "
-            f"{MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
-        )
-    if size > FREELY and size > DENSEST * packed:
-        raise DataError(
-            f"{path}: {size / 1e6:.3g} MB are compressed to {packed / 1e6:.3g} MB, {size / packed:.0f} to 1, must be "
-            f"at most {DENSEST} to 1: its arrays are almost constant, unlike those of a sensor; record again"
-        )
+    require_unpacked(path, size, packed)
     return names
 
 

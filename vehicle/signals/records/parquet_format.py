@@ -14,8 +14,8 @@ from vehicle.signals.records.clock_text import epoch_seconds
 from vehicle.signals.records.heads import TIME_NAME, split_head
 from vehicle.signals.records.reader import digest, extra
 from vehicle.signals.records.table import Vector
-from vehicle.signals.records.text import MEMORY_LIMIT
 from vehicle.signals.records.units import find_unit
+from vehicle.signals.records.unpacked_size import require_unpacked
 
 
 def read(path: Path) -> Measurement:
@@ -33,11 +33,7 @@ def read(path: Path) -> Measurement:
             rows, fields = file.metadata.num_rows, file.schema_arrow
             wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
             needed = 2 * 8 * rows * len(wanted)
-            if needed > MEMORY_LIMIT:
-                raise DataError(
-                    f"{path}: {len(wanted)} columns of {rows} rows need {needed / 1024**3:.3g} GiB of memory, must be "
-                    f"at most {MEMORY_LIMIT / 1024**3:.3g} GiB; cut the record into parts"
-                )
+            require_unpacked(path, needed, path.stat().st_size)
             skipped = [field.name for n, field in enumerate(fields) if n not in wanted]
             table = file.read(columns=[fields[n].name for n in wanted])
             program = str(file.metadata.created_by or "")

@@ -12,6 +12,11 @@ from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.logger_format import read_lines
 from vehicle.signals.records.reader import digest, extra
 from vehicle.signals.records.text import Text
+from vehicle.signals.records.unpacked_size import require_archive
+
+LARGEST_SHEETS, FREE_SHEETS, DENSEST_SHEETS = 500e6, 20e6, 50.0
+"""Maximum size of the XML of a workbook, size at any compression ratio [byte], and maximum ratio above it [-]: a cell
+takes some 40 bytes of XML and 100 bytes of memory, and numbers of a sensor are compressed 4 to 10 to 1."""
 
 NO_VALUES = "formulas without saved values: open the file in a spreadsheet program and save it"
 """Remark on the cells of formulas that another program wrote without computing them."""
@@ -60,6 +65,8 @@ def _formulas(path: Path, title: str) -> bool:
 def _sheets(path: Path, *, formulas: bool = False) -> dict[str, list[tuple[object, ...]]]:
     """Return the rows of each sheet by sheet title: saved values, or formulas."""
     openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
+    with path.open("rb") as archive:
+        require_archive(path, archive, limit=LARGEST_SHEETS, freely=FREE_SHEETS, densest=DENSEST_SHEETS)
     try:
         with path.open("rb") as file:  # openpyxl rejects other file extensions
             book = openpyxl.load_workbook(file, read_only=True, data_only=not formulas)
