@@ -15,7 +15,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"errors", "names"}
+EVERYWHERE = {"digits", "errors", "names"}
 """May be used by every room."""
 
 WINGS = {
@@ -76,6 +76,7 @@ ROOMS: dict[str, set[str]] = {
     "threads": set(),
     "version": set(),
     "compiler": set(),
+    "digits": set(),
     "errors": set(),
     "names": set(),
     "__init__": {

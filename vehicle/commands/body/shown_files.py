@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from vehicle.digits import number
+
 if TYPE_CHECKING:
     from vehicle.model.flexbody.superelement import Superelement
 
@@ -40,7 +42,7 @@ def write_files(folder: Path, force: bool, model: Superelement, levels: Mapping[
     # A place is a node of the picture where it is one of the model.
     shown = [index for index, node in enumerate(model.nodes) if node in levels]
     titles = [
-        f"mode {i + 1}: {frequency:.2f} Hz, {100 * ratio:.2g} %"
+        f"mode {i + 1}: {frequency:.2f} Hz, {number(100 * ratio, 2)} %"
         + ("" if model.mode_names[i] == f"mode {i + 1}" else f"\n{model.mode_names[i]}")
         for i, (frequency, ratio) in enumerate(zip(model.frequencies, model.damping_ratio, strict=True))
     ]

@@ -1,9 +1,10 @@
-"""Steady-state motion of a linear system on driven displacements, from its dynamic stiffness at each line.
+"""Motion of all coordinates of a linear system: steady state on driven displacements, and free motion in a mode.
 
     D(s) u = s^2 M u + s C u + K u + sum_b h_b' K2 tau / (1 + s tau) (s e_b + g_b) u = (s Bc + Bk) z + constraint forces
 
-`vehicle.engines.linear.response` gives the same for a few outputs by partial fractions; this module returns all
-coordinates and the forces of locked sliding pairs.
+At each line s = j 2 pi f; in a mode z = 0, s is its pole and u its eigenvector. `vehicle.engines.linear.response` gives
+the same for a few outputs by partial fractions; this module returns all coordinates and the forces of locked sliding
+pairs.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.first_order import free_basis
+from vehicle.engines.linear.first_order import first_order, free_basis
 from vehicle.engines.linear.system import LinearSystem
 
 Complex = npt.NDArray[np.complex128]
@@ -21,10 +22,10 @@ Complex = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SteadyMotion:
-    """Steady-state motion of a system per unit of the driven displacement, at m lines.
+    """Motion of a system at m lines per unit of the driven displacement, or in a mode (m = 1) in any scale.
 
     Attributes:
-        s: j 2 pi f [rad/s]; (m,).
+        s: j 2 pi f, or the pole of the mode [rad/s]; (m,).
         motion: displacements u; (n, m).
         branch: forces of the Maxwell branches; (b, m).
         friction: forces of locked sliding pairs, with the sign of the equation of motion; (p, m).
@@ -63,10 +64,43 @@ def steady_motion(
         dynamic = s_line**2 * mass + s_line * damping + stiffness + effects.T @ (rows @ basis)
         motion[:, index] = basis @ np.linalg.solve(dynamic, basis.T @ (s_line * drag + push))
         forces[:, index] = rows @ motion[:, index]
-    friction = np.zeros((len(system.slide_rows), len(s)), dtype=complex)
-    if stuck and len(friction):
-        inertia = system.mass @ (s**2 * motion) + system.damping @ (s * motion) + system.stiffness @ motion
-        residual_force = inertia + system.effects.T @ forces - np.outer(drag, s) - push[:, None]
-        locked_rows = np.vstack([system.constraints, system.slide_rows]).T
-        friction = np.linalg.lstsq(locked_rows, residual_force, rcond=None)[0][len(system.constraints) :]
+    friction = _friction(system, s, motion, forces, np.outer(drag, s) + push[:, None], stuck=stuck)
     return SteadyMotion(s=s, motion=motion, branch=forces, friction=friction)
+
+
+def free_motion(system: LinearSystem, frequency: float, *, stuck: bool) -> SteadyMotion:
+    """Return the motion in the mode whose natural frequency |s| / 2 pi is nearest to a frequency, in any scale.
+
+    Args:
+        system: a single system.
+        frequency: natural frequency of the mode [Hz].
+        stuck: lock the sliding pairs; otherwise they have no friction.
+    """
+    form = first_order(system, stuck=stuck)
+    poles, vectors = np.linalg.eig(form.state)
+    distance = np.where(poles.imag > 0.0, np.abs(np.abs(poles) - 2.0 * np.pi * frequency), np.inf)
+    at = [int(np.argmin(distance))]
+    motion, branch = form.shapes(vectors[:, at], poles[at]), vectors[form.branches][:, at]
+    friction = _friction(system, poles[at], motion, branch, np.zeros_like(motion), stuck=stuck)
+    return SteadyMotion(s=poles[at], motion=motion, branch=branch, friction=friction)
+
+
+def _friction(
+    system: LinearSystem, s: Complex, motion: Complex, branch: Complex, driving: Complex, *, stuck: bool
+) -> Complex:
+    """Return the forces of locked sliding pairs, which the equation of motion lacks; (p, m).
+
+    Args:
+        system: a single system.
+        s: complex frequencies; (m,).
+        motion: displacements; (n, m).
+        branch: forces of the Maxwell branches; (b, m).
+        driving: forces of the driven displacements; (n, m).
+        stuck: True if the sliding pairs are locked; otherwise the forces are zero.
+    """
+    if not (stuck and len(system.slide_rows)):
+        return np.zeros((len(system.slide_rows), len(s)), dtype=complex)
+    inertia = system.mass @ (s**2 * motion) + system.damping @ (s * motion) + system.stiffness @ motion
+    locked_rows = np.vstack([system.constraints, system.slide_rows]).T
+    missing = inertia + system.effects.T @ branch - driving
+    return np.asarray(np.linalg.lstsq(locked_rows, missing, rcond=None)[0][len(system.constraints) :])

@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.engines.simulation.recording import Energies, Recording
 from vehicle.errors import ConfigurationError, SimulationError
 
@@ -36,8 +37,8 @@ def require_samples(samples: float, channels: int) -> None:
     """
     if samples < 1.0 - 1e-6:
         raise ConfigurationError(
-            f"solver.record_rate: the signal ends after {samples:.2g} of an interval between two recorded samples, "
-            "needed is 1; give a longer signal"
+            f"solver.record_rate: the signal ends after {number(samples, 2)} of an interval between two recorded "
+            "samples, needed is 1; give a longer signal"
         )
     needed, there = 8.0 * samples * channels, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > 0.5 * there:
@@ -85,7 +86,7 @@ def judge_energy(energies: Energies, rate: float) -> tuple[str, ...]:
     if missing <= ENERGY_ROUND_OFF or residual <= RESIDUAL_WARNED:
         return ()
     whole = f"{lost:.3g} J dissipated" if lost > work else f"{energies.work_in:.3g} J put in by the plates"
-    said = f"energy residual {residual:.2g}: of {whole} {missing:.3g} J are unaccounted for"
+    said = f"energy residual {number(residual, 2)}: of {whole} {missing:.3g} J are unaccounted for"
     if rate < BALANCED_RATE:
         return (f"{said}; it is summed from samples at {rate:g} Hz, too few to judge the run by",)
     if residual > RESIDUAL_FAILED:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.runs.comparison.frf_comparison import FrfComparison, Signatures
 from vehicle.runs.comparison.record_comparison import RecordComparison
@@ -248,7 +249,7 @@ class Comparison:
                 + " at the full rate, weighted by their RMS"
             )
         delays = [
-            f"{each.group} {1e3 * each.delay:.3f} +- {1e3 * each.error:.1g} ms after the {each.against}"
+            f"{each.group} {1e3 * each.delay:.3f} +- {number(1e3 * each.error, 1)} ms after the {each.against}"
             + (f" ({1e3 * each.taken_out:.5g} ms taken out)" if each.taken_out else "")
             for each in self.delays
             if math.isfinite(each.delay)

@@ -8,6 +8,7 @@ from typing import TypedDict
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.errors import DataError, SimulationError
@@ -380,6 +381,6 @@ def _caption(run: Run, response: FrequencyResponse) -> str:
     )
     return (
         f"{Path(run.signal.source).name}, RMS {levels}, {run.signal.duration:g} s; estimator: {response.estimator}, "
-        f"resolution {response.resolution_hz:.2g} Hz; tyres {run.car.vehicle.driving.words}; engine: "
+        f"resolution {number(response.resolution_hz, 2)} Hz; tyres {run.car.vehicle.driving.words}; engine: "
         f"{run.recording.statistics.engine}"
     )

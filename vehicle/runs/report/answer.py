@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.motion_names import leading_motions
@@ -20,10 +21,9 @@ from vehicle.runs.report.differences import MISSING, changed_parameters, differe
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
-from vehicle.runs.report.markup import Markup, joined, number, tag
+from vehicle.runs.report.markup import Markup, joined, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.modal_assurance import mac
-from vehicle.signals.analysis.vibration_spectra import ChannelSpectrum
 from vehicle.signals.records.run_summary import slip_shares
 
 Modes = Mapping[str, Sequence[Mode]]
@@ -40,8 +40,8 @@ SLIP = 0.1
 """Change of the time in slip [percentage points] from which it is named."""
 
 EXPLANATION = (
-    "Mode and path: of the linear car whose dampers stick or slide as during most of the run, with the plates of the "
-    "run; shares in phase with the sum of all modes, or of the forces of all elements on the body."
+    "Mode and path come from the linear model, with the dampers fixed in their usual state: stuck, or sliding without "
+    "friction. A share counts only what acts in phase; a path is named only if it carries most of the mode."
 )
 """Explanation of the statements."""
 
@@ -84,10 +84,10 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
     band = main_band(spectra)
     marked: dict[str, float] = {}
     if band is not None:
-        mode, shares = strongest(run, band, modes.get(damper_state(run), ())), paths(run, band)
+        mode = strongest(run, band, modes.get(damper_state(run), ()))
         parts = [f"{100.0 * band.share:.0f} % of it (mean square) {_is_within(band)}"]
-        parts += [f"mainly by the mode of {mode_words(mode)}"] if mode is not None else []
-        parts += [f"carried into the body by {main_path(shares)}"] if shares else []
+        if mode is not None:
+            parts += [f"mainly by the mode of {mode_words(mode)}", *_path_words(run, band, mode)]
         texts.append(f"{', '.join(parts)}{_damper_words(run)}.")
         marked = {} if mode is None else {f"{mode.frequency:.1f} Hz\n{_motion(mode)}": mode.frequency}
     bands = next(iter(spectra.values())).third_octaves
@@ -125,6 +125,12 @@ def _damper_words(run: FinishedRun) -> str:
         return "; the dampers stick, so they dissipate almost no energy"
     ends = dict.fromkeys(number(share, 2) for share in (low, high))
     return f"; the dampers slip for {' to '.join(ends)} % of the time"
+
+
+def _path_words(run: FinishedRun, band: MainBand, mode: Mode) -> list[str]:
+    """Return what carries a mode into the body as a part of a sentence; empty if no path carries most of it."""
+    path = main_path(paths(run, band.axis, mode))
+    return [f"carried into the body by {path}"] if path else []
 
 
 def mode_words(mode: Mode) -> str:
@@ -229,9 +235,7 @@ def _reason(first: FinishedRun, run: FinishedRun, modes: Modes, run_modes: Modes
     mode = strongest(first, band, modes.get(damper_state(first), ()))
     if mode is not None:
         other = counterpart(mode, run_modes.get(damper_state(run), ()), first.car.matrices.system.mass)
-        parts.append(f"mainly by the mode {_moved(mode, other)}")
-    if shares := changed_paths(first, run, band, spectra):
-        parts.append(f"carried into the body by {main_path(shares)}")
+        parts += [f"mainly by the mode {_moved(mode, other)}", *_path_words(first, band, mode)]
     slips = [slip_shares(each.summary) for each in (first, run)]
     if list(slips[0]) == list(slips[1]) and slips[0]:
         wheel = max(slips[0], key=lambda name: abs(slips[1][name] - slips[0][name]))
@@ -253,31 +257,6 @@ def _moved(mode: Mode, other: Mode | None) -> str:
     parts = [f"which moves from {frequencies[0]} to {frequencies[1]} Hz"] if frequencies[0] != frequencies[1] else []
     parts += [f"whose damping ratio changes from {ratios[0]} to {ratios[1]} %"] if ratios[0] != ratios[1] else []
     return f"of {_motion(mode)}, {' and '.join(parts)}" if parts else f"of {mode_words(mode)}"
-
-
-def changed_paths(
-    first: FinishedRun, run: FinishedRun, band: MainBand, spectra: Sequence[Mapping[str, ChannelSpectrum]]
-) -> dict[str, float]:
-    """Return attachments of the body to their shares in the change of the mean square in a band.
-
-    Path k has the share s_k in the mean square p of each run, so its share in the change is
-    (s_k' p' - s_k p) / (p' - p).
-
-    Args:
-        first, run: the runs.
-        band: axis and frequencies.
-        spectra: weighted spectra of the seat rail of both runs, by axis.
-    """
-    shares = [paths(each, band) for each in (first, run)]
-    powers = []
-    for of_run in spectra:
-        octaves = of_run[band.axis].third_octaves
-        inside = (octaves.edges[:-1] >= 0.999 * band.low) & (octaves.edges[1:] <= 1.001 * band.high)
-        powers.append(float(np.sum(np.nan_to_num(octaves.rms[inside]) ** 2)))
-    change = powers[1] - powers[0]
-    if not all(shares) or change == 0.0 or set(shares[0]) != set(shares[1]):
-        return {}
-    return {name: (shares[1][name] * powers[1] - share * powers[0]) / change for name, share in shares[0].items()}
 
 
 def counterpart(mode: Mode, modes: Sequence[Mode], mass: npt.NDArray[np.float64]) -> Mode | None:

@@ -1,4 +1,4 @@
-"""Modes and paths that cause the weighted vibration of a run in a band: linear car, plates as in the run."""
+"""Mode that causes the weighted vibration of a run in a band, and the path of this mode into the body."""
 
 from __future__ import annotations
 
@@ -21,9 +21,6 @@ from vehicle.signals.records.record_spectra import evaluated_from
 LINES = 400
 """Number of spectral lines of a band that determine the shares of the modes."""
 
-PATH_LINES = 100
-"""Number of spectral lines of a band that determine the shares of the paths, which need all motions at each."""
-
 WORDS = {
     "arm_front": "control arm bearing at the front",
     "arm_rear": "control arm bushing at the rear",
@@ -43,6 +40,9 @@ WORDS = {
 }
 """Words for elements of the templates whose names are short."""
 
+MAIN = 0.5
+"""Minimum share of a path that is named, and limit of the sum of all that oppose it."""
+
 OTHER_SIDE = 0.25
 """Minimum share of a side in the sum of both sides, for which both sides are named together."""
 
@@ -60,8 +60,8 @@ class Lines:
     plates: npt.NDArray[np.complex128]
 
 
-def lines_of(run: FinishedRun, band: MainBand, count: int) -> Lines | None:
-    """Return the lines of the periodogram of the plates in a band, at most about `count`; None without plates."""
+def lines_of(run: FinishedRun, band: MainBand) -> Lines | None:
+    """Return the lines of the periodogram of the plates in a band, at most about `LINES`; None without plates."""
     recording, wheels = run.recording, run.car.matrices.system.inputs
     names = [f"plate_{wheel}_displacement" for wheel in wheels]
     if not all(name in recording.channels for name in names):
@@ -70,7 +70,7 @@ def lines_of(run: FinishedRun, band: MainBand, count: int) -> Lines | None:
     plates = [recording.channels[name][first:] for name in names]
     frequency = np.fft.rfftfreq(plates[0].size, recording.timestep)
     inside = np.flatnonzero((frequency >= band.low) & (frequency <= band.high))
-    inside = inside[:: max(inside.size // count, 1)]
+    inside = inside[:: max(inside.size // LINES, 1)]
     spectra = np.array([np.fft.rfft(np.hanning(plate.size) * (plate - plate.mean()))[inside] for plate in plates])
     return Lines(np.asarray(frequency[inside], dtype=float), spectra)
 
@@ -88,7 +88,7 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
     Returns:
         The mode; None if no plate is recorded or no mode has a positive share.
     """
-    lines = lines_of(run, band, LINES)
+    lines = lines_of(run, band)
     if lines is None:
         return None
     stuck = damper_state(run) == "stuck"
@@ -103,31 +103,27 @@ def strongest(run: FinishedRun, band: MainBand, modes: Sequence[Mode]) -> Mode |
     return mode if same else None
 
 
-def paths(run: FinishedRun, band: MainBand) -> dict[str, float]:
-    """Return attachments of the body to their shares in a band of the seat rail; empty if it is not on the body.
+def paths(run: FinishedRun, axis: str, mode: Mode) -> dict[str, float]:
+    """Return attachments of the body to their shares in a mode at the seat rail; empty if it is not on the body.
 
     Args:
         run: the run, whose dampers stick or slide as during most of it.
-        band: axis and frequencies.
+        axis: axis of the acceleration, "x", "y" or "z".
+        mode: mode of its car in this state of the dampers.
     """
-    lines = lines_of(run, band, PATH_LINES)
-    if lines is None or not np.any(lines.plates):
-        return {}
-    car, channel = run.car, f"{POINT}_acc_{band.axis}"
-    stuck = damper_state(run) == "stuck"
+    car, channel, stuck = run.car, f"{POINT}_acc_{axis}", damper_state(run) == "stuck"
     try:
-        result = path_shares(
-            car.model, car.matrices, car.load_rows, channel, lines.frequency, lines.plates, stuck=stuck
-        )
+        result = path_shares(car.model, car.matrices, car.load_rows, channel, mode.frequency, stuck=stuck)
     except ConfigurationError:
         return {}
     return {name: float(share) for name, share in zip(result.names, result.shares, strict=True) if name != REST}
 
 
 def main_path(shares: Mapping[str, float]) -> str:
-    """Return the path with the largest share in words, with its share.
+    """Return the path that carries most of a mode in words, with its share; empty if none does.
 
-    Both sides of an axle are named together if each of them carries `OTHER_SIDE` of their sum.
+    Both sides of an axle are named together if each of them carries `OTHER_SIDE` of their sum. None is named if it
+    carries less than `MAIN` of the sum, or if the others oppose it by more: large paths that cancel explain nothing.
 
     Args:
         shares: name of each attachment to its share.
@@ -145,7 +141,11 @@ def main_path(shares: Mapping[str, float]) -> str:
         if len(sides) == 2 and min(sides.values()) >= OTHER_SIDE * sum(sides.values())
     }
     paths_of = singles | pairs
-    axle, side, part = max(paths_of, key=lambda key: paths_of[key])
+    axle, side, part = max(paths_of, key=lambda key: paths_of[key], default=("", "", ""))
+    share = paths_of.get((axle, side, part), 0.0)
+    if share < MAIN or -sum(min(each, 0.0) for each in shares.values()) > MAIN:
+        return ""
     name = " ".join(word for word in ("the", axle, side, WORDS.get(part, point_words(part))) if word)
     both = ", left and right" if (axle, side, part) in pairs else ""
-    return f"{name}{both} ({100.0 * paths_of[axle, side, part]:.0f} %)"
+    # A share above the whole, which others reduce, would only puzzle.
+    return name + both + (f" ({100.0 * share:.0f} %)" if share <= 1.0 else "")

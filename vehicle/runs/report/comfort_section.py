@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from vehicle.digits import number
 from vehicle.names import point_words
 from vehicle.runs.report.comfort_class import REACTIONS, reactions
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, joined, number, table, tag
+from vehicle.runs.report.markup import Markup, joined, table, tag
 from vehicle.signals.records.run_summary import unweighted_rms
 
 NO_ERROR = (

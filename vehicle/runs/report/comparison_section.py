@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.several_runs import plot_responses, shared_channels
 from vehicle.names import side_of, wheel_words
 from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
-from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
+from vehicle.runs.report.markup import Markup, joined, shortened, table, tag
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.names import point_words, side_of
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import number
 from vehicle.signals.records.run_summary import RunSummary, slip_shares, unweighted_rms
 
 STICKS, WORKS = 0.01, 0.25

@@ -87,8 +87,3 @@ def shortened(
 def section(title: str, anchor: str, *content: object) -> Markup:
     """Return a section of the page with its heading."""
     return tag("section", tag("h2", title), *content, id=anchor)
-
-
-def number(value: float | None, digits: int = 3) -> str:
-    """Return a number with a number of digits, without an exponent below a million; a dash for None."""
-    return "–" if value is None else f"{float(f'{value:.{digits}g}'):.10g}"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import base64
 
+from vehicle.digits import number
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import MANY, Markup, joined, number, shortened, table, tag
+from vehicle.runs.report.markup import MANY, Markup, joined, shortened, table, tag
 
 WORST = 10
 """Number of rows shown above a folded table."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.findings import main_points, nearest_mode
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, joined, number, table, tag
+from vehicle.runs.report.markup import Markup, joined, table, tag
 from vehicle.runs.report.svg_figure import drawing
 
 SIZE = (PAGE_WIDTH, 5.8)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.plots import plot_time
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.shipped import VEHICLES
@@ -17,7 +18,7 @@ from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
-from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
+from vehicle.runs.report.markup import Markup, folded, joined, shortened, table, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.spectra_plot import plot_spectra
 from vehicle.errors import DataError
 from vehicle.names import CORNERS, wheel_words
 from vehicle.runs.output.spectra_files import picture_columns
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, joined, number, tag
+from vehicle.runs.report.markup import Markup, joined, tag
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.record_spectra import RecordSpectra, evaluated_from, recorded_spectra
 

@@ -21,6 +21,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.analysis.dependence import refuse_copies
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -131,9 +132,9 @@ def local_rational_responses(
             f"record: {samples * step:g} s is too short for an FRF up to {band[1]:g} Hz; record at least "
             f"{shortest:.3g} s"
         )
-    for number in np.flatnonzero(is_constant(inputs)):
+    for index in np.flatnonzero(is_constant(inputs)):
         raise DataError(
-            f"{labels[number]}: is constant, at {inputs[number, 0]:g}; an FRF needs a moving input; drive it, or "
+            f"{labels[index]}: is constant, at {inputs[index, 0]:g}; an FRF needs a moving input; drive it, or "
             "select a moving input"
         )
     if len(inputs) > 1:
@@ -262,8 +263,9 @@ def _coarse(line: float) -> tuple[str, ...]:
     resolution = RESOLVED * line
     if resolution <= COARSE_HZ:
         return ()
+    low, high = (number(100.0 * resolution / (2.0 * frequency), 2) for frequency in (3.0, 30.0))
     return (
-        f"resonances narrower than {resolution:.2g} Hz between the half-power points (damping ratio below "
-        f"{100 * resolution / 6.0:.2g} % at 3 Hz, {100 * resolution / 60.0:.2g} % at 30 Hz) are not resolved by a "
+        f"resonances narrower than {number(resolution, 2)} Hz between the half-power points (damping ratio below "
+        f"{low} % at 3 Hz, {high} % at 30 Hz) are not resolved by a "
         f"record of {1.0 / line:.3g} s: their peaks are too low; use a longer record",
     )

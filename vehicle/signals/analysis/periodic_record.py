@@ -24,6 +24,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vehicle.digits import number
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.input_floor import ABOVE_FLOOR, rounding_step
 from vehicle.signals.analysis.local_rational import local_rational_responses
@@ -215,26 +216,26 @@ def _periodic_response(
         if not changes[-1] <= SETTLED * size and len(noisy) < NOISE_PERIODS:
             return count * period, (
                 f"the input repeats every {period * step:g} s, but {name} changes by "
-                f"{100.0 * changes[-1] / size if size else math.inf:.2g} % from the period before to the last one "
-                f"(settled: at most {100.0 * SETTLED:g} %), so the record is evaluated as a random one; record more "
-                "periods"
+                f"{number(100.0 * changes[-1] / size if size else math.inf, 2)} % from the period before to the last "
+                f"one (settled: at most {100.0 * SETTLED:g} %), so the record is evaluated as a random one; record "
+                "more periods"
             )
         variance = np.sum(np.abs(noisy - noisy.mean(axis=0)) ** 2, axis=0) / (len(noisy) - 1)
         # Two periods do not distinguish noise from the end of a transient, which has decayed more in the last one.
-        mean, number = (noisy[-1], 1) if len(noisy) == 2 else (noisy.mean(axis=0), len(noisy))
+        mean, averaged = (noisy[-1], 1) if len(noisy) == 2 else (noisy.mean(axis=0), len(noisy))
         power_of_mean = np.abs(mean) ** 2
         scatter = _scatter(frequency[lines][windows], drive[lines][windows], mean[windows]) / power_of_mean
-        distortion, noise = float(np.median(scatter)), float(np.median(variance / number / power_of_mean))
+        distortion, noise = float(np.median(scatter)), float(np.median(variance / averaged / power_of_mean))
         distortion = distortion - noise if distortion > DISTINCT * noise else 0.0
         if not distortion <= DISTORTED**2:
             return period, (
                 f"the input repeats every {period * step:g} s, but the lines of {name} scatter by "
-                f"{100.0 * math.sqrt(distortion):.2g} % around a smooth FRF (at most {100.0 * DISTORTED:g} %), because "
-                "the car is nonlinear or the lines are too far apart, so the last period is evaluated as a random "
-                "record"
+                f"{number(100.0 * math.sqrt(distortion), 2)} % around a smooth FRF (at most {100.0 * DISTORTED:g} %), "
+                "because the car is nonlinear or the lines are too far apart, so the last period is evaluated as a "
+                "random record"
             )
         response[row] = mean / drive[lines]
-        error = np.maximum(variance / number, distortion * power_of_mean)
+        error = np.maximum(variance / averaged, distortion * power_of_mean)
         variance = np.maximum(variance, error)
         explained = np.maximum(power_of_mean - error, 0.0)
         deviation[row] = np.sqrt(0.5 * error) / np.abs(drive[lines])

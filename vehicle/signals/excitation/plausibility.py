@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.records.channel_faults import clipped, constant_part
 from vehicle.signals.records.clock import PAUSE
@@ -118,7 +119,7 @@ def acceleration_events(displacement: Mapping[str, NDArray[np.float64]], timeste
             share = 100.0 * float(np.mean(np.abs(acceleration) > LARGEST_ACCELERATION))
             events.append(
                 f"plate {wheel} accelerates by up to {acceleration[index]:.4g} m/s2, at t = {index * timestep:.6g} s, "
-                f"and by more than {LARGEST_ACCELERATION:g} m/s2 for {share:.2g} % of the time (below "
+                f"and by more than {LARGEST_ACCELERATION:g} m/s2 for {number(share, 2)} % of the time (below "
                 f"{ACCELERATION_BAND:g} Hz): a pothole, or a rough road; the tyre may lift off"
             )
     return events

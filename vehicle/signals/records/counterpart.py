@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number
 from vehicle.signals.analysis.time_shift import TimeShift, time_shift
 from vehicle.signals.records.resampled import at_times
 from vehicle.signals.records.table import Record, Vector
@@ -214,7 +215,7 @@ def response_faults(channel: str, measured: Complex, simulated: Complex, weight:
     messages = []
     if float(share @ (ratio / np.abs(ratio)).real) < -SAME_MOTION:
         phase = math.degrees(math.sqrt(float(share @ np.angle(-ratio) ** 2)))
-        messages.append(_inverted(channel, f"phase 180 degrees, RMS deviation {phase:.2g} degrees"))
+        messages.append(_inverted(channel, f"phase 180 degrees, RMS deviation {number(phase, 2)} degrees"))
     level = np.log(np.abs(ratio))
     mean = float(share @ level)
     if math.sqrt(float(share @ (level - mean) ** 2)) < math.log(2.0):

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT, Counterpart
 from vehicle.signals.records.delays import PLATES, group_of
 
@@ -83,8 +84,8 @@ class GroupDelay:
             return []
         return [
             f"the {self.group} {'lag' if self.delay > 0.0 else 'lead'} the {self.against} by "
-            f"{1e3 * abs(self.delay):.3g} ms (+- {1e3 * self.error:.1g} ms, in {self.agreeing} of {self.channels} "
-            "channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
+            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms, in {self.agreeing} of "
+            f"{self.channels} channels): a sensor delay, or a car with other phases (tune fits both)? Take it out with "
             f"--delay {self.group}={1e3 * self.delay:.5g}ms" + (f" of {command}" if command else "")
         ]
 

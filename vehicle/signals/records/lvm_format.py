@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.records.channel import OVER_ANGLE, OVER_DISTANCE, Channel, Measurement, uniform_axis
 from vehicle.signals.records.clock_text import clock_seconds
@@ -267,7 +268,8 @@ def _step(text: str) -> tuple[float, str]:
     if low != high and half / step > 1e-5:
         return (
             step,
-            f"time step {text} s is rounded: uncertainty of the rate {1.0 / step:.9g} Hz {100 * half / step:.2g} %",
+            f"time step {text} s is rounded: uncertainty of the rate {1.0 / step:.9g} Hz "
+            f"{number(100 * half / step, 2)} %",
         )
     return step, ""
 
@@ -324,12 +326,12 @@ def _starts(path: Path, segments: Sequence[_Segment], columns: Sequence[list[Cha
         shifts, _, _ = clock_seconds(clocks, days)
     except ValueError:
         shifts = np.zeros(len(segments))
-    for number, (before, after) in enumerate(pairwise(known_axes), 1):
+    for index, (before, after) in enumerate(pairwise(known_axes), 1):
         step = float(before[-1] - before[0]) / max(before.size - 1, 1)
-        gap = shifts[number] + after[0] - shifts[number - 1] - before[-1]
+        gap = shifts[index] + after[0] - shifts[index - 1] - before[-1]
         if gap <= 0.0 or gap < (1.0 - JOINED) * step * 0.5:
             raise DataError(
-                f"{path}:{segments[number].line}: segment {number + 1} begins {-gap:.6g} s before the end of segment "
-                f"{number}; segments must not overlap; export each segment to a separate file"
+                f"{path}:{segments[index].line}: segment {index + 1} begins {-gap:.6g} s before the end of segment "
+                f"{index}; segments must not overlap; export each segment to a separate file"
             )
     return [float(shift) for shift in shifts]

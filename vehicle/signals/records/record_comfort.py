@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.signals.analysis.evaluation import (
@@ -205,7 +206,7 @@ def _read(
     ):
         if axis in checked and (effect > OFFSET_EFFECT or abs(mean) > LARGEST_MEAN):
             raise DataError(
-                f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, its drift {drift:.2g} m/s2; "
+                f"{file}: the mean of column {axis!r} is {mean:.4g} m/s2, its drift {number(drift, 2)} m/s2; "
                 f"they change its weighted RMS or VDV by {100 * effect:.3g} %, must be at most "
                 f"{100 * OFFSET_EFFECT:g} %, with a mean of at most {LARGEST_MEAN:g} m/s2; set --offset remove for a "
                 "sensor offset or gravity, --offset keep if the record begins at rest and the mean is real"

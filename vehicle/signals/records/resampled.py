@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import scipy
 
+from vehicle.digits import number
 from vehicle.errors import DataError
 from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
 from vehicle.signals.records.table import Vector
@@ -113,7 +114,7 @@ def _notice(steps: Vector, median: float, rate: float, factor: int, uniform: boo
         longest = float(steps.max())  # the widest step limits the frequencies of the spline
         missing = int(np.count_nonzero(steps > 1.5 * median))
         jitter = np.abs(steps[steps <= 1.5 * median] / median - 1.0)
-        clock = f"jittered times (steps up to {100.0 * float(jitter.max()):.2g} % off the median)"
+        clock = f"jittered times (steps up to {number(100.0 * float(jitter.max()), 2)} % off the median)"
         if missing:
             plural = "s" if missing > 1 else ""
             clock = f"{clock} with {missing} gap{plural} of up to {1e3 * float(steps.max()):.3g} ms"

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.studies.mounts.measured_stiffness import MeasuredStiffness
 from vehicle.studies.mounts.mount_fit import MountFit
 
@@ -59,7 +60,7 @@ def vehicle_lines(fit: MountFit, caption: str) -> str:
     ):
         text = f"{float(f'{value:.5g}')!r}"
         shown = f"[{text}, {text}, {text}]" if name in VECTORS else text
-        spread = f"standard error {error:.2g}" if determined else "not determined by these points"
+        spread = f"standard error {number(error, 2)}" if determined else "not determined by these points"
         lines.append(f"{name} = {shown}  # [{unit}] fitted to {source}, {spread}")
     return "\n".join(lines) + "\n"
 
@@ -112,6 +113,6 @@ def summary_lines(fits: Sequence[MountFit], caption: str) -> list[str]:
     for (name, unit), value, error, determined in zip(
         best.law.parameters.items(), best.values, best.errors, best.determined, strict=True
     ):
-        spread = f"{error:.2g} {unit}" if determined else "not determined by these points"
+        spread = f"{number(error, 2)} {unit}" if determined else "not determined by these points"
         lines.append(f"{name:<20}{value:>12.5g}   {spread}")
     return lines

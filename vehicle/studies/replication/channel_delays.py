@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT
 from vehicle.studies.replication.inverse import Complex, Lines, Vector
 
@@ -70,7 +71,7 @@ class ChannelDelay:
             return []
         return [
             f"{self.channel} {'lags' if self.delay > 0.0 else 'leads'} the other channels by "
-            f"{1e3 * abs(self.delay):.3g} ms (+- {1e3 * self.error:.1g} ms): a sensor delay? Take it out with "
+            f"{1e3 * abs(self.delay):.3g} ms (+- {number(1e3 * self.error, 1)} ms): a sensor delay? Take it out with "
             f"--delay {self.channel}={1e3 * self.delay:.5g}ms"
         ]
 

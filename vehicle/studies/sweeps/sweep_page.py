@@ -6,8 +6,9 @@ import math
 import shlex
 from collections.abc import Sequence
 
+from vehicle.digits import number
 from vehicle.runs.car import Car
-from vehicle.runs.report.markup import Markup, folded, joined, number, shortened, table, tag
+from vehicle.runs.report.markup import Markup, folded, joined, shortened, table, tag
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.tuning.identifiability import Unidentified
 from vehicle.studies.tuning.response_delays import DelayRange
@@ -130,7 +131,8 @@ class TuningResult:
 
     def __repr__(self) -> str:
         """Return the fitted values with their standard errors in a line."""
-        values = [f"{path} {value:.5g} +- {self.standard_errors[path]:.2g}" for path, value in self.solution.items()]
+        errors = self.standard_errors
+        values = [f"{path} {value:.5g} +- {number(errors[path], 2)}" for path, value in self.solution.items()]
         return f"TuningResult({'; '.join(values)})"
 
     def deviation(self, path: str, value: float) -> float:

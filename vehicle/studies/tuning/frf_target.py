@@ -52,7 +52,7 @@ class FrfTarget:
             FRFs of the model use the same estimator, so its effect on a nonlinear car is in both.
         delays: delays of the channels against the plate: the FRF of the model is turned by exp(-2 pi i f d).
         sample: sampling interval of the measurement [s]; 0 if unknown.
-        motions: independent motions of the plates of the signal, see `motions_of`; empty without a signal.
+        motions: independent motions of the plates of the signal, see `motions_of`; those of the FRFs without a signal.
     """
 
     name: str
@@ -70,9 +70,13 @@ class FrfTarget:
         unknown = next((str(name) for name in self.data.names if not name.motion), None)
         if unknown is not None:
             raise ConfigurationError(f"{self.name}: the FRF of {unknown} names no plate; name it as {unknown}/plate_fl")
-        object.__setattr__(self, "motions", () if self.signal is None else motions_of(self.signal))
         if self.signal is not None:
+            object.__setattr__(self, "motions", motions_of(self.signal))
             to_driven_plates(self.data, self.motions, self.name)
+        else:
+            inputs = dict.fromkeys(name.motion for name in self.data.names)
+            motions = tuple({plate.removeprefix(PLATE): factor for plate, factor in each} for each in inputs)
+            object.__setattr__(self, "motions", motions)
         if not np.isfinite(self.deviation).any():
             raise DataError(
                 f"{self.name}: no FRF value has a coherence of {LEAST_COHERENCE:g} or more; measure with less noise"

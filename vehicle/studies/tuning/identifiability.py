@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number
 from vehicle.model.parameters.ranges import Range
 from vehicle.studies.tuning.response_delays import DelayRange
 
@@ -44,7 +45,7 @@ class Unidentified:
         other = f" apart from {', '.join(self.partners)}" if self.partners else ""
         return (
             f"{self.path}: the data do not identify this parameter{other} (standard error of the direction "
-            f"{self.spread:.3g} half widths of the bounds, maximum {WIDEST:.2g}); held at {self.held_at:g}"
+            f"{self.spread:.3g} half widths of the bounds, maximum {number(WIDEST, 2)}); held at {self.held_at:g}"
         )
 
 

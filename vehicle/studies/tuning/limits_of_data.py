@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.studies.tuning.fit_result import TuningResult
 
 CORRELATED = 0.9
@@ -48,11 +49,11 @@ def what_data_leave_open(result: TuningResult) -> tuple[str, ...]:
         both = np.sqrt(max(a**2 + b**2 - 2.0 * abs(rho) * a * b, 0.0))
         word = "ratio" if rho > 0.0 else "product"
         sentences.append(
-            f"{first} and {second}: correlation {rho:+.2f}; the data determine their {word} to {100 * both:.2g} %, but "
-            f"the values alone to {100 * a:.2g} and {100 * b:.2g} % only"
+            f"{first} and {second}: correlation {rho:+.2f}; the data determine their {word} to {number(100 * both, 2)} "
+            f"%, but the values alone to {number(100 * a, 2)} and {number(100 * b, 2)} % only"
         )
     sentences += [
-        f"{path}: standard error {100 * error:.2g} % of the value, above {100 * UNSURE:g} %"
+        f"{path}: standard error {number(100 * error, 2)} % of the value, above {100 * UNSURE:g} %"
         for path, error in relative.items()
         if error > UNSURE and path not in delays
     ]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.model.parameters.paths import unit_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.studies.tuning.posterior import CONVERGED, Posterior, verdict
@@ -45,16 +46,17 @@ def posterior_sentences(posteriors: Sequence[NamedPosterior]) -> list[str]:
     posterior = posteriors[0][1]
     left_out = 100.0 * posterior.car.emulator.left_out
     sentences = [
-        f"emulator of {posterior.car.cars} cars: left-out error of a third-octave mean {np.median(left_out):.2g} % "
-        f"(median), {np.max(left_out):.2g} % (largest), included in the intervals; noise from coherence and "
-        f"averages, discrepancy of the model {100 * posterior.discrepancy:g} % in each band",
+        f"emulator of {posterior.car.cars} cars: left-out error of a third-octave mean "
+        f"{number(np.median(left_out), 2)} % (median), {number(np.max(left_out), 2)} % (largest), included in "
+        f"the intervals; noise from coherence and averages, discrepancy of the model "
+        f"{100 * posterior.discrepancy:g} % in each band",
         f"R-hat at most {max(posterior.r_hat):.3f} (limit {CONVERGED:g}), at least {min(posterior.effective):.0f} "
         "effective samples",
     ]
     if posterior.misfit > UNEXPLAINED:
         sentences.append(
-            f"the best car is {posterior.misfit:.2g} standard deviations (RMS) from the data, above {UNEXPLAINED:g}: "
-            "the intervals are too narrow; add parameters or set a larger --discrepancy"
+            f"the best car is {number(posterior.misfit, 2)} standard deviations (RMS) from the data, above "
+            f"{UNEXPLAINED:g}: the intervals are too narrow; add parameters or set a larger --discrepancy"
         )
     sentences += [f"evidence: {verdict(posteriors[0], rival)}" for rival in posteriors[1:]]
     return sentences

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.digits import number
 from vehicle.drawing.rendering.figure import COLOURS, FADED, FRF_TICKS, fading, frf_axes, saved_figure, wrapped_phase
 from vehicle.model.parameters.ranges import Range
 from vehicle.names import channel_units, channel_words
@@ -99,7 +100,7 @@ def plot_histories(path: Path, target: RecordTarget, start: Car, fitted: Car, so
     size = (11.0, 2.3 * len(channels) + 1.4)
     caption = (
         f"Measured: {source}. Start and fitted: reduced engine on the same signal. All through the low-pass filter of "
-        f"the fit ({target.lowpass:g} Hz); {time[inside][-1] - time[inside][0]:.2g} s with the highest level of "
+        f"the fit ({target.lowpass:g} Hz); {number(time[inside][-1] - time[inside][0], 2)} s with the highest level of "
         f"{time[-1] - time[0]:.3g} s"
     )
     title = f"Time histories before and after the fit: {target.name}"

@@ -6,11 +6,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from vehicle.digits import number
 from vehicle.model.parameters.paths import unit_of
 from vehicle.names import channel_words
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.differences import parameter_words
-from vehicle.runs.report.markup import Markup, joined, number, shortened, table, tag
+from vehicle.runs.report.markup import Markup, joined, shortened, table, tag
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.studies.tuning.frf_target import FrfTarget

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from vehicle.digits import number
 from vehicle.model.parameters.paths import unit_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.records.counterpart import SHARE_OF_STEP, SIGNIFICANT
@@ -25,8 +26,8 @@ def value_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
     lines = []
     for parameter in result.parameters:
         value, error = result.values[parameter.path], result.standard_errors[parameter.path]
-        spread = f"+- {error:.2g}" if math.isfinite(error) else "without a standard error"
-        share = f" ({100 * error / value:.2g} %)" if math.isfinite(error) else ""
+        spread = f"+- {number(error, 2)}" if math.isfinite(error) else "without a standard error"
+        share = f" ({number(100 * error / value, 2)} %)" if math.isfinite(error) else ""
         lines.append(
             f"{parameter.path:<{width}}  {value:.6g} {spread} {unit_of(vehicle, parameter.path)}{share}, start "
             f"{parameter.start:.6g}, bounds {parameter.low:g} to {parameter.high:g}"
@@ -79,9 +80,10 @@ def source_lines(result: TuningResult, vehicle: Vehicle) -> list[str]:
     lines = [f"{'standard error from':<{width}} {'noise':>9} {'and misfit':>11} {'shift by half a sample of lag':>30}"]
     for name, path in zip(names, free, strict=True):
         lag = result.lag_shifts[path]
-        shift = f"{lag:.2g}" if math.isfinite(lag) else "-"
+        shift = number(lag, 2) if math.isfinite(lag) else "-"
         lines.append(
-            f"{name:<{width}} {result.standard_errors[path]:>9.2g} {result.misfit_errors[path]:>11.2g} {shift:>30}"
+            f"{name:<{width}} {number(result.standard_errors[path], 2):>9} "
+            f"{number(result.misfit_errors[path], 2):>11} {shift:>30}"
         )
     return lines
 
@@ -114,7 +116,7 @@ def fit_sentences(tuned: TunedCar) -> list[str]:
         state = "settled" if final.settled else "not settled"
         sentences.append(
             f"last steps with {tuned.engine}: {len(final.largest_steps)}, {state} (last step "
-            f"{final.largest_steps[-1]:.2g} standard errors, limit {SMALL:g})"
-            + (f"; {moved[0]} moved most, by {moved[1]:+.2g} standard errors" if moved[0] else "")
+            f"{number(final.largest_steps[-1], 2)} standard errors, limit {SMALL:g})"
+            + (f"; {moved[0]} moved most, by {number(moved[1], 2)} standard errors" if moved[0] else "")
         )
     return sentences

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.frame_modes import fix_signs
 from vehicle.model.flexbody.mass_properties import MassProperties
@@ -117,8 +118,8 @@ def modes_of_matrices(
         names=tuple(names),
         remarks=(
             f"{len(body.node)} degrees of freedom, {summary}, modes above as residual flexibility",
-            f"rigid motions have up to {free.rigid_frequency:.2g} Hz from the stiffness; modes orthogonal to them and "
-            f"to each other within {free.orthogonality:.1e}",
+            f"rigid motions have up to {number(free.rigid_frequency, 2)} Hz from the stiffness; modes orthogonal to "
+            f"them and to each other within {free.orthogonality:.1e}",
         ),
         # With all attachment modes in the model the residual is zero: omit it, the attachment is rigid.
         residual={
