@@ -163,8 +163,8 @@ def frequency_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
             "wheel_mode",
             "vertical wheel mode, low [Hz]",
             low.wheel_hz,
-            "where the knuckle FRF passes 90 deg. Body torsion and strut tops were fitted to it with the plate on the "
-            "other side; docs/theory/source-choice.md has the fit of the strut tops for this side",
+            "where the knuckle FRF passes 90 deg. Fitted to it: body torsion, with the plate on the other side, and "
+            "the stiffness of the strut tops, with the plate on this side (docs/theory/source-choice.md)",
             printed=WHEEL_HZ,
             picture=KNUCKLE,
         ),

@@ -9,7 +9,7 @@ TABLE = Path(__file__).parents[2] / HOME / "results.json"
 
 
 def contradictions(study, folder):
-    """Return the rows of a quick study whose verdict is the opposite of that of the full study; undecided is none.
+    """Return the rows of a quick study that decide otherwise than the full study; an undecided quick row does not.
 
     Args:
         study: name of the study.
@@ -19,4 +19,4 @@ def contradictions(study, folder):
     quick = json.loads((folder / "results.json").read_text(encoding="utf-8"))["rows"]
     assert {f"{study}: {row['name']}" for row in quick} <= set(full)
     pairs = {row["name"]: (row["within"], full[f"{study}: {row['name']}"]) for row in quick}
-    return [name for name, verdicts in pairs.items() if set(verdicts) == {True, False}]
+    return [name for name, verdicts in pairs.items() if verdicts[0] not in (None, verdicts[1])]

@@ -34,6 +34,7 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_peak,
 )
 from scenarios.evidence import LEVELS, evidence_of, status_of
+from tests.scenarios.kept_table import contradictions
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER
@@ -47,6 +48,10 @@ def results(tmp_path_factory):
     folder = tmp_path_factory.mktemp("study") / "comfort"
     assert main(["--output", str(folder), "--quick"]) == 0
     return folder
+
+
+def test_quick_contradicts_no_verdict_of_the_full_study(results):
+    assert contradictions("comfort_sensitivity", results) == []
 
 
 def test_a_short_study_shows_that_friction_makes_a_smooth_road_worse(results):

@@ -8,6 +8,7 @@ import pytest
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import ComfortRuns, Records
 from scenarios.tornado import PARAMETERS, Bar, bar_table, ends, main, tornado_claims
+from tests.scenarios.kept_table import contradictions
 from tests.scenarios.test_comfort_sensitivity import made
 
 
@@ -23,6 +24,7 @@ def test_a_short_study_ranks_the_parameters(tmp_path):
     assert labels[0].startswith("tyre stiffness")
     assert any(label.startswith("main spring") for label in labels[-3:])
     assert [row["within"] for row in content["rows"]] == [True, True, True]
+    assert contradictions("tornado", folder) == []
 
 
 def test_ends_are_a_fifth_away_unless_said_otherwise(tmp_path):

@@ -167,6 +167,7 @@ def test_first_screen_answers_the_question(reported, tmp_path):
     # The path is that of the mode, and none is named if none carries most of it.
     first = read_run(reported.folder)
     band = main_band(*(weighted_bands(each) for each in (read_run(softer), first)))
+    assert band is not None
     mode = next(each for each in first.car.modes("sliding") if f"{each.frequency:.3g}" == moved[2])
     path = main_path(paths(first, band.axis, mode))
     assert (f"carried into the body by {path}" in told) if path else ("carried into the body" not in told)
