@@ -1,6 +1,7 @@
 # make shaker   set everything up and run the main job with a film
 # make test     set everything up, check and test
 # make check    format, lint and types only
+# make faults   every system call of every command fails once (hours) -> docs/faults.md
 # make docs     build the documentation -> docs/_build/html/index.html
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -9,7 +10,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check docs setup mjcf benchmark clean
+.PHONY: shaker test check faults docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -33,6 +34,9 @@ docs: setup
 
 mjcf: setup
 	$(BIN)/python -m vehicle.mjcf --force
+
+faults: setup
+	$(BIN)/python -m tests.faults
 
 benchmark: setup
 	$(BIN)/python -m tests.benchmarks.speed

@@ -19,7 +19,7 @@ from scenarios.claims import markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
-from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.destination import study_folder_of
 from vehicle.commands.options import VEHICLE_HELP, engine_option, resume_options
 from vehicle.commands.parser import Parser
 from vehicle.drawing.rendering.figure import COLOURS
@@ -28,7 +28,7 @@ from vehicle.model.parameters.paths import unit_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.runs.output.folder import write_json, write_text
+from vehicle.runs.output.folder import study_folder, write_json, write_text
 from vehicle.signals.analysis.ride_comfort import MEANING, UNWEIGHTED, WEIGHTED
 from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import all_tyre_words
@@ -138,23 +138,6 @@ def _job(options: argparse.Namespace) -> None:
     cases = table_cases(
         [parameter.path for parameter in RANGES], points.tolist(), [road], engine=engine, vehicle=options.vehicle
     )
-    folder = prepared_folder_of(options, options.output, rows=ROWS)
-    started = clock.perf_counter()
-    table = sweep(
-        cases,
-        RoadMeasure(lead=lead, wheel=wheel),
-        executor=make,
-        folder=folder,
-        retry_failed=options.retry_failed,
-        progress=ProgressLine("sensitivity", runs=len(cases)),
-    )
-    seconds = clock.perf_counter() - started
-    caption = (
-        f"comfort of the seat rail on the {options.road} road, RMS "
-        f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, tyres "
-        f"{all_tyre_words(cases)}, engine {engine}, seed {options.seed}"
-    )
-    text = _evaluate(options.method, folder, table, points, caption, options.seed)
     ranges = markdown(
         ("parameter", "from", "to", "unit", "why"),
         [
@@ -168,9 +151,27 @@ def _job(options: argparse.Namespace) -> None:
             for parameter in RANGES
         ],
     )
-    write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{ranges}\n")
+    output = study_folder_of(options, options.output, rows=(ROWS,))
+    with study_folder(output, force=options.force, resume=options.resume, rows=(ROWS,)) as folder:
+        started = clock.perf_counter()
+        table = sweep(
+            cases,
+            RoadMeasure(lead=lead, wheel=wheel),
+            executor=make,
+            folder=folder,
+            retry_failed=options.retry_failed,
+            progress=ProgressLine("sensitivity", runs=len(cases)),
+        )
+        seconds = clock.perf_counter() - started
+        caption = (
+            f"comfort of the seat rail on the {options.road} road, RMS "
+            f"{1e3 * road.rms:g} mm, {duration:g} s after {lead:g} s left out; {len(cases)} runs, tyres "
+            f"{all_tyre_words(cases)}, engine {engine}, seed {options.seed}"
+        )
+        text = _evaluate(options.method, folder, table, points, caption, options.seed)
+        write_text(folder / "results.md", f"# Global sensitivity of comfort\n\n{caption}\n\n{text}\n\n{ranges}\n")
     print(
-        f"{folder}: {len(cases)} runs, {len(table.failed)} failed, tyres {all_tyre_words(cases)}, {seconds:.0f} s; "
+        f"{output}: {len(cases)} runs, {len(table.failed)} failed, tyres {all_tyre_words(cases)}, {seconds:.0f} s; "
         "results.md, results.json, figures"
     )
 

@@ -15,10 +15,11 @@ import numpy as np
 from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from vehicle.commands.command_line import parse_and_run
-from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.destination import study_folder_of
 from vehicle.commands.options import engine_option, jobs_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.car import Run
+from vehicle.runs.output.folder import study_folder
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.threads import one_blas_thread
 
@@ -107,13 +108,14 @@ class Study(Generic[Subject]):
         def job(options: argparse.Namespace) -> None:
             started = clock.perf_counter()
             subject = self.load(options)
-            folder = prepared_folder_of(options, options.output)
-            findings = self.study(subject, folder, options)
-            line = findings if isinstance(findings, str) else findings.write(folder)
+            output = study_folder_of(options, options.output)
+            with study_folder(output, force=options.force) as folder:
+                findings = self.study(subject, folder, options)
+                line = findings if isinstance(findings, str) else findings.write(folder)
             if isinstance(findings, Findings):
                 for text in findings.values:
                     print(text)
-            print(f"{folder}: {line}; {clock.perf_counter() - started:.0f} s")
+            print(f"{output}: {line}; {clock.perf_counter() - started:.0f} s")
 
         return parse_and_run(self.parser, job, arguments)
 

@@ -32,15 +32,15 @@ WINGS = {
 DATA = {"inputs", "templates", "vehicles"}
 """Rooms that hold no modules."""
 
-BELOW = EVERYWHERE | {"compiler", "threads", "version"}
+BELOW = EVERYWHERE | {"compiler", "replacement", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
     "parameters": {"records"},
     "laws": {"compiler", "parameters", "records"},
     "records": {"analysis"},
-    "excitation": {"analysis", "records"},
-    "flexbody": {"analysis", "parameters", "records"},
+    "excitation": {"analysis", "records", "replacement"},
+    "flexbody": {"analysis", "parameters", "records", "replacement"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
@@ -58,7 +58,7 @@ ROOMS: dict[str, set[str]] = {
     "fmu": {"car", "laws", "linear", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
-    | {"simulation"},
+    | {"replacement", "simulation"},
     "design": {"car", "flexbody", "parameters", "simulation", "threads"},
     "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
     | {"reduced", "rendering", "report", "simulation", "threads"},
@@ -75,6 +75,7 @@ ROOMS: dict[str, set[str]] = {
     | {"sweeps", "threads", "tuning", "version"},
     "threads": set(),
     "version": set(),
+    "replacement": set(),
     "compiler": set(),
     "digits": set(),
     "errors": set(),

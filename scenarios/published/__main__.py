@@ -20,11 +20,11 @@ from scenarios.published.sources import BESIDE, BESIDE_NAME, BESIDE_STUDIES, SOU
 from scenarios.published.table import collect
 from scenarios.study import main_of
 from vehicle.commands.command_line import parse_and_run
-from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.destination import study_folder_of
 from vehicle.commands.options import jobs_option, message_options, output_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import DataError, SimulationError
-from vehicle.runs.output.folder import write_text
+from vehicle.runs.output.folder import study_folder, write_text
 
 HOME = Path("renders/published")
 """The table and the pictures of the full studies are kept under version control."""
@@ -63,7 +63,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _job(options: argparse.Namespace) -> None:
-    folder = prepared_folder_of(options, QUICK_HOME if options.quick else HOME)
+    output = study_folder_of(options, QUICK_HOME if options.quick else HOME)
     started = clock.perf_counter()
     results, seconds = {}, {}
     for number, name in enumerate(STUDIES, start=1):
@@ -77,17 +77,26 @@ def _job(options: argparse.Namespace) -> None:
         beside[name] = study_results(name, options, f"{name}_beside", (*BESIDE_STUDIES[name], "--set", *BESIDE))
     rows = collect(results, beside)
     notes = results.get(CHOICE, {}).get("notes", [])
-    write_text(folder / "results.json", json.dumps({"rows": rows, "choice": notes}, indent=1, allow_nan=False) + "\n")
-    copied = copy_pictures(results, options.runs, folder / "figures")
     left_open = [f"{name}: {row}" for name, content in results.items() for row in content.get("not_judged", {})]
-    file, link = (PAGE, f"../{HOME}/figures") if folder == HOME else (folder / PAGE.name, "figures")
-    write_text(file, page(rows, notes, link, copied, quick=options.quick, left_open=left_open))
+    with study_folder(output, force=options.force) as folder:
+        content = {"rows": rows, "choice": notes}
+        write_text(folder / "results.json", json.dumps(content, indent=1, allow_nan=False) + "\n")
+        copied = copy_pictures(results, options.runs, folder / "figures")
+        home = output == HOME
+        text = page(
+            rows, notes, f"../{HOME}/figures" if home else "figures", copied, quick=options.quick, left_open=left_open
+        )
+        if not home:
+            write_text(folder / PAGE.name, text)
+    if home:
+        write_text(PAGE, text)
+    file = PAGE if home else output / PAGE.name
     times = ", ".join(f"{name} {value:.0f}" for name, value in seconds.items())
-    print(f"{folder}: {headline(rows)}; see {file}; {clock.perf_counter() - started:.0f} s ({times})")
+    print(f"{output}: {headline(rows)}; see {file}; {clock.perf_counter() - started:.0f} s ({times})")
 
 
 def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: Path) -> list[str]:
-    """Copy the pictures of the rows at reduced size, remove old copies, and report missing pictures on standard error.
+    """Copy the pictures of the rows at reduced size, and report missing pictures on standard error.
 
     Args:
         results: study to the content of its `results.json`.
@@ -107,9 +116,6 @@ def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: 
                 copies.append(f"{study}_{name}")
             else:
                 print(f"{figure}: picture of a row, but the study did not write it", file=sys.stderr)
-    for path in folder.glob("*.png"):
-        if path.name not in copies:
-            path.unlink()
     return copies
 
 

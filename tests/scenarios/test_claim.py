@@ -27,7 +27,7 @@ from scenarios.claims import (
 )
 from scenarios.study import STUDIES, lumped_study, main_of, study_parser
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
-from vehicle.runs.output.folder import prepare_folder, write_text
+from vehicle.runs.output.folder import check_study, study_folder, write_text
 from vehicle.runs.output.written_files import MARKER
 
 HOME = Path(scenarios.__file__).parent
@@ -147,18 +147,20 @@ def test_files_hold_rows_notes_and_data(tmp_path):
 
 
 def test_empty_folder_is_taken_and_a_full_one_refused(tmp_path):
-    assert prepare_folder(tmp_path / "new" / "deep", force=False).is_dir()
-    assert prepare_folder(tmp_path / "new" / "deep", force=False).is_dir()
-    write_text(tmp_path / "new" / "deep" / "a.txt", "a")
+    folder = tmp_path / "new" / "deep"
+    folder.mkdir(parents=True)
+    assert check_study(folder, force=False) == folder
+    with study_folder(folder, force=False) as made:
+        write_text(made / "a.txt", "a")
     with pytest.raises(ConfigurationError, match="holds files already; give another folder, or --force to overwrite"):
-        prepare_folder(tmp_path / "new" / "deep", force=False)
-    assert prepare_folder(tmp_path / "new" / "deep", force=True).is_dir()
+        check_study(folder, force=False)
+    assert check_study(folder, force=True) == folder
 
 
 def test_file_in_the_way_of_a_folder_is_an_output_error(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match=r"--output .*file: cannot be made: File exists; give another folder"):
-        prepare_folder(tmp_path / "file", force=True)
+    with pytest.raises(OutputError, match=r"--output .*file: cannot be made: is a file; give another folder"):
+        check_study(tmp_path / "file", force=True)
 
 
 def test_failed_write_leaves_nothing(tmp_path):

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.runs.output.folder import check_file, folder_lock, output_folder, prepare_folder, write_text, write_whole
+from vehicle.runs.output.folder import check_file, check_study, output_folder, study_folder, write_text, write_whole
 from vehicle.runs.output.free_names import free_file, free_files, free_folder
+from vehicle.runs.output.locks import folder_lock
 from vehicle.runs.output.model_files import write_mjcf
 from vehicle.runs.output.written_files import MARKER, discard, foreign, note, written
 
@@ -98,22 +99,29 @@ def test_generated_files_of_a_clone_are_replaced(tmp_path):
 
 def test_discarding_leaves_the_files_of_others(tmp_path):
     put(tmp_path / "run", "a.csv")
-    (tmp_path / "run" / f".{os.getpid()}.a.csv").write_text("what a killed process left")
+    (tmp_path / "run" / f".a.csv.{os.getpid()}.partial.csv").write_text("what a killed process left")
+    (tmp_path / "run" / ".b.csv.lock").write_text("1\n")
     assert foreign(tmp_path / "run") == []
     (tmp_path / "run" / "mine.txt").write_text("mine")
     discard(tmp_path / "run")
     assert [path.name for path in (tmp_path / "run").iterdir()] == ["mine.txt"]
 
 
+def study(folder: Path, *names: str, force: bool = False, resume: bool = False, rows: tuple[str, ...] = ()) -> None:
+    with study_folder(folder, force=force, resume=resume, rows=rows) as made:
+        for name in names:
+            write_text(made / name, name)
+
+
 def test_studies_keep_the_same_list(tmp_path):
-    folder = prepare_folder(tmp_path / "study", force=False)
-    write_text(folder / "results.md", "text")
-    write_text(folder / "sub" / "one.csv", "text")
+    folder = tmp_path / "study"
+    study(folder, "results.md", "sub/one.csv")
     assert set(written(folder)) == {"results.md", "sub/one.csv", MARKER}
-    prepare_folder(folder, force=True)
+    study(folder, "results.md", force=True)
+    assert {path.name for path in folder.iterdir()} == {"results.md", MARKER}
     (folder / "mine.txt").write_text("mine")
     with pytest.raises(ConfigurationError, match=r"no run wrote: mine\.txt"):
-        prepare_folder(folder, force=True)
+        check_study(folder, force=True)
 
 
 def test_a_single_file_replaces_nothing_but_what_was_written_there(tmp_path):
@@ -145,16 +153,17 @@ def test_files_that_were_changed_since_are_kept(tmp_path):
     (tmp_path / "run" / "b.csv").write_text("edited by hand")
     with pytest.raises(ConfigurationError, match=r"files that were changed since a run wrote them: b\.csv; --force"):
         put(tmp_path / "run", "a.csv", force=True)
-    study = prepare_folder(tmp_path / "study", force=False, rows="rows.jsonl")
-    note(study / "rows.jsonl")  # grows: every content is the program's
-    (study / "rows.jsonl").write_text("{}\n")
-    write_text(study / "table.csv", "1")
-    prepare_folder(study, force=False, resume=True, rows="rows.jsonl")
-    (study / "table.csv").write_text("edited by hand")
+    folder, rows = tmp_path / "study", ("rows.jsonl",)
+    with study_folder(folder, force=False, rows=rows) as made:
+        note(made / "rows.jsonl")  # grows: every content is the program's
+        (made / "rows.jsonl").write_text("{}\n")
+        write_text(made / "table.csv", "1")
+    check_study(folder, force=False, resume=True, rows=rows)
+    (folder / "table.csv").write_text("edited by hand")
     for ways in ({"force": False, "resume": True}, {"force": True}):
         with pytest.raises(ConfigurationError, match=r"changed since a run wrote them: table\.csv"):
-            prepare_folder(study, rows="rows.jsonl", **ways)
-    assert (tmp_path / "run" / "b.csv").read_text() == (study / "table.csv").read_text() == "edited by hand"
+            check_study(folder, rows=rows, **ways)
+    assert (tmp_path / "run" / "b.csv").read_text() == (folder / "table.csv").read_text() == "edited by hand"
 
 
 def test_the_next_free_name_and_two_runs_at_once(tmp_path):
@@ -233,7 +242,7 @@ def test_two_runs_in_one_folder(tmp_path):
         "with output_folder(Path('run'), force=True) as made: os.kill(os.getpid(), 9)"
     )
     subprocess.run([sys.executable, "-c", killed], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)})
-    assert (tmp_path / ".run.lock").exists() and list(tmp_path.glob(".run.*.partial"))
+    assert (tmp_path / ".run.lock").exists() and (tmp_path / ".run.partial").exists()
     put(tmp_path / "run", "b.csv", force=True)
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 

@@ -15,6 +15,7 @@ import time
 import traceback
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from pathlib import Path
 from types import FrameType
 
 from vehicle.commands.parser import Parser
@@ -60,7 +61,7 @@ def run_command(job: Callable[[], None], *, debug: bool = False) -> int:
         if lost is not None and lost.getvalue():
             raise OutputError("standard output is closed: the printed results are lost")
     except KeyboardInterrupt:
-        _say("interrupted; nothing half-written is left behind")
+        _say("interrupted; no results are half-written")
         return INTERRUPTED
     except BrokenPipeError:
         _print_nowhere()
@@ -156,10 +157,23 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
             if "\0" in word:
                 raise ConfigurationError(f"argument {word!r}: contains a NUL byte, which is not allowed")
         with ExitStack() as held:
-            job(parser.parse_args(typed, argparse.Namespace(words=typed, held=held)))
+            options = parser.parse_args(typed, argparse.Namespace(words=typed, held=held))
+            _put_in_order(typed)
+            job(options)
 
     # Not from the parsed options: --debug also applies to an error of the parser.
     return run_command(work, debug="--debug" in typed)
+
+
+def _put_in_order(words: Sequence[str]) -> None:
+    """Bring to an end what a killed command left at the files and folders of a command line, with a notice."""
+    from vehicle.runs.output.work_folder import put_in_order
+
+    for text in dict.fromkeys(part for word in words for part in (word, word.partition("=")[2])):
+        if text and not text.startswith("-"):
+            put_in_order(Path(text))
+            if Path(text).parent != Path():
+                put_in_order(Path(text).parent)
 
 
 def command(parser: Callable[[], Parser], job: Callable[[argparse.Namespace], None]) -> Callable[..., int]:

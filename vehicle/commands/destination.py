@@ -37,30 +37,31 @@ def output_folder_of(options: argparse.Namespace, default: Path, *, protect: tup
     return _said(options, default, free_folder(options.held, default, protect=protect))
 
 
-def prepared_folder_of(options: argparse.Namespace, default: Path, *, rows: str = "") -> Path:
-    """Choose and make the folder of a study, a sweep or a search, which write their files step by step.
+def study_folder_of(options: argparse.Namespace, default: Path, *, rows: Sequence[str] = ()) -> Path:
+    """Choose the folder of a study, a sweep or a search; its files are made in `study_folder`.
 
     Args:
         options: parsed options of `output_options`, and of `resume_options` if the command has them.
         default: folder without --output, see `output_folder_of`.
-        rows: name of the file of finished rows, see `prepare_folder`.
+        rows: names of the files of finished rows, see `study_folder`.
 
     Returns:
         The folder, locked until the command ends.
 
     Raises:
-        ConfigurationError, OutputError: see `prepare_folder`.
+        ConfigurationError, OutputError: see `check_study`.
     """
-    from vehicle.runs.output.folder import claim, prepare_folder
+    from vehicle.runs.output.folder import check_study
     from vehicle.runs.output.free_names import free_folder
+    from vehicle.runs.output.locks import claim
 
     resume = getattr(options, "resume", False)
-    if is_named(options) or options.force or resume:
-        folder = options.output if is_named(options) else default
-        options.held.enter_context(claim(folder.resolve()))
-    else:
-        folder = _said(options, default, free_folder(options.held, default))
-    return prepare_folder(folder, force=options.force, resume=resume, rows=rows)
+    if not (is_named(options) or options.force or resume):
+        return _said(options, default, free_folder(options.held, default))
+    folder = options.output if is_named(options) else default
+    options.held.enter_context(claim(folder.resolve()))
+    check_study(folder, force=options.force, resume=resume, rows=rows)
+    return folder
 
 
 def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[str]) -> list[Path]:
@@ -78,8 +79,9 @@ def output_files_of(options: argparse.Namespace, folder: Path, names: Sequence[s
         ConfigurationError: a file exists in the folder of --output, and --force is missing or it is of the user.
         OutputError: the folder cannot be written.
     """
-    from vehicle.runs.output.folder import check_files, claim
+    from vehicle.runs.output.folder import check_files
     from vehicle.runs.output.free_names import free_files
+    from vehicle.runs.output.locks import claim
 
     if is_named(options) or options.force:
         folder = options.output if is_named(options) else folder

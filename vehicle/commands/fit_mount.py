@@ -44,7 +44,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.mount_plot import plot_mount
-    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.studies.mounts.measured_stiffness import read_stiffness
     from vehicle.studies.mounts.mount_fit import fit_mount
     from vehicle.studies.mounts.mount_text import TITLES, caption_of, points_text, summary_lines, vehicle_lines
@@ -53,13 +53,15 @@ def _job(options: argparse.Namespace) -> None:
     lines, table, picture = output_files_of(options, Path("runs/mount"), FILES)
     fits = fit_mount(data, None if options.law == "auto" else (options.law,))
     best, caption = fits[0], caption_of(data, options.file.name)
-    write_text(lines, vehicle_lines(best, caption))
-    write_text(table, points_text(best, data))
+    paths = (lines, table, picture)
     title = f"{TITLES[best.law.name].capitalize()}: points and fitted curves"
-    write_whole(picture, lambda path: plot_mount(path, _curves(best, data), title, caption))
+    with whole_files(paths) as (new_lines, new_table, new_picture):
+        write_text(new_lines, vehicle_lines(best, caption))
+        write_text(new_table, points_text(best, data))
+        write_whole(new_picture, lambda path: plot_mount(path, _curves(best, data), title, caption))
     if not options.quiet:
         print("\n".join(summary_lines(fits, caption)))
-        print(f"files: {lines.parent}: {', '.join(path.name for path in (lines, table, picture))}")
+        print(f"files: {lines.parent}: {', '.join(path.name for path in paths)}")
 
 
 def _curves(fit: MountFit, data: MeasuredStiffness) -> list[MountCurve]:

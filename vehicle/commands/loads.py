@@ -48,7 +48,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.load_plot import plot_loads
-    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.signals.analysis.load_spectrum import load_spectrum
     from vehicle.signals.records.reader import read_columns, time_file
     from vehicle.signals.records.run_summary import available_summary
@@ -72,12 +72,14 @@ def _job(options: argparse.Namespace) -> None:
         f"{source.name}, {duration:g} s{f'; tyres {tyres}' if tyres else ''}; rainflow counts of ASTM E1049; "
         f"equivalent amplitude: one cycle a second of equal damage, slope {options.slope:g}"
     )
-    write_text(table, _table(spectra_of_channels, caption))
-    write_text(spectra, _spectra(spectra_of_channels, caption, options.classes))
-    write_whole(picture, lambda path: plot_loads(path, spectra_of_channels, caption))
+    paths = (table, spectra, picture)
+    with whole_files(paths) as (new_table, new_spectra, new_picture):
+        write_text(new_table, _table(spectra_of_channels, caption))
+        write_text(new_spectra, _spectra(spectra_of_channels, caption, options.classes))
+        write_whole(new_picture, lambda path: plot_loads(path, spectra_of_channels, caption))
     if not options.quiet:
         print(_report(spectra_of_channels, caption))
-        print(f"files: {table.parent}: {', '.join(path.name for path in (table, spectra, picture))}")
+        print(f"files: {table.parent}: {', '.join(path.name for path in paths)}")
 
 
 def _chosen(text: str | None, units: Mapping[str, str], source: Path) -> list[str]:

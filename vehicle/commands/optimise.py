@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import shlex
-import sys
 from pathlib import Path
 
 from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import prepared_folder_of
+from vehicle.commands.destination import study_folder_of
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
@@ -115,10 +114,12 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.model.parameters.ranges import parsed_variation
     from vehicle.runs.car import Car
+    from vehicle.runs.output.folder import study_folder
     from vehicle.studies.optimisation.car_search import plan_search, require_counts
     from vehicle.studies.optimisation.car_table import CARS
     from vehicle.studies.optimisation.problem import parsed_tolerance
     from vehicle.studies.optimisation.search_files import read_other_front
+    from vehicle.studies.optimisation.stored_search import SEARCH
     from vehicle.studies.sweeps.executors import executor_factory
 
     require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
@@ -139,8 +140,9 @@ def _job(options: argparse.Namespace) -> None:
     )
     beside = None if options.beside is None else read_other_front(options.beside, plan.trials.problem)
     make = executor_factory(options.executor, options.jobs)
-    folder = prepared_folder_of(options, options.output, rows=CARS)
-    try:
+    rows = (CARS, SEARCH)
+    output = study_folder_of(options, options.output, rows=rows)
+    with study_folder(output, force=options.force, resume=options.resume, rows=rows) as folder:
         cars = plan.run(
             folder,
             cars=options.cars,
@@ -149,12 +151,9 @@ def _job(options: argparse.Namespace) -> None:
             check=options.check,
             progress=ProgressLine("optimise  ", enabled=not options.quiet),
         )
-    except KeyboardInterrupt:
-        print(f"{folder}: finished generations are kept; --resume goes on", file=sys.stderr)
-        raise
-    cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
+        cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
     if not options.quiet:
-        print(cars.text(folder, beside))
+        print(cars.text(output, beside))
 
 
 main = command(parser, _job)

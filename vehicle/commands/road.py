@@ -47,7 +47,7 @@ def parser() -> Parser:
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.road_plot import plot_road
     from vehicle.model.parameters.vehicle import load_vehicle
-    from vehicle.runs.output.folder import write_whole
+    from vehicle.runs.output.folder import whole_files, write_whole
     from vehicle.runs.output.free_names import named_file
     from vehicle.signals.excitation.obstacle import Obstacle
     from vehicle.signals.excitation.road_drive import RoadDrive
@@ -71,11 +71,13 @@ def _job(options: argparse.Namespace) -> None:
         beside = {f"road_{wheel} [m]": signal.profile[wheel] for wheel in signal.wheels}
         beside |= {f"slope_{wheel} [-]": slopes[wheel] for wheel in signal.wheels}
         comments.append("displacement and slope: what the tyre takes of the road below it")
-    write_whole(path, lambda file: write_signal(file, signal, [signal.source, *comments], beside=beside))
-    if options.figures and isinstance(drive, RoadDrive):
-        distance, tracks = _shown_tracks(drive, signal, slopes)
-        title = drive.name.replace("_", " ")
-        write_whole(picture, lambda file: plot_road(file, distance, tracks, title, signal.source))
+    with whole_files([path, picture]) as (new_path, new_picture):
+        comments = [signal.source, *comments]
+        write_whole(new_path, lambda file: write_signal(file, signal, comments, beside=beside))
+        if options.figures and isinstance(drive, RoadDrive):
+            distance, tracks = _shown_tracks(drive, signal, slopes)
+            title = drive.name.replace("_", " ")
+            write_whole(new_picture, lambda file: plot_road(file, distance, tracks, title, signal.source))
     if not options.quiet:
         sizes = ", ".join(f"{wheel} {1e3 * float(z.std()):.3g}" for wheel, z in signal.displacement.items())
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")

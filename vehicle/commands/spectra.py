@@ -46,7 +46,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.spectra_plot import plot_road_levels, plot_spectra
-    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.runs.output.spectra_files import picture_columns, spectra_text, third_octaves_text
     from vehicle.signals.records.reader import time_file
     from vehicle.signals.records.record_spectra import record_spectra
@@ -70,15 +70,17 @@ def _job(options: argparse.Namespace) -> None:
     folder = time_file(options.runs[0]).parent if len(runs) == 1 else Path("runs/spectra")
     paths = dict(zip(files, output_files_of(options, folder, files), strict=True))
     caption = "; ".join(f"{name}: {run.caption}" if len(runs) > 1 else run.caption for name, run in by_name.items())
-    write_text(paths["spectra.csv"], spectra_text(by_name, caption))
-    write_text(paths["third_octaves.csv"], third_octaves_text(by_name, caption))
     spectra = {name: run.channels for name, run in by_name.items()}
-    for file, (title, columns) in pictures.items():
-        plot = partial(plot_spectra, runs=spectra, channels=columns, title=title, caption=caption)
-        write_whole(paths[file], plot)
-    if levels:
-        title = "Roads against the classes of ISO 8608"
-        write_whole(paths["spectra_road.png"], lambda path: plot_road_levels(path, levels, title, caption))
+    with whole_files(list(paths.values())) as temporary:
+        new = dict(zip(files, temporary, strict=True))
+        write_text(new["spectra.csv"], spectra_text(by_name, caption))
+        write_text(new["third_octaves.csv"], third_octaves_text(by_name, caption))
+        for file, (title, columns) in pictures.items():
+            plot = partial(plot_spectra, runs=spectra, channels=columns, title=title, caption=caption)
+            write_whole(new[file], plot)
+        if levels:
+            title = "Roads against the classes of ISO 8608"
+            write_whole(new["spectra_road.png"], lambda path: plot_road_levels(path, levels, title, caption))
     if not options.quiet:
         print("\n".join(_report(by_name)))
         print(f"files: {paths['spectra.csv'].parent}: {', '.join(path.name for path in paths.values())}")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.chosen_inputs import chosen_inputs
 from vehicle.commands.command_line import ProgressLine, command
-from vehicle.commands.destination import prepared_folder_of, report_path
+from vehicle.commands.destination import report_path, study_folder_of
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
@@ -69,7 +69,7 @@ def _job(options: argparse.Namespace) -> None:
     # Heavy packages are imported after the arguments are known to be good.
     from vehicle.errors import ConfigurationError, SimulationError
     from vehicle.runs.car import Car
-    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.runs.output.folder import study_folder, write_text, write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.executors import executor_factory
@@ -86,12 +86,12 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
     make = executor_factory(options.executor, options.jobs)
-    folder = prepared_folder_of(options, options.output, rows=ROWS)
-    report = None if options.report is None else report_path(options, folder)
+    output = study_folder_of(options, options.output, rows=(ROWS,))
+    report = None if options.report is None else report_path(options, output)
     notes = (*plan.notes, *plan.engine_notes())
     for text in () if options.quiet else notes:
         print(f"note        {text}")
-    try:
+    with study_folder(output, force=options.force, resume=options.resume, rows=(ROWS,)) as folder:
         table = plan.run(
             executor=make,
             folder=folder,
@@ -100,25 +100,22 @@ def _job(options: argparse.Namespace) -> None:
             progress=ProgressLine("sweep     ", enabled=not options.quiet, runs=len(plan.cases)),
             notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
         )
-    except KeyboardInterrupt:
-        print(f"{folder}: finished rows are kept; --resume goes on", file=sys.stderr)
-        raise
-    cars = ranked_cars(table)
-    drawn = cars is not None and can_be_drawn(cars)
-    caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
-    if cars is not None and drawn:
-        write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, caption))
-    if report is not None:
-        command = f"python -m vehicle sweep {shlex.join(options.words)}"
-        head = {"author": options.author, "project": options.project}
-        page = sweep_page(table, car.vehicle.name, caption=caption, command=command, notes=notes, **head)
-        write_text(folder / report if report.parent == Path() else report, page)
+        cars = ranked_cars(table)
+        drawn = cars is not None and can_be_drawn(cars)
+        caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
+        if cars is not None and drawn:
+            write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, caption))
+        if report is not None:
+            command = f"python -m vehicle sweep {shlex.join(options.words)}"
+            head = {"author": options.author, "project": options.project}
+            page = sweep_page(table, car.vehicle.name, caption=caption, command=command, notes=notes, **head)
+            write_text(folder / report if report.parent == Path() else report, page)
     if not options.quiet:
         more = "" if report is None else f"{report}, "
         more += f"{PICTURE}, " if drawn else ""
-        more += f"{DIFFERENCES} (comfort against the first car), " if (folder / DIFFERENCES).exists() else ""
+        more += f"{DIFFERENCES} (comfort against the first car), " if (output / DIFFERENCES).exists() else ""
         print(
-            f"{folder}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
+            f"{output}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
             f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
         if cars is not None:

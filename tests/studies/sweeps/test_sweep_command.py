@@ -159,7 +159,7 @@ def test_a_car_that_fails_has_no_note_on_the_engine():
 
 
 def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
-    from vehicle.runs.output.folder import folder_lock
+    from vehicle.runs.output.locks import folder_lock
 
     arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
     (tmp_path / ".out.lock").write_text("999999\n", encoding="utf-8")  # of a killed process: nobody holds it

@@ -6,7 +6,6 @@ nodes and hundreds of modes, for which reading text would take longer than the r
 
 from __future__ import annotations
 
-import tempfile
 import tomllib
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from vehicle.errors import DataError, OutputError
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.superelement_npz import arrays, of_arrays
 from vehicle.model.flexbody.superelement_toml import lines, of_tables
+from vehicle.replacement import replaced_file
 
 
 def read_superelement(path: Path) -> Superelement:
@@ -46,7 +46,7 @@ def read_superelement(path: Path) -> Superelement:
 
 
 def write_superelement(path: Path, superelement: Superelement) -> None:
-    """Write a modal superelement with all digits, to a temporary file in the same folder that is renamed when complete.
+    """Write a modal superelement with all digits; an existing file is replaced when the new one is complete.
 
     Args:
         path: file to write, npz if its suffix is `.npz`, else TOML.
@@ -57,16 +57,10 @@ def write_superelement(path: Path, superelement: Superelement) -> None:
     """
     binary = path.suffix == ".npz"
     data = arrays(superelement) if binary else ("\n".join(lines(superelement)) + "\n").encode()
-    temporary = ""
     try:
-        with tempfile.NamedTemporaryFile("wb", dir=path.parent, delete=False) as file:
-            temporary = file.name
-            file.write(data)
-        Path(temporary).chmod(0o644)  # a temporary file is private, a data file is not
-        Path(temporary).replace(path)
+        with replaced_file(path) as temporary:
+            temporary.write_bytes(data)
     except OSError as error:
-        if temporary:
-            Path(temporary).unlink(missing_ok=True)
         raise OutputError(
             f"{path}: cannot be written ({error}). Check the folder, its permissions and space."
         ) from error

@@ -1,32 +1,24 @@
-"""Folder of a run: written under a temporary name and renamed when complete."""
+"""Results of a command, a folder or files: checked before the computation, made whole, put in place in one step."""
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
-import shutil
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.runs.output.written_files import (
-    MARKER,
-    UNFINISHED,
-    digest_of,
-    discard,
-    mark,
-    note,
-    refuse_foreign,
-    refuse_foreign_file,
-)
+from vehicle.replacement import is_being_made, replaced_file
+from vehicle.runs.output.locks import folder_lock
+from vehicle.runs.output.work_folder import new_files, new_folder, put_in_order, unfinished
+from vehicle.runs.output.written_files import MARKER, digest_of, note, refuse_foreign, refuse_foreign_file
 
 
 @contextmanager
 def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Iterator[Path]:
-    """Yield a temporary folder; on success it is renamed to `path`, on failure removed.
+    """Yield a hidden folder; on success it takes the place of `path` in one step, on failure it is removed.
 
     Args:
         path: final folder; a link is resolved.
@@ -34,81 +26,85 @@ def output_folder(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) ->
         protect: input files; a folder that contains one of them is never replaced.
 
     Yields:
-        The temporary folder, in the same parent folder.
+        The hidden folder, in the same parent folder.
 
     Raises:
         ConfigurationError: see `check_output`, or another process writes there.
         OutputError: the folder cannot be written.
     """
     path = check_output(path, force=force, protect=protect)
-    temporary = path.parent / f".{path.name}.{os.getpid()}.partial"
-    with folder_lock(path):
-        try:
-            for left in path.parent.glob(f".{path.name}.*.partial"):
-                shutil.rmtree(left, ignore_errors=True)  # of a killed run: a living one holds the lock
-            temporary.mkdir()
-            mark(temporary)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written: {error.strerror}; choose another --output") from None
-        try:
-            yield temporary
-            if path.exists():
-                if not force:  # made meanwhile
-                    raise ConfigurationError(f"{path}: exists by now; give --force or another --output")
-                refuse_foreign(path)
-                discarded = path.parent / f".{path.name}.{os.getpid()}.old"
-                path.rename(discarded)
-                temporary.rename(path)
-                discard(discarded)
-            else:
-                temporary.rename(path)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing is left behind") from None
-        finally:
-            shutil.rmtree(temporary, ignore_errors=True)
+
+    def check() -> None:
+        if path.exists():
+            if not force:  # made meanwhile
+                raise ConfigurationError(f"{path}: exists by now; give --force or another --output")
+            refuse_foreign(path)
+
+    with folder_lock(path), new_folder(path, check=check) as work:
+        yield work
 
 
-def prepare_folder(folder: Path, *, force: bool, resume: bool = False, rows: str = "") -> Path:
-    """Make, or continue, the folder of a study, a sweep or a search, which write their files step by step.
+@contextmanager
+def study_folder(folder: Path, *, force: bool, resume: bool = False, rows: Sequence[str] = ()) -> Iterator[Path]:
+    """Yield the hidden folder of a study, a sweep or a search, whose finished rows survive its end.
 
     Args:
-        folder: the folder.
-        force: write into a folder with results.
-        resume: continue with the finished rows.
-        rows: name of the file of finished rows, which `force` deletes; empty for a job that cannot be continued.
+        folder: final folder; it keeps the results of before until the new ones are complete.
+        force: replace results.
+        resume: begin with the finished rows: of a killed command, else of the folder.
+        rows: files with the finished rows; none for a job that cannot be continued.
 
-    Returns:
-        The folder.
+    Yields:
+        The hidden folder, which takes the place of the final one in one step.
 
     Raises:
-        ConfigurationError: the folder has results, and not exactly one of both is set; or it has files of the user; or
-            another process writes there.
+        ConfigurationError: see `check_study`.
+        OutputError: the folder cannot be made, or is no folder.
+    """
+    path = check_study(folder, force=force, resume=resume, rows=rows)
+
+    def check() -> None:
+        refuse_foreign(path, changes_only=resume)
+
+    with folder_lock(path), new_folder(path, check=check, rows=rows, resume=resume) as work:
+        yield work
+
+
+def check_study(folder: Path, *, force: bool, resume: bool = False, rows: Sequence[str] = ()) -> Path:
+    """Check the folder of a study before the computation; arguments as in `study_folder`.
+
+    Returns:
+        The folder without links.
+
+    Raises:
+        ConfigurationError: the folder has results, or a killed command left finished rows, and not exactly one of
+            `force` and `resume` is set; or it has files of the user.
         OutputError: the folder cannot be made, or is no folder.
     """
     if resume and force:
         raise ConfigurationError("--resume keeps the finished rows, --force deletes them: set only one of them")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        begun = (folder / rows).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
-        if begun and not (resume or force):
-            ways = (
-                "finished runs; --resume goes on, --force starts anew"
-                if rows
-                else ("files already; give another folder, or --force to overwrite")
-            )
-            raise ConfigurationError(f"--output {folder}: holds {ways}")
-        with folder_lock(folder.resolve()):
-            refuse_foreign(folder, changes_only=resume and begun)
-            mark(folder)
-            if force and rows:
-                (folder / rows).unlink(missing_ok=True)
-    except OSError as error:
-        raise OutputError(f"--output {folder}: cannot be made: {error.strerror}; give another folder") from None
-    return folder
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"--output {folder}: cannot be made: is a file; give another folder")
+    put_in_order(folder)
+    begun = folder.exists() and (
+        (folder / rows[0]).exists() if rows else any(path.name != MARKER for path in folder.iterdir())
+    )
+    if (begun or (rows and unfinished(folder.resolve()))) and not (resume or force):
+        ways = (
+            "finished runs; --resume goes on, --force starts anew"
+            if rows
+            else "files already; give another folder, or --force to overwrite"
+        )
+        raise ConfigurationError(f"--output {folder}: holds {ways}")
+    return check_output(folder, force=True, changes_only=resume and begun)
 
 
-def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> Path:
-    """Check an output folder before the computation.
+def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), changes_only: bool = False) -> Path:
+    """Check an output folder before the computation, and put in order what a killed command left there.
+
+    Args:
+        path, force, protect: see `output_folder`.
+        changes_only: see `refuse_foreign`.
 
     Returns:
         The folder without links.
@@ -123,6 +119,7 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
         current = Path.cwd()
     except (OSError, RuntimeError) as error:
         raise OutputError(f"--output {path}: cannot be reached ({error}); choose another folder") from None
+    put_in_order(folder)
     for file in protect:
         source = file.resolve()
         if folder == source or folder in source.parents:
@@ -133,11 +130,18 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = ()) -> 
         raise ConfigurationError(f"--output {path}: is a file; give a folder")
     if folder.exists() and not force:
         raise ConfigurationError(f"--output {path}: exists; give --force to replace it, or another folder")
+    if not force and unfinished(folder):
+        raise ConfigurationError(
+            f"--output {path}: a killed command left finished rows there; continue it with --resume, give --force to "
+            "delete them, or another folder"
+        )
+    if folder.is_mount():
+        raise ConfigurationError(f"--output {path}: is the root of a file system; give a folder in it")
     parent = next(parent for parent in folder.parents if parent.exists())
     if not os.access(parent, os.W_OK) or not parent.is_dir():
         raise OutputError(f"--output {path}: {parent} cannot be written; choose another folder")
     if folder.exists():
-        refuse_foreign(folder)
+        refuse_foreign(folder, changes_only=changes_only)
     return folder
 
 
@@ -162,6 +166,7 @@ def check_file(
         raise ConfigurationError(f"{option} {path}: this file is written as {ending}; give FILE{ending}")
     if path.is_dir():
         raise ConfigurationError(f"{option} {path}: is a folder; give FILE{ending}")
+    put_in_order(path)
     if any(file.resolve() == path.resolve() for file in protect):
         raise ConfigurationError(f"{option} {path}: is an input of this command; give another name")
     if path.exists() or path.is_symlink():
@@ -193,91 +198,9 @@ def check_files(folder: Path, names: Iterable[str], *, force: bool) -> None:
         check_file(folder / name, force=force)
 
 
-_claimed: set[Path] = set()
-"""Folders and files that this command has locked until its end, see `claim`."""
-
-
-class OccupiedError(ConfigurationError):
-    """Error if another process writes to the same folder or file."""
-
-
-@contextmanager
-def claim(path: Path) -> Iterator[None]:
-    """Lock a folder or a file that a command writes later; `folder_lock` in this process does not block.
-
-    Args:
-        path: resolved path.
-
-    Raises:
-        OccupiedError, OutputError: see `folder_lock`.
-    """
-    if path in _claimed:
-        raise OccupiedError(f"--output {path}: is written twice by this command; give another name")
-    with folder_lock(path):
-        _claimed.add(path)
-        try:
-            yield
-        finally:
-            _claimed.discard(path)
-
-
-@contextmanager
-def folder_lock(folder: Path) -> Iterator[None]:
-    """Lock a folder or a file against writing by other processes.
-
-    The kernel releases the lock of a process that ends, so the lock file of a killed process does not block.
-
-    Raises:
-        OccupiedError: another process writes there; the message contains its process id.
-        OutputError: the parent of the folder cannot be written.
-    """
-    if folder in _claimed:
-        yield
-        return
-    path = folder.parent / f".{folder.name}.lock"
-    new_folders = [parent for parent in path.parents if not parent.exists()]
-    try:
-        descriptor = _opened(path)
-    except OSError as error:
-        raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another --output") from None
-    try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if not os.fstat(descriptor).st_nlink:
-                raise BlockingIOError  # the other one finished between the two calls
-        except BlockingIOError:
-            owner = os.read(descriptor, 20).decode(errors="replace").strip()
-            raise OccupiedError(
-                f"--output {folder}: process {owner or '(unknown)'} is writing there; wait for it, or give another "
-                "folder"
-            ) from None
-        except OSError:
-            pass  # the file system does not support locks
-        os.truncate(descriptor, 0)
-        os.write(descriptor, f"{os.getpid()}\n".encode())
-        try:
-            yield
-        finally:
-            path.unlink(missing_ok=True)
-    finally:
-        os.close(descriptor)
-        with suppress(OSError):  # a folder that is in use by now
-            for parent in new_folders:
-                parent.rmdir()
-
-
-def _opened(path: Path) -> int:
-    """Open a lock file, whose folder another process may remove in between."""
-    for _ in range(5):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with suppress(FileNotFoundError):
-            return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
-    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
-
-
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Yield a temporary name for a file; on success, rename it and add its name and digest to the list of its folder.
+    """Yield a name for a file; on success, it takes the place of `path` and is added to the list of its folder.
 
     Args:
         path: final name.
@@ -287,22 +210,38 @@ def whole_file(path: Path) -> Iterator[Path]:
 
     Raises:
         ConfigurationError: the existing file is of the user, or was edited.
-        OutputError: the file cannot be written; the temporary file is deleted.
+        OutputError: the file cannot be written; an existing file is unchanged.
     """
+    if is_being_made(path):  # errors are those of the folder that is being made
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield path
+        note(path, digest_of(path))
+        return
     if path.is_dir():
         raise OutputError(f"{path}: cannot be written: is a folder; nothing is left behind")
-    refuse_foreign_file(path)
-    temporary = path.with_name(f".{os.getpid()}.{path.name}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        note(path, UNFINISHED)
+    put_in_order(path)
+    with folder_lock(path.parent.resolve() / path.name):
+        refuse_foreign_file(path)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with replaced_file(path) as temporary:
+                yield temporary
+                note(path, digest_of(temporary))
+        except OSError as error:
+            kept = "the file of before is unchanged" if path.exists() else "nothing is left behind"
+            raise OutputError(f"{path}: cannot be written: {error.strerror or error}; {kept}") from None
+
+
+@contextmanager
+def whole_files(paths: Sequence[Path]) -> Iterator[list[Path]]:
+    """Yield names for several files of one folder and below; on success, all take their places; see `whole_file`.
+
+    Args:
+        paths: final names; a file that the body does not write is not changed.
+    """
+    put_in_order(paths[0])
+    with folder_lock(paths[0].parent.resolve() / paths[0].name), new_files(paths) as temporary:
         yield temporary
-        note(path, digest_of(temporary))
-        temporary.replace(path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror or error}; nothing is left behind") from None
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:

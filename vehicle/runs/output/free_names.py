@@ -8,7 +8,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.runs.output.folder import OccupiedError, check_file, check_output, claim
+from vehicle.runs.output.folder import check_file, check_output
+from vehicle.runs.output.locks import OccupiedError, claim
+from vehicle.runs.output.work_folder import put_in_order, unfinished
 
 MOST = 10_000
 """Maximum number in a name, as low-10000; more runs of one input are not expected."""
@@ -121,7 +123,8 @@ def _claimed_if_free(held: ExitStack, path: Path, number: int) -> bool:
     """Lock a free path; return False if the path exists or another process writes there."""
     if number > MOST:
         raise ConfigurationError(f"{path}: exists, as do the {MOST} names before it; give --output")
-    if path.exists() or path.is_symlink():
+    put_in_order(path)
+    if path.exists() or path.is_symlink() or unfinished(path.parent.resolve() / path.name):
         return False
     with ExitStack() as attempt:
         try:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from vehicle.runs.output.folder import check_files, write_whole
+from vehicle.runs.output.folder import check_files, whole_files, write_whole
 from vehicle.runs.output.written_files import is_own, mark
 
 
@@ -26,11 +26,13 @@ def write_mjcf(folder: Path, files: Mapping[str, bytes]) -> None:
     check_files(folder, [*files, *(f"meshes/{path.name}" for path in old)], force=True)
     folder.mkdir(parents=True, exist_ok=True)
     mark(folder)
+    names = sorted(files, key=lambda name: ("/" in name, name))  # the folder is that of the first file
+    with whole_files([folder / name for name in names]) as paths:
+        for path, name in zip(paths, names, strict=True):
+            write_whole(path, partial(_write, content=files[name]))
     for path in old:
         if is_own(path):
             path.unlink()
-    for name, content in files.items():
-        write_whole(folder / name, partial(_write, content=content))
 
 
 def _write(path: Path, content: bytes) -> None:

@@ -13,6 +13,7 @@ from vehicle.names import in_order
 from vehicle.runs.car import Car, Run
 from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
+from vehicle.runs.output.work_folder import put_in_order
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.reader import read_columns
 from vehicle.signals.records.run_summary import SUMMARY_FILE, RunSummary, read_summary
@@ -74,6 +75,7 @@ def load_run(folder: Path | str) -> Run:
         DataError: a file of it is missing or damaged.
     """
     folder = Path(folder)
+    put_in_order(folder)
     summary = read_summary(folder)
     car, recording = Car.load(file_of_run(folder, summary, "vehicle")), read_recording(folder, summary)
     excitation = summary["input"]

@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.names import CORNERS, in_order, is_wheel
+from vehicle.replacement import replaced_file
 from vehicle.signals.excitation.chosen_plates import WHEEL_REMEDY, chosen_plates
 from vehicle.signals.excitation.plausibility import aliasing_notices, check_level, clipping, drifts, pauses
 from vehicle.signals.excitation.rest import start_from_rest
@@ -311,12 +312,10 @@ def write_signal(
     errors = {digits: np.max(np.abs(np.round(signal.time, digits) - signal.time)) for digits in range(3, 12)}
     digits = next((digits for digits, error in errors.items() if error < 1e-6 * signal.timestep), 12)
     forms = ",".join([f"%.{digits}f", *(["%.6e"] * (len(names) + len(further)))])
-    temporary = path.with_name(f".{path.name}.partial")
     try:
-        write_table(temporary, [TIME, *(f"{name} [m]" for name in names), *further], columns, comments, forms)
-        temporary.replace(path)
+        with replaced_file(path) as temporary:
+            write_table(temporary, [TIME, *(f"{name} [m]" for name in names), *further], columns, comments, forms)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
         raise OutputError(
             f"{path}: cannot be written ({error.strerror}); check the folder, its permissions and the space"
         ) from error

@@ -249,9 +249,11 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
 
     Raises:
         MissingPartError: h5py is not installed.
+        OSError: the file cannot be written.
     """
     h5py = extra("h5py", "hdf5", "writing HDF5")
-    with h5py.File(path, "w") as file:
+    # The file is made in memory: an error as HDF5 closes a file on a full disk cannot be caught, and ends the process.
+    with h5py.File(path.name, "w", driver="core", backing_store=False) as file:
         file.attrs["program"] = description
         for number, channel in enumerate(channels, 1):
             array = file.create_dataset(f"{number:04d}", data=channel.values, compression="gzip", compression_opts=4)
@@ -267,3 +269,6 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
                 array.attrs["step"] = 0.0 if step is None else step
                 if step is None:
                     file.create_dataset(f"{AXES}/{number:04d}", data=channel.axis)
+        file.flush()
+        image = file.id.get_file_image()
+    path.write_bytes(image)

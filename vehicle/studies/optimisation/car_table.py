@@ -45,13 +45,13 @@ class CarTable:
     def __init__(self, path: Path, problem: Problem) -> None:
         self.path, self.problem = path, problem
         self.generations: list[TriedCars] = []
-        self._cars = 0
+        self._first = [0]  # number of the first car of each generation, and of the next one
         self._head = ["car", "generation", *columns(problem), "failed because"]
-        stored = self._read() if path.exists() else []
-        write_text(path, _text([self._head]))
+        for tried in self._read() if path.exists() else ():
+            self._take(tried)
+        rows = [row for number, tried in enumerate(self.generations) for row in self._rows(tried, number)]
+        write_text(path, _text([self._head, *rows]))
         note(path)  # the file grows from now on
-        for tried in stored:
-            self.add(tried)
 
     def add(self, tried: TriedCars) -> None:
         """Append a generation to the file.
@@ -59,17 +59,24 @@ class CarTable:
         Raises:
             OutputError: the file cannot be written.
         """
-        rows = [
-            [str(self._cars + i), str(len(self.generations)), *cells(point), *cells(values), reason.replace("\n", " ")]
-            for i, (point, values, reason) in enumerate(zip(tried.points, tried.values, tried.reasons, strict=True))
-        ]
         try:
             with self.path.open("a", encoding="utf-8") as file:
-                file.write(_text(rows))
+                file.write(_text(self._rows(tried, len(self.generations))))
         except OSError as error:
             raise OutputError(f"{self.path}: cannot be written: {error.strerror}; continue with --resume") from None
-        self._cars += len(rows)
+        self._take(tried)
+
+    def _take(self, tried: TriedCars) -> None:
+        self._first.append(self._first[-1] + len(tried.reasons))
         self.generations.append(tried)
+
+    def _rows(self, tried: TriedCars, generation: int) -> list[list[str]]:
+        """Return the rows of a generation."""
+        each = enumerate(zip(tried.points, tried.values, tried.reasons, strict=True), start=self._first[generation])
+        return [
+            [str(car), str(generation), *cells(point), *cells(values), reason.replace("\n", " ")]
+            for car, (point, values, reason) in each
+        ]
 
     def _read(self) -> list[TriedCars]:
         """Read all generations of the file except the last."""

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import ConfigurationError
-from vehicle.runs.output.folder import folder_lock, write_json
+from vehicle.runs.output.folder import write_json
+from vehicle.runs.output.locks import folder_lock
 from vehicle.studies.optimisation.car_table import CARS, CarTable
 from vehicle.studies.optimisation.problem import Vector
 from vehicle.studies.optimisation.search import TriedCars, search

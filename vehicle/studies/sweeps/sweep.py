@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from vehicle.model.parameters.driving import tyre_words
-from vehicle.runs.output.folder import folder_lock
+from vehicle.runs.output.locks import folder_lock
 from vehicle.studies.sweeps.case import Case, drivings
 from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block

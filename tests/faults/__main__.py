@@ -1,0 +1,88 @@
+"""`make faults`: every system call of every command fails once, random kills; writes the table `docs/faults.md`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from tests.faults.cases import FAULTS
+from tests.faults.commands import commands
+from tests.faults.table import ROOT, Count, build, counted, outcomes
+
+PAGE = ROOT / "docs" / "faults.md"
+
+HEAD = """# Faults
+
+Nothing that was written is lost, shown as in the tests of SQLite: a preloaded library makes the n-th system call (open,
+read access, write, sync, rename, removal, memory map, close, new folder) of a command fail, or kills the process there.
+Each command replaces results of another input (`--force`). After each case the results must be those of before, byte
+for byte, or the new ones, complete; the exit code and the message must be true; what is left must be mentioned, and the
+next command must succeed, say what it found, and leave nothing of it.
+
+`make faults` runs all calls and writes this page; `make test` runs a sample. "Calls" are the system calls of the
+command that the fault can meet, "cases" those that were made to fail.
+"""
+
+
+def page(table: dict[tuple[str, str], Count], left_out: list[str]) -> str:
+    """Return the page of the counts."""
+    names = list(dict.fromkeys(command for command, _ in table))
+    kills = [fault for fault in dict.fromkeys(fault for _, fault in table) if fault not in FAULTS]
+    cases = sum(count.results.total() for count in table.values())
+    wrong = sum(len(count.wrong) for count in table.values())
+    lines = [HEAD, f"{cases} cases, {wrong} with a fault of the program.", ""]
+    lines += [
+        "| command | fault | calls | cases | results of before | new results | wrong |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for name in names:
+        for fault in (*FAULTS, *kills):
+            if count := table.get((name, fault)):
+                numbers = (count.results.total(), count.results["old"], count.results["new"], len(count.wrong))
+                cells = [name, fault, str(count.calls or ""), *map(str, numbers)]
+                lines.append(f"| {' | '.join(cells)} |")
+    if left_out:
+        lines += ["", f"Not run in the time that was given: {', '.join(left_out)}."]
+    if wrong:
+        lines += ["", "What was wrong:", ""]
+        texts = dict.fromkeys(
+            f"- {name}, {fault}: {case['wrong']}" for (name, fault), c in table.items() for case in c.wrong
+        )
+        lines += [text[:400] for text in texts]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    """Run all commands, and write the page after each; the exit code is 1 if something is wrong."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--work", type=Path, default=ROOT / "build" / "faults", help="folder for inputs and results")
+    parser.add_argument("--most", type=int, default=0, help="maximum cases of a fault of a command; 0 for all")
+    parser.add_argument("--kills", type=int, default=32, help="kills of each command at random times")
+    parser.add_argument("--minutes", type=float, default=0.0, help="time for all; 0 for no limit")
+    parser.add_argument("--only", default="", help="names of commands, with commas between them")
+    options = parser.parse_args()
+    options.work.mkdir(parents=True, exist_ok=True)
+    library, began = build(options.work), time.monotonic()
+    names = [command.name for command in commands(options.work / "inputs")]
+    names = [name for name in names if not options.only or name in options.only.split(",")]
+    table: dict[tuple[str, str], Count] = {}
+    for number, name in enumerate(names):
+        left = 60.0 * options.minutes - (time.monotonic() - began)
+        if options.minutes and left < 0.0:
+            break
+        limit = left / (len(names) - number) * 2.0 if options.minutes else None
+        table |= counted(outcomes(library, options.work, name, options.most, options.kills, limit))
+        PAGE.write_text(page(table, names[number + 1 :]), encoding="utf-8")
+        print(
+            f"{name}: {sum(count.results.total() for key, count in table.items() if key[0] == name)} cases", flush=True
+        )
+    wrong = [case for count in table.values() for case in count.wrong]
+    (options.work / "wrong.json").write_text(json.dumps(wrong, indent=1))
+    return int(bool(wrong))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""Replace files and folders in one step: written under another name, synchronised with the disk, then renamed.
+
+Whatever ends the process, the old content is complete under its name until the new content is. A loss of power is no
+different: a name is moved to new content only after this content is on the disk.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+NOT_SUPPORTED = {errno.EINVAL, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP}
+"""Errors of a kernel or a file system without the exchange of two names, or without synchronisation."""
+
+EXCHANGE = 2
+"""RENAME_EXCHANGE of Linux, and RENAME_SWAP of macOS."""
+
+AT_FDCWD = -100
+"""Relative names are relative to the working folder; renameat2(2)."""
+
+_being_made: set[Path] = set()
+"""Hidden folders of this process whose files nobody reads before the whole folder is complete."""
+
+
+def synchronise(path: Path) -> None:
+    """Write a file, or the names in a folder, from the memory of the system to the disk.
+
+    Raises:
+        OSError: the disk is full or damaged.
+    """
+    folder = path.is_dir()
+    if folder and os.name == "nt":
+        return  # Windows has no such call; NTFS keeps the order of its changes itself
+    descriptor = os.open(path, os.O_RDONLY if folder else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in NOT_SUPPORTED:
+            raise
+    finally:
+        os.close(descriptor)
+
+
+def synchronise_folder(folder: Path) -> None:
+    """Write all files of a folder and of those below to the disk, then the names; see `synchronise`."""
+    inner = sorted(folder.rglob("*"))
+    for path in (path for path in inner if not path.is_dir()):
+        synchronise(path)
+    for path in (*(path for path in reversed(inner) if path.is_dir()), folder):
+        synchronise(path)
+
+
+def exchange(first: Path, second: Path) -> bool:
+    """Exchange the names of two files or folders of one file system in one step.
+
+    Returns:
+        False if kernel or file system cannot; nothing is changed then.
+
+    Raises:
+        OSError: the names cannot be exchanged.
+    """
+    import ctypes
+
+    names = os.fsencode(first), os.fsencode(second)
+    try:
+        if sys.platform.startswith("linux"):
+            code = ctypes.CDLL(None, use_errno=True).renameat2(AT_FDCWD, names[0], AT_FDCWD, names[1], EXCHANGE)
+        elif sys.platform == "darwin":
+            code = ctypes.CDLL(None, use_errno=True).renamex_np(*names, EXCHANGE)
+        else:
+            return False
+    except AttributeError:  # an older C library
+        return False
+    if not code:
+        return True
+    number = ctypes.get_errno()
+    if number in NOT_SUPPORTED:
+        return False
+    raise OSError(number, os.strerror(number), str(second))
+
+
+@contextmanager
+def being_made(folder: Path) -> Iterator[None]:
+    """Declare a hidden folder that takes its final name when it is complete: files in it are written directly."""
+    _being_made.add(folder.absolute())
+    try:
+        yield
+    finally:
+        _being_made.discard(folder.absolute())
+
+
+def is_being_made(path: Path) -> bool:
+    """True if a file is in a folder of `being_made`."""
+    return not _being_made.isdisjoint(path.absolute().parents)
+
+
+def temporary_name(path: Path) -> Path:
+    """Return the hidden name of a file until it is complete, with the number of this process and the same ending."""
+    return path.with_name(f".{path.name}.{os.getpid()}.partial{path.suffix}")
+
+
+@contextmanager
+def replaced_file(path: Path) -> Iterator[Path]:
+    """Yield a name for a new file in the same folder; on success, it takes the place of the file, else it is removed.
+
+    Args:
+        path: final name. In a folder of `being_made` it is yielded itself.
+
+    Raises:
+        OSError: the file cannot be written; an existing file is unchanged.
+    """
+    if is_being_made(path):
+        yield path
+        return
+    temporary = temporary_name(path)
+    try:
+        yield temporary
+        synchronise(temporary)
+        temporary.replace(path)
+    finally:
+        with suppress(OSError):  # an undeletable file is found by the next command
+            temporary.unlink(missing_ok=True)
+    with suppress(OSError):  # the file is complete and has its name
+        synchronise(path.parent)

@@ -1,0 +1,16 @@
+"""Notices about what earlier commands left, on standard error; the logger `vehicle.results` of `logging`."""
+
+from __future__ import annotations
+
+import logging
+import sys
+
+_NOTICES = logging.getLogger("vehicle.results")
+_NOTICES.addHandler(logging.lastResort or logging.StreamHandler(sys.stderr))
+_NOTICES.propagate = False
+
+
+def say(*sentences: str) -> None:
+    """Print sentences, a line for each."""
+    for sentence in sentences:
+        _NOTICES.warning("notice: %s", sentence)
