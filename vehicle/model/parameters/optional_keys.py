@@ -14,8 +14,9 @@ from vehicle.model.parameters.driving import Driving
 from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, Tyre
 from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.instance import instances
+from vehicle.model.parameters.paths import is_zero_vector
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
-from vehicle.names import SIDE_SIGN
+from vehicle.names import AXES, SIDE_SIGN
 
 WITH_FILES = (Damper, ForceTable, MainSpring, Bushing)
 """Parameter classes whose numbers may be in a file that `curve` names."""
@@ -68,7 +69,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
 
 
 def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
-    """Yield the keys of a parameter class that have a default, or all keys; inner tables key by key."""
+    """Yield the keys of a parameter class that have a default, or all keys; inner tables key by key, zeros by axis."""
     hints = typing.get_type_hints(parameters)
     if parameters in WITH_FILES:
         yield "curve"
@@ -81,6 +82,8 @@ def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
             yield from (f"{entry.name}.{key}" for key in keys)
         elif everything or not needed:
             yield entry.name
+            if is_zero_vector(entry.default):
+                yield from (f"{entry.name}.{axis}" for axis in AXES)
 
 
 def _missing(table: Mapping[str, Any], path: str) -> bool:

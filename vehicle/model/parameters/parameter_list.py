@@ -12,7 +12,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.optional_keys import optional_paths
-from vehicle.model.parameters.paths import Optional, meant, value_at
+from vehicle.model.parameters.paths import Optional, component, meant, value_at
 from vehicle.model.parameters.value_sources import value_sources
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES, SIDE_SIGN
@@ -86,6 +86,8 @@ def parameter_list(vehicle: Vehicle, file: Path | None, folder: Path | None = No
     home = folder or (Path() if file is None else file.parent)
     for path in _single(optional_paths(vehicle.table, home)):
         declared = vehicle.quantity_of(path)
+        if path.rpartition(".")[2] in AXES:
+            continue  # listed as a vector
         parent = path.rpartition(".")[0]
         present = parent in ("", "driving", "solver") or isinstance(value_at(vehicle.table, parent), Mapping)
         if present and declared.get("default") not in (None, ()):
@@ -127,7 +129,7 @@ def _settable(vehicle: Vehicle, path: str, file: Path | None) -> Parameter:
         return _parameter(vehicle, path, value, _source(file, path, value))
     if (value := value_at(vehicle.table, sideless)) is not None:
         return _parameter(vehicle, path, _on_side(path, value), _source(file, sideless, value))
-    default = vehicle.quantity_of(path).get("default")
+    default = component(vehicle.quantity_of(path).get("default"), path)
     return _parameter(vehicle, path, default, DEFAULT)
 
 

@@ -188,6 +188,10 @@ def _set(table: dict[str, Any], path: str, assignment: str, text: str) -> None:
         )
     *parents, name = path.split(".")
     outer: Any = table
+    if name in AXES and value_at(table, ".".join(parents)) is None:
+        # A vector that stands at its default, zeros; see `is_zero_vector`.
+        *parents, vector = parents
+        name, value = vector, [value if axis == name else 0.0 for axis in AXES]
     for parent in parents:
         outer = outer.setdefault(parent, {}) if isinstance(outer, dict) else outer[AXES.index(parent)]
     outer[AXES.index(name) if isinstance(outer, list) else name] = value
@@ -206,8 +210,9 @@ def value_of(vehicle: Any, path: str) -> float:
     table = as_table(vehicle)
     declared: Mapping[str, Any] = vehicle.quantity_of(path)
     if value_at(table, path) is None and "unit" in declared:
-        if _is_number(declared.get("default")):
-            return float(declared["default"])
+        default = component(declared.get("default"), path)
+        if _is_number(default):
+            return float(default)
         raise ConfigurationError(f"parameter {path}: not given in this vehicle, and without a default; give its value")
     try:
         value = value_at(table, full_path(table, path))
@@ -296,6 +301,16 @@ def value_at(table: Any, path: str) -> Any:
         else:
             inner = inner[AXES.index(key)] if key in AXES and _is_vector(inner) else None
     return inner
+
+
+def is_zero_vector(default: Any) -> bool:
+    """Return True for the default of a vector along x, y and z that is zero, so that each component can be set."""
+    return isinstance(default, tuple) and len(default) == len(AXES) and not any(default)
+
+
+def component(default: Any, path: str) -> Any:
+    """Return the default of a path: the component of a zero vector if the path ends with an axis."""
+    return 0.0 if path.rpartition(".")[2] in AXES and is_zero_vector(default) else default
 
 
 def _numbers(table: Mapping[str, Any]) -> list[str]:
