@@ -1,6 +1,7 @@
 # make shaker   set everything up and run the main job with a film
 # make test     set everything up, check and test
 # make check    format, lint and types only
+# make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
 # make docs     build the documentation -> docs/_build/html/index.html
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -9,7 +10,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check docs setup mjcf benchmark clean
+.PHONY: shaker test check core docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -27,6 +28,9 @@ check: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+core: setup
+	$(BIN)/python tools/core.py
 
 docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html

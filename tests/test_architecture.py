@@ -19,6 +19,7 @@ EVERYWHERE = {"errors", "names"}
 """May be used by every room."""
 
 WINGS = {
+    "core": (),
     "signals": ("analysis", "records", "excitation", "inputs"),
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "linear", "reduced", "lumped"),
@@ -36,6 +37,7 @@ BELOW = EVERYWHERE | {"compiler", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
+    "core": {"compiler"},
     "parameters": {"records"},
     "laws": {"compiler", "parameters"},
     "records": {"analysis"},
