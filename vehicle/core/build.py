@@ -17,7 +17,7 @@ SOURCES = Path(__file__).parent / "source"
 VARIANTS = ("march.c",)
 """Files in double and single precision."""
 
-DOUBLE: tuple[str, ...] = ()
+DOUBLE = ("callback.c",)
 """Files for each processor in double precision only."""
 
 OPTIONS = ["-std=gnu11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]

@@ -1,6 +1,6 @@
 """Inputs of a step that depend on the motion at its beginning: loads of rolling tyres on slopes, controlled dampers.
 
-A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle.engines.simulation.rolling_tyres`). The poles
+A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle/core/source/rolling.h`). The poles
 contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
 load and a slope that is not z'/V add
 

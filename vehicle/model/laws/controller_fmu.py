@@ -19,6 +19,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.core.library import core
+from vehicle.core.records import packed
 from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
 from vehicle.model.laws import controller_call as call
 from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
@@ -129,6 +131,10 @@ def _listed(names: Sequence[str]) -> str:
 class Controller:
     """Instance of a controller FMU for one damper and run, initialized at time 0.
 
+    Attributes:
+        call: record of the call of its steps in the core; its address stands in the record of the control law.
+        memory: record of its functions, variables and readings.
+
     Args:
         file: the FMU.
         damper: name of the damper.
@@ -144,7 +150,6 @@ class Controller:
         self, file: ControllerFile, damper: str, control: SemiActiveDamper, period: float, messages: list[str]
     ) -> None:
         self.file, self.damper, self.period, self.messages = file, damper, period, messages
-        self.memory: npt.NDArray[np.int64] = np.zeros(call.SIZE, dtype=np.int64)
         self.folder = tempfile.mkdtemp(prefix="controller-")
         self.slave: Any = None
         try:
@@ -175,18 +180,18 @@ class Controller:
         names = ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal") if second else (
             *("fmi3SetFloat64", "fmi3DoStep", "fmi3GetFloat64"),
         )  # fmt: skip
-        self.memory[call.CALL] = call.compiled_step().address
-        self.memory[call.SET : call.GET + 1] = [
-            ctypes.cast(getattr(slave.dll, name), ctypes.c_void_p).value or 0 for name in names
-        ]
-        self.memory[call.INSTANCE] = int(getattr(slave.component, "value", slave.component))
-        self.memory[call.COUNT] = len(file.inputs)
-        self.memory[call.SOURCES : call.SOURCES + len(file.sensors)] = file.sensors
-        references = self.memory.view(np.uint32)
-        references[2 * call.REFERENCES :][: len(file.inputs)] = file.inputs
-        references[2 * call.OUTPUT_REFERENCE] = file.output
-        numbers = self.memory.view(np.float64)
-        numbers[call.PERIOD], numbers[call.OUTPUT] = self.period, control.minimum_damping
+        functions = [ctypes.cast(getattr(slave.dll, name), ctypes.c_void_p).value or 0 for name in names]
+        self.memory = packed(
+            "Controller",
+            dict(zip(("set", "step", "get"), functions, strict=True))
+            | {"instance": int(getattr(slave.component, "value", slave.component)), "status": 0, "readings": 0}
+            | {"period": self.period, "coefficient": control.minimum_damping, "inputs": np.zeros(len(file.inputs))}
+            | {"sources": np.array(file.sensors, dtype=np.int64), "measured": np.zeros(len(call.SENSORS))}
+            | {"references": np.array([*file.inputs, file.output], dtype=np.uint32)}
+            | {"results": np.zeros(4, dtype=np.int64)},
+        )
+        step = ctypes.cast(core().core_controller_step, ctypes.c_void_p).value or 0
+        self.call = packed("Call", {"function": step, "memory": self.memory.address})
 
     def _logger(self, second: bool) -> Callable[..., None]:
         """Return the function that takes the messages of warnings and errors."""
@@ -209,7 +214,7 @@ class Controller:
         Raises:
             SimulationError: a call has failed; with damper, time and the last message of the FMU.
         """
-        status = int(self.memory[call.STATUS])
+        status = int(self.memory.memory.status)
         if status <= call.WARNING:
             return
         step_size = getattr(self.file.description.defaultExperiment, "stepSize", None)
@@ -218,7 +223,7 @@ class Controller:
             hint += f", the step in its model description {step_size} s"
         raise SimulationError(
             f"{self.damper}: controller {self.file.path.name} {STATUS.get(status, f'returns the status {status}')} at "
-            f"t = {self.memory[call.READINGS] * self.period:.4f} s{self._last_message()}; {hint}: check the step "
+            f"t = {self.memory.memory.readings * self.period:.4f} s{self._last_message()}; {hint}: check the step "
             "and the inputs"
         )
 
@@ -260,7 +265,7 @@ def controllers(
                 controller = Controller(files[control.fmu], name, control, period, messages)
                 stack.callback(controller.close)
                 started.append(controller)
-                laws["controller"][index] = float(controller.memory.ctypes.data)
+                laws["controller"][index] = float(controller.call.address)
 
         def check() -> None:
             for controller in started:
