@@ -58,15 +58,16 @@ static void assemble(double *h, const double *mass, const double *jacobian, cons
       d1 = weight[row + 1], j1 = j0 + n;
       d2 = weight[row + 2], j2 = j1 + n;
     }
-    for (int64_t a = first; a < last; a++)
-      for (int64_t i = TILE * s->columns.at[a], end = i + TILE; i < end; i++) {
-        const double x = d0 * j0[i], y = d1 * j1[i], z = d2 * j2[i];
-        double *line = h + i * n;
-        for (int64_t b = first; b <= a; b++) {
-          const int64_t at = TILE * s->columns.at[b];
-          FOUR(line + at) += x * FOUR(j0 + at) + y * FOUR(j1 + at) + z * FOUR(j2 + at);
-        }
+    for (int64_t a = first; a < last; a++) {
+      const int64_t i = TILE * s->columns.at[a];
+      double x[TILE], y[TILE], z[TILE], *line = h + i * n;
+      for (int k = 0; k < TILE; k++) x[k] = d0 * j0[i + k], y[k] = d1 * j1[i + k], z[k] = d2 * j2[i + k];
+      for (int64_t b = first; b <= a; b++) {
+        const int64_t to = TILE * s->columns.at[b];
+        const Four u = FOUR(j0 + to), v = FOUR(j1 + to), w = FOUR(j2 + to);
+        for (int k = 0; k < TILE; k++) FOUR(line + k * n + to) += x[k] * u + y[k] * v + z[k] * w;
       }
+    }
   }
   for (int64_t k = 0; k < s->singles.n[0]; k++) {
     const int64_t row = AT(s->singles, k, 0), dof = AT(s->singles, k, 1);
@@ -96,13 +97,16 @@ static void factorise(double *h, const Solution *s) {
       FOUR(u2 + at) -= f32 * FOUR(u3 + at);
       FOUR(u1 + at) -= f31 * FOUR(u3 + at) + f21 * FOUR(u2 + at);
       FOUR(u0 + at) -= f30 * FOUR(u3 + at) + f20 * FOUR(u2 + at) + f10 * FOUR(u1 + at);
-      for (int64_t i = at; i < at + TILE; i++) {
-        const double g0 = i0 * u0[i], g1 = i1 * u1[i], g2 = i2 * u2[i], g3 = i3 * u3[i];
-        double *line = h + i * n;
-        for (int64_t b = first; b <= a; b++) {
-          const int64_t to = TILE * s->tiles.at[b];
-          FOUR(line + to) -= g0 * FOUR(u0 + to) + g1 * FOUR(u1 + to) + g2 * FOUR(u2 + to) + g3 * FOUR(u3 + to);
-        }
+      double g[TILE][TILE], *line = h + at * n;
+      for (int k = 0; k < TILE; k++) {
+        g[0][k] = i0 * u0[at + k], g[1][k] = i1 * u1[at + k];
+        g[2][k] = i2 * u2[at + k], g[3][k] = i3 * u3[at + k];
+      }
+      for (int64_t b = first; b <= a; b++) {
+        const int64_t to = TILE * s->tiles.at[b];
+        const Four x = FOUR(u0 + to), y = FOUR(u1 + to), z = FOUR(u2 + to), w = FOUR(u3 + to);
+        for (int k = 0; k < TILE; k++)
+          FOUR(line + k * n + to) -= g[0][k] * x + g[1][k] * y + g[2][k] * z + g[3][k] * w;
       }
     }
   }
