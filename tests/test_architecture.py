@@ -39,7 +39,7 @@ BELOW = EVERYWHERE | {"compiler", "threads", "version"}
 ROOMS: dict[str, set[str]] = {
     "core": {"compiler"},
     "parameters": {"records"},
-    "laws": {"compiler", "parameters"},
+    "laws": {"compiler", "core", "parameters"},
     "records": {"analysis"},
     "excitation": {"analysis", "records"},
     "flexbody": {"analysis", "parameters", "records"},
@@ -47,7 +47,7 @@ ROOMS: dict[str, set[str]] = {
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
     "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
-    "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
+    "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
     "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},

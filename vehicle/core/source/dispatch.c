@@ -35,3 +35,5 @@ EXPORT int64_t core_variant(void) { return 1; }
 
 CHOOSE(void, d, march, (March *job), (job))
 CHOOSE(void, f, march, (March *job), (job))
+CHOOSE(void, d, solve_forces, (const March *job), (job))
+CHOOSE(void, f, solve_forces, (const March *job), (job))
