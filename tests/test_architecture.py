@@ -47,7 +47,7 @@ ROOMS: dict[str, set[str]] = {
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
     "simulation": {"parameters", "excitation", "assembly", "core", "flexbody", "laws"},
     "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
-    "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
+    "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
     "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},

@@ -23,7 +23,7 @@ VARIABLE = "NUMBA_CACHE_DIR"
 """Environment variable that numba reads at import; child processes inherit it."""
 
 PACKAGE = Path(__file__).parent
-COMPILING = ("engines/reduced",)
+COMPILING = ("engines/simulation",)
 """Packages with functions whose compiled form is cached."""
 
 OPTIONS: dict[str, Any] = {"boundscheck": False, "error_model": "numpy", "fastmath": {"reassoc", "contract", "nsz"}}

@@ -14,7 +14,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).parent / "source"
 
-VARIANTS = ("march.c",)
+VARIANTS = ("forces.c", "march.c", "outputs.c", "poles.c")
 """Files in double and single precision."""
 
 DOUBLE = ("callback.c",)

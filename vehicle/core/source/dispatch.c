@@ -35,6 +35,8 @@ EXPORT int64_t core_variant(void) { return 1; }
 
 CHOOSE(void, d, march, (March *job), (job))
 CHOOSE(void, f, march, (March *job), (job))
+CHOOSE(void, d, solve_forces, (const March *job), (job))
+CHOOSE(void, f, solve_forces, (const March *job), (job))
 
 CHOOSE(void, d, locate, (int64_t user_size, int64_t user_data), (user_size, user_data))
 CHOOSE(void, d, attach, (const Simulation *simulation, void *data), (simulation, data))

@@ -44,12 +44,12 @@
 /* A law by address: double function(void *memory, double first, double second). */
 #define CALL_FIELDS(F) F(int64_t, function) F(int64_t, memory)
 
-/* Controller FMU, see controller.c. Addresses of its functions and instance; status of the last call; finished
- * readings; period: T [s]; coefficient: c [N s/m]; measured: values of the five sensors; sources: index among these of
+/* Controller FMU, see controller.c. call: its step, with the address of this record; then addresses of its functions and
+ * instance; status of the last call; finished readings; period: T [s]; coefficient: c [N s/m]; measured: values of the five sensors; sources: index among these of
  * each input; inputs: values of the inputs; references: value references of inputs and, last, output; results: four
  * words that a step writes. */
 #define CONTROLLER_FIELDS(F) \
-  F(int64_t, set) F(int64_t, step) F(int64_t, get) F(int64_t, instance) F(int64_t, status) F(int64_t, readings) \
+  F(Call, call) F(int64_t, set) F(int64_t, step) F(int64_t, get) F(int64_t, instance) F(int64_t, status) F(int64_t, readings) \
   F(double, period) F(double, coefficient) F(Vector, measured) F(Index, sources) F(Vector, inputs) \
   F(Words, references) F(Index, results)
 

@@ -1,4 +1,4 @@
-"""Memory and C functions by their address, in Python and in compiled code.
+"""C functions by their address, in Python and in compiled code.
 
 Compiled code calls a function of a shared library in some nanoseconds by its address, which is a value of a run and no
 part of the cached code. Pointers and sizes of C are passed as 64-bit integers, as on all platforms of MuJoCo.
@@ -32,8 +32,8 @@ def _compiled_by_first_word(numba: Any) -> Any:
     @numba.extending.intrinsic  # type: ignore[untyped-decorator]
     def call(typing_context: Any, address: Any, first: Any, second: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            call = builder.inttoptr(builder.fptosi(arguments[0], word), word.as_pointer())
-            function, memory = builder.load(call), builder.load(builder.gep(call, [ir.Constant(word, 1)]))
+            memory = builder.fptosi(arguments[0], word)
+            function = builder.load(builder.inttoptr(memory, word.as_pointer()))
             return builder.call(builder.inttoptr(function, form.as_pointer()), [memory, *arguments[1:]])
 
         return types.float64(types.float64, types.float64, types.float64), generate
@@ -44,12 +44,12 @@ def _compiled_by_first_word(numba: Any) -> Any:
 
 @overloaded(_compiled_by_first_word)
 def result_at(address: float, first: float, second: float) -> float:
-    """Call a C function by its address; return its result.
+    """Call the C function whose address is the first word at an address; return its result.
 
     Args:
-        address: address of two words: function, and its memory, which is its first argument.
+        address: address of the memory, which is the first argument of the function.
         first, second: further arguments.
     """
     form = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_int64, ctypes.c_double, ctypes.c_double)
-    function, memory = (ctypes.c_int64.from_address(int(address) + 8 * word).value for word in range(2))
-    return float(form(function)(memory, first, second))
+    memory = int(address)
+    return float(form(ctypes.c_int64.from_address(memory).value)(memory, first, second))
