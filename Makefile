@@ -2,6 +2,7 @@
 # make test     set everything up, check and test
 # make check    format, lint and types only
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
+# make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
 # make docs     build the documentation -> docs/_build/html/index.html
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -10,7 +11,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check faults docs setup mjcf benchmark clean
+.PHONY: shaker test check core faults docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -28,6 +29,9 @@ check: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+core: setup
+	$(BIN)/python tools/core.py
 
 docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html

@@ -19,6 +19,7 @@ EVERYWHERE = {"digits", "errors", "names"}
 """May be used by every room."""
 
 WINGS = {
+    "core": (),
     "signals": ("analysis", "records", "excitation", "inputs"),
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "linear", "reduced", "lumped"),
@@ -36,16 +37,17 @@ BELOW = EVERYWHERE | {"compiler", "replacement", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
+    "core": {"compiler"},
     "parameters": {"records"},
-    "laws": {"compiler", "parameters", "records"},
+    "laws": {"compiler", "core", "parameters", "records"},
     "records": {"analysis"},
     "excitation": {"analysis", "records", "replacement"},
     "flexbody": {"analysis", "parameters", "records", "replacement"},
     "shapes": set(),
     "assembly": {"parameters", "flexbody", "shapes", "laws"},
-    "simulation": {"parameters", "excitation", "assembly", "compiler", "flexbody", "laws"},
+    "simulation": {"parameters", "excitation", "assembly", "core", "flexbody", "laws"},
     "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
-    "reduced": {"compiler", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
+    "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "analysis": {"threads"},
     "lumped": {"parameters", "laws", "linear"},
     "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},

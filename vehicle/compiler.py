@@ -23,7 +23,7 @@ VARIABLE = "NUMBA_CACHE_DIR"
 """Environment variable that numba reads at import; child processes inherit it."""
 
 PACKAGE = Path(__file__).parent
-COMPILING = ("engines/simulation", "engines/reduced")
+COMPILING = ("engines/simulation",)
 """Packages with functions whose compiled form is cached."""
 
 OPTIONS: dict[str, Any] = {"boundscheck": False, "error_model": "numpy", "fastmath": {"reassoc", "contract", "nsz"}}
@@ -118,11 +118,15 @@ def prepare_compiler_cache() -> None:
             return
     elif all(_writable(PACKAGE / room / "__pycache__") for room in COMPILING):
         return
-    folder = next((folder for folder in _candidates() if _writable(folder)), None)
-    chosen = tempfile.mkdtemp(prefix="vehicle-") if folder is None else str(folder)
-    os.environ[VARIABLE] = chosen
+    os.environ[VARIABLE] = chosen = str(cache_folder())
     if "numba" in sys.modules:
         sys.modules["numba"].config.CACHE_DIR = chosen
+
+
+def cache_folder() -> Path:
+    """Return a folder outside the package for compiled code: the first writable candidate, else a new temporary one."""
+    folder = next((folder for folder in _candidates() if _writable(folder)), None)
+    return Path(tempfile.mkdtemp(prefix="vehicle-")) if folder is None else folder
 
 
 def _candidates() -> list[Path]:

@@ -1,19 +1,20 @@
-"""Time of a call of a controller FMU from compiled code. `python -m tests.benchmarks.controller_speed`."""
+"""Time of a call of a controller FMU from the core. `python -m tests.benchmarks.controller_speed`."""
 
 from __future__ import annotations
 
+import ctypes
 import tempfile
 import time
 from pathlib import Path
 
 from tests.model.laws.controller_files import controller_fmu
-from vehicle.compiler import numba_module
+from vehicle.core.library import core
+from vehicle.model.laws.control_laws import in_steps, pack
 from vehicle.model.laws.controller_fmu import Controller, read_controller
-from vehicle.model.laws.function_address import result_at
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.signals.records.reader import digest
 
-CALLS = 1_000_000
+CALLS = 100_000
 
 
 def time_per_call(folder: Path, version: str) -> float:
@@ -26,19 +27,13 @@ def time_per_call(folder: Path, version: str) -> float:
     control = half_car_rider_parameters().semi_active
     path = controller_fmu(folder / "skyhook.fmu", version)
     controller = Controller(read_controller(path, digest(path)), "damper", control, 1e-3, [])
-    numba = numba_module()
-
-    @numba.njit  # type: ignore[untyped-decorator]
-    def calls(address: float, count: int) -> float:
-        total = 0.0
-        for n in range(count):
-            total += result_at(address, 0.3 - 1e-6 * n, 0.1)
-        return total
-
-    address = float(controller.memory.ctypes.data)
-    calls(address, 1)
+    law = in_steps(pack(control), 1e-3)
+    law["controller"] = controller.call.address
+    demanded = core().core_demanded
+    demanded.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double]
     started = time.process_time()
-    calls(address, CALLS)
+    for n in range(CALLS):
+        demanded(law.ctypes.data, 0.3 - 1e-6 * n, 0.1)
     duration = time.process_time() - started
     controller.check()
     controller.close()

@@ -23,7 +23,8 @@ import numpy.typing as npt
 
 from tests.benchmarks.sweep_case import case_alone_ms, case_ms
 from vehicle.engines.reduced.batch_simulation import simulate_batch
-from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.compiled import CompiledRows
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
 from vehicle.names import AXES
@@ -37,7 +38,6 @@ SHOWN = {
     "dof": "degrees of freedom",
     "timestep": "default step [s]",
     "step_us": "step with the callbacks that a run uses, in motion [us]",
-    "python_step_us": "step with the callbacks in Python, in motion [us]",
     "plain_step_us": "step of the same model without callbacks, in motion [us]",
     "realtime_factor": "simulated over computing time, recording included",
     "rms_error": "largest RMS error of an acceleration channel against an eighth of the step, low and high level",
@@ -126,7 +126,7 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
         car: the car.
         signal: motion of the plates.
         steps: number of steps.
-        form: "native", "python", or "plain": MuJoCo's own rows hold the car.
+        form: "native", or "plain": MuJoCo's own rows hold the car.
         parts: filled with the time of each part of a step [us]; MuJoCo's timers make every step some us longer.
 
     Returns:
@@ -155,10 +155,9 @@ def stepping_time(car: Car, signal: Signal, steps: int, form: str, parts: dict[s
     if form == "plain":
         spent = go()
     else:
-        native = compiled_rows(rows) if form == "native" else None
+        native = CompiledRows(rows)
         with installed(rows, native):
-            if native is not None:
-                native.attach(data, sparse=True)
+            native.attach(data, sparse=True)
             spent = go()
     if parts is not None:
         mujoco.set_mjcb_time(None)
@@ -236,7 +235,7 @@ def measure(effort: Effort) -> Figures:
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     steps = min(effort.steps, int(signal.duration / model.opt.timestep))
-    native, python, plain, factors = [], [], [], []
+    native, plain, factors = [], [], []
     reduced: list[float] = []
     few: list[float] = []
     four_wheel: list[float] = []
@@ -253,7 +252,6 @@ def measure(effort: Effort) -> Figures:
     for _ in range(effort.repeats):
         native.append(stepping_time(car, signal, steps, "native"))
         four_wheel.append(stepping_time(road_car, on_four, steps, "native"))
-        python.append(stepping_time(car, signal, steps, "python"))
         plain.append(stepping_time(car, signal, steps, "plain"))
         factors.append(car.run(signal).recording.statistics.realtime_factor)
         for found_factors, channels in ((reduced, None), (few, FEW)):
@@ -273,7 +271,6 @@ def measure(effort: Effort) -> Figures:
         "dof": int(model.nv),
         "timestep": float(model.opt.timestep),
         "step_us": median(native),
-        "python_step_us": median(python),
         "plain_step_us": median(plain),
         "realtime_factor": median(factors),
         "reduced_realtime_factor": median(reduced),

@@ -7,12 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from tests.engines.simulation.python_form import difference, python_run
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from tests.validation import foreign, validated
-from vehicle.engines.simulation.callbacks import compiled_rows
-from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.engines.simulation.stepping import simulate
 from vehicle.model.laws.degressive import Degressive
 from vehicle.runs.car import Car
 
@@ -147,17 +143,3 @@ def test_the_damper_of_the_car_follows_its_law(degressive_car, high_piece):
     away = np.abs(force[sliding] - expected) > 1e-3 * damper.coulomb_friction
     assert np.mean(away) < 0.1
     assert run.recording.statistics.energies.residual < 1e-3
-
-
-def test_both_forms_agree(degressive_car, high_piece):
-    model = degressive_car.model.spec.compile()
-    prepare_model(model)
-    rows = Rows(model, degressive_car.model.static.preload)
-    assert difference(rows, compiled_rows(rows)) == ""
-    piece = type(high_piece)(time=high_piece.time[:801], displacement={"fr": high_piece.displacement["fr"][:801]})
-    compiled, interpreted = (form(degressive_car.model, piece) for form in (simulate, python_run))
-    for name, values in interpreted.channels.items():
-        # As in test_native: rounding, magnified by the ideal joints.
-        np.testing.assert_allclose(
-            compiled[name], values, rtol=0.0, atol=2e-8 * np.sqrt(np.mean(values**2)), err_msg=name
-        )

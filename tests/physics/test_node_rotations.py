@@ -73,7 +73,7 @@ def linear(run, preload=None):
     size = run.rows.layout.row_count + 3
     static = np.zeros(size) if preload is None else preload
     trim = StaticTrim(preload=static, tyre_load={}, support_load={}, residual=0.0)
-    return car_matrices(run.model, trim, compiled=False).system
+    return car_matrices(run.model, trim).system
 
 
 def whole_frame():

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.engines.simulation.python_form import PythonRows
 from tests.patience import HANG
 from tests.system.conftest import csv_text
+from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -131,17 +131,15 @@ def test_item_35_output_that_cannot_be_written(shaker, short_signal, tmp_path):
 
 
 def test_item_36_a_lost_state_gives_no_numbers(shaker, short_signal, tmp_path, monkeypatch):
-    from vehicle.engines.simulation.rows import Rows
+    from vehicle.engines.simulation.plate_arrays import PlateBlock
 
-    laws = Rows.__call__
+    load, lost = PlateBlock._load, round(1.5 / Car.load().vehicle.solver.step)
 
-    def break_down(self, model, data):
-        laws(self, model, data)
-        if data.time > 1.5:
-            data.qfrc_applied[0] = np.nan
+    def break_down(self, offset):
+        load(self, offset)
+        self.height[max(lost - offset, 0) :] = np.nan
 
-    monkeypatch.setattr(Rows, "__call__", break_down)
-    monkeypatch.setattr("vehicle.engines.simulation.stepping.compiled_rows", PythonRows)
+    monkeypatch.setattr(PlateBlock, "_load", break_down)
     outcome = shaker("--input", "short.csv")
     assert outcome.code == 4
     assert "no longer finite at t = 1.50" in outcome.err and "joint" in outcome.err

@@ -1,28 +1,15 @@
-"""Compiled code is kept: in a read-only installation, without a home folder, and for the next process; in silence."""
+"""Compiled code is kept: in a read-only installation, and without a home folder."""
 
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import pytest
 
-from tests.patience import HANG
 from vehicle import compiler
-
-ROOT = Path(__file__).resolve().parents[2]
-
-SECOND_PROCESS = """
-from vehicle.engines.reduced.time_stepping import compiled_stepping
-from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
-Car.load().run(random_road(rms=1e-4, seed=1, wheel="fr", duration=1.5), engine="reduced", channels=["seat_rail_acc_z"])
-march = compiled_stepping()
-print(sum(march.stats.cache_hits.values()), sum(march.stats.cache_misses.values()))
-"""
 
 
 @pytest.fixture
@@ -61,16 +48,3 @@ def test_the_first_place_that_can_be_written_is_taken(places, monkeypatch):
     # A choice of the user that cannot be written is no error.
     monkeypatch.setenv(compiler.VARIABLE, str(places / "file" / "cache"))
     assert chosen() != str(places / "file" / "cache")
-
-
-def test_the_next_process_finds_it(tmp_path):
-    """The reduced engine was compiled anew by every process: four seconds before a run of 10 ms."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), compiler.VARIABLE: str(tmp_path / "cache")}
-    said = []
-    for _ in range(2):
-        done = subprocess.run(
-            [sys.executable, "-c", SECOND_PROCESS], env=environment, capture_output=True, text=True, timeout=HANG
-        )
-        assert done.returncode == 0 and done.stderr == "", done.stderr
-        said.append(done.stdout.strip())
-    assert said == ["0 1", "1 0"]

@@ -37,7 +37,7 @@ def digest_with(change, of, monkeypatch):
 
 def test_stamp_of_compiled_code_changes_with_each_of_its_sources(monkeypatch):
     sources = compiled_sources()
-    assert len({path.parent for path in sources}) >= 3 and len(sources) > 10, "the compiled functions were not found"
+    assert len({path.parent for path in sources}) >= 2 and len(sources) > 10, "the compiled functions were not found"
     stamp = digest_with(None, compiler.stamp, monkeypatch)
     assert stamp == digest_with(None, compiler.stamp, monkeypatch)
     without = [path.name for path in sources if digest_with(path, compiler.stamp, monkeypatch) == stamp]
@@ -47,6 +47,6 @@ def test_stamp_of_compiled_code_changes_with_each_of_its_sources(monkeypatch):
 @pytest.mark.parametrize("wing", [".", *(path.parent.name for path in sorted(PACKAGE.glob("*/__init__.py")))])
 def test_program_of_a_sweep_changes_with_every_wing(wing, monkeypatch):
     digest = digest_with(None, program.program_digest, monkeypatch)
-    sources = sorted((PACKAGE / wing).rglob("*.py"))
+    sources = sorted(path for path in (PACKAGE / wing).rglob("*") if path.suffix in (".py", ".c", ".h"))
     for path in (sources[0], sources[-1]):
         assert digest_with(path, program.program_digest, monkeypatch) != digest, path

@@ -170,7 +170,7 @@ def test_sliding_dampers_make_another_car(car):
 
 def test_the_matrices_leave_the_model_alone(car):
     before = car.model.model.qpos_spring.copy()
-    again = car_matrices(car.model.model, car.model.static, compiled=False)
+    again = car_matrices(car.model.model, car.model.static)
     np.testing.assert_array_equal(again.system.stiffness, car.matrices.system.stiffness)
     # Compiled code adds up in another order; largest forces 1e4 N, rounded, over the difference step.
     compiled = car_matrices(car.model.model, car.model.static)

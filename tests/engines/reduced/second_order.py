@@ -25,7 +25,6 @@ import numpy.typing as npt
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.first_order import free_basis
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.simulation.callbacks import compiled_rows
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.row_layout import numeric, places_of
 from vehicle.engines.simulation.rows import Rows
@@ -126,8 +125,6 @@ class Equations:
         self.model.opt.timestep = NO_STEP
         self.rows = Rows(self.model, car.model.static.preload)
         self.data = mujoco.MjData(self.model)
-        self.laws = compiled_rows(self.rows)
-        self.laws.attach(self.data)
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
         self.joints = self.rows.layout.joints.ravel()
         self.present = self.rows.layout.bushings.branch_stiffness > 0.0
@@ -161,7 +158,7 @@ class Equations:
         state.branch_force[:] = state.branch_past
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
-        self.laws(model, data)
+        self.rows(model, data)
         inertia = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, inertia)
         jacobian = data.efc_J.reshape(-1, model.nv)[self.joints]

@@ -19,8 +19,6 @@ from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
-pytest.importorskip("numba", reason="the reduced engine needs it")
-
 ROAD = random_road(rms=1e-3, seed=5, wheel="fr", duration=2.0)
 CHANNELS = [
     *(f"seat_rail_acc_{axis}" for axis in "xyz"),

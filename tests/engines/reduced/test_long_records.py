@@ -12,8 +12,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.random_road import random_road
 
-pytest.importorskip("numba", reason="the reduced engine needs it")
-
 
 def test_pieces_give_the_same_run(car, monkeypatch):
     road = random_road(rms=5e-4, seed=2, wheel="fr", duration=3.0)

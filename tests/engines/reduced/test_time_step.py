@@ -1,18 +1,18 @@
 """The implicit damper forces of a step."""
 
+import ctypes
 import dataclasses
 from typing import Any
 
 import numpy as np
 import pytest
 
-from vehicle.compiler import numba_module
+from tests.core.idle_march import idle_march
+from vehicle.core.library import core
 from vehicle.engines.reduced.car_table import CarTable
-from vehicle.engines.reduced.inlining import EXACT
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import ACCURACY, CarFactors
 from vehicle.engines.reduced.table_layout import DOUBLE, SINGLE
-from vehicle.engines.reduced.time_step import solve_forces
 from vehicle.model.laws.damper import damper_curve
 from vehicle.model.parameters.vehicle import load_vehicle
 
@@ -28,7 +28,12 @@ LAWS: list[dict[str, Any]] = [
         "force": (-240.0, 0.0, 5.0, 155.0, 900.0),
     },
 ]
-solve = numba_module().njit(**EXACT)(lambda t, r, owners, dampers: solve_forces(t, r, owners, dampers))
+
+
+def solve(table, count):
+    """Solve the forces of a step of cars in double precision."""
+    march = idle_march(rows=table.rows, table=table.table, dampers=count)
+    core().core_solve_forces_d(ctypes.c_void_p(march.address))
 
 
 def table_of(gain, laws, element):
@@ -61,7 +66,7 @@ def test_velocities_and_forces_of_coupled_dampers_are_consistent(count, own_gain
         arriving, hold = size * generator.standard_normal(count), 20.0 * generator.standard_normal(count)
         t[r.work :][:count], t[r.hold :][:count] = arriving[:, None], hold[:, None]
         t[r.stick :][:count] = 0.0  # The forces are constant over the step.
-        solve(t, r, np.zeros(0, dtype=np.int64), (0.0,) * count)
+        solve(table, count)
         velocity, force = t[r.velocity :][:count, 0], t[r.inputs :][:count, 0]
         # v = a + G f, and f follows from v: the curve acts with the mean of both ends.
         # The iteration leaves a share `ACCURACY` of the change of a force in the step, here from 0.

@@ -6,8 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from tests.engines.simulation.python_form import python_run
-from vehicle.engines.simulation import stepping
+from vehicle.engines.simulation import callbacks, stepping
 from vehicle.engines.simulation.damper_force import fill_sensors
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
@@ -23,7 +22,7 @@ LAWS = {
 
 @pytest.mark.parametrize(("name", "laws"), LAWS.items())
 def test_the_sensors_are_the_channels_of_a_run(name, laws, monkeypatch):
-    """A run with its sensors switched on, step by step: each is the sample of its channel, bit for bit."""
+    """A run with its sensors switched on: after each step they are the sample of their channel, bit for bit."""
     car = Car.load(name, ["solver.timestep=0.0005", "solver.record_rate=2000", *laws])
     signal = random_road(rms=4e-3, seed=2, wheel=car.vehicle.wheels[0], duration=0.3, taper_length=0.05)
     dampers = [damper.name for damper in car.vehicle.composition.dampers]
@@ -34,18 +33,15 @@ def test_the_sensors_are_the_channels_of_a_run(name, laws, monkeypatch):
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
         return model, space
 
-    def watched(function):
-        def call(model, data):
-            function(model, data)
+    def watched(rows, data, stage):
+        fill_sensors(rows, data, stage)
+        if stage == mujoco.mjtStage.mjSTAGE_ACC:
             sensed.append([data.sensor(f"{damper}_force").data[0] for damper in dampers])
             viscous.append(data.actuator_force.copy())
 
-        return call
-
-    for function in ("mj_step", "mj_forward"):
-        monkeypatch.setattr(mujoco, function, watched(getattr(mujoco, function)))
+    monkeypatch.setattr(callbacks, "fill_sensors", watched)
     monkeypatch.setattr(stepping, "run_model", model_with_sensors)
-    run = python_run(model, signal)
+    run = stepping.simulate(model, signal)
     channels = np.array([run[f"{damper}_force"] for damper in dampers]).T
     np.testing.assert_array_equal(np.array(sensed)[: len(channels)], channels)
     assert np.ptp(channels, axis=0).max() > 100.0

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import ctypes
+
 import mujoco
 import numpy as np
 import pytest
 
-from vehicle.engines.simulation.callbacks import compiled_rows, installed
-from vehicle.engines.simulation.predicted_acceleration import assemble_matrix, factorise_matrix, solve_factorised
+from vehicle.core.library import core
+from vehicle.core.records import packed
+from vehicle.engines.simulation.callbacks import installed
+from vehicle.engines.simulation.compiled import CompiledRows
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
 from vehicle.engines.simulation.sparse_rows import nonzero_columns, solution_of
@@ -24,7 +28,7 @@ def driven(car: Car, *, sparse: bool) -> tuple[np.ndarray, np.ndarray, int]:
     model, space = run_model(car.model)
     data = mujoco.MjData(model)
     rows = Rows(model, car.model.static.preload, space)
-    native, step = compiled_rows(rows), model.opt.timestep
+    native, step = CompiledRows(rows), model.opt.timestep
     level, velocities, forces, iterations = data.mocap_pos[:, 2].copy(), [], [], 0
     with installed(rows, native):
         native.attach(data, sparse=sparse)
@@ -86,8 +90,10 @@ def test_the_factor_solves_the_equations_of_a_step() -> None:
     right = np.zeros(len(solution.matrix))
     right[: model.nv] = random.normal(size=model.nv)
     expected = np.linalg.solve(mass + part.T @ (weight[:, None] * part), right[: model.nv])
-    assemble_matrix(solution.matrix, data.M, jacobian, weight, solution)
-    factorise_matrix(solution.matrix, solution)
-    solve_factorised(solution.matrix, right, solution)
+    solution.right[:] = right
+    record = packed("Solution", solution)
+    addresses = [array.ctypes.data for array in (data.M, jacobian, weight)] + [record.address]
+    core().core_solution_d(*map(ctypes.c_void_p, addresses))
+    right = solution.right
     np.testing.assert_allclose(right[: model.nv], expected, rtol=0.0, atol=1e-9 * np.max(np.abs(expected)))
     assert len(solution.tiles) < 0.9 * (len(solution.starts) - 1) * len(solution.starts) / 2

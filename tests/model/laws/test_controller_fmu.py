@@ -1,4 +1,4 @@
-"""Controllers in FMUs: the call in both forms against the own law, its timing, and FMUs that are refused."""
+"""Controllers in FMUs: the call against the own law, its timing, and FMUs that are refused."""
 
 from __future__ import annotations
 
@@ -17,8 +17,7 @@ from tests.model.laws.controller_files import NUMBERS, PARAMETERS, controller_fm
 from tools.controller_library import FOLDER, digests
 from vehicle.errors import ConfigurationError, DataError, SimulationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
-from vehicle.model.laws.controller_call import NOT_FINITE, READINGS, SET, STATUS, TERMINATED, controller_step
-from vehicle.model.laws.controller_fmu import Controller, controllers, read_controller
+from vehicle.model.laws.controller_fmu import NOT_FINITE, TERMINATED, Controller, controllers, read_controller
 from vehicle.model.laws.function_address import result_at
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.signals.records.reader import digest
@@ -52,17 +51,15 @@ def test_the_library_is_built_from_this_source():
 
 
 @VERSIONS
-def test_both_forms_of_the_call_equal_the_own_law(tmp_path, version):
+def test_the_call_equals_the_own_law(tmp_path, version):
     path = controller_fmu(tmp_path / "skyhook.fmu", version)
     record = in_steps(pack(SKYHOOK), STEP)
     wanted = [float(demanded(record, body, wheel)) for body, wheel in [*speeds(), (0.0, 0.0)]]
-    compiled, interpreted = started(path), started(path)
+    controller = started(path)
     for n, (body, wheel) in enumerate([*speeds(), (0.0, 0.0)]):
-        assert result_at(float(compiled.memory.ctypes.data), body, wheel) == pytest.approx(wanted[n], rel=1e-14)
-        assert controller_step(interpreted.memory.ctypes.data, body, wheel) == pytest.approx(wanted[n], rel=1e-14)
-    np.testing.assert_array_equal(compiled.memory[READINGS], len(wanted))
-    compiled.close()
-    interpreted.close()
+        assert result_at(float(controller.address), body, wheel) == pytest.approx(wanted[n], rel=1e-14)
+    assert controller.record.memory.readings == len(wanted)
+    controller.close()
 
 
 @VERSIONS
@@ -94,7 +91,7 @@ def test_values_and_times_of_the_sensors(tmp_path, sensor, wanted):
     numbers = {**NUMBERS, "coefficient": NUMBERS[sensor]}
     path = controller_fmu(tmp_path / "sensor.fmu", inputs=("wheel_velocity", sensor), references=numbers)
     controller = started(path)
-    found = [result_at(float(controller.memory.ctypes.data), body, wheel) for body, wheel in speeds()]
+    found = [result_at(float(controller.address), body, wheel) for body, wheel in speeds()]
     np.testing.assert_allclose(found, wanted(*speeds().T), rtol=1e-14, atol=1e-12)
     controller.close()
 
@@ -113,12 +110,12 @@ def test_the_coefficient_stays_within_the_damper(tmp_path):
 def test_instances_and_runs_are_independent(tmp_path):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     firm, soft = started(path, replace(SKYHOOK, skyhook_damping=5000.0)), started(path)
-    first = [result_at(float(each.memory.ctypes.data), 0.1, -0.1) for each in (firm, soft)]
+    first = [result_at(float(each.address), 0.1, -0.1) for each in (firm, soft)]
     assert first == pytest.approx([2500.0, 1500.0], rel=1e-14)
     # A library of its own each: also global variables would be separate.
-    assert firm.memory[SET] != soft.memory[SET]
+    assert firm.record.memory.set != soft.record.memory.set
     again = started(path)
-    assert result_at(float(again.memory.ctypes.data), 0.1, -0.1) == first[1]
+    assert result_at(float(again.address), 0.1, -0.1) == first[1]
     for each in (firm, soft, again):
         each.close()
 
@@ -134,8 +131,8 @@ def test_instances_and_runs_are_independent(tmp_path):
 def test_a_failure_in_a_run_is_said_with_its_time(tmp_path, version, fault, status, text):
     path = controller_fmu(tmp_path / "faulty.fmu", version, parameters=(*PARAMETERS, "skyhook_share"))
     controller = started(path, replace(SKYHOOK, skyhook_share=fault))
-    answers = [result_at(float(controller.memory.ctypes.data), 0.3, 0.1) for _ in range(120)]
-    assert len(set(answers)) == 1 and controller.memory[STATUS] == status
+    answers = [result_at(float(controller.address), 0.3, 0.1) for _ in range(120)]
+    assert len(set(answers)) == 1 and controller.record.memory.status == status
     with pytest.raises(SimulationError) as caught:
         controller.check()
     message = str(caught.value)

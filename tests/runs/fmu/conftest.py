@@ -10,7 +10,6 @@ from vehicle.runs.car import Car
 @pytest.fixture(scope="session", params=["2", "3"])
 def focus_fmu(request, car: Car, tmp_path_factory):
     """FMU of the car, FMI 2.0 and 3.0."""
-    pytest.importorskip("numba", reason="the reduced engine needs it")
     pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[oracles]'")
     from tests.runs.fmu.master import written
 

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("numba", reason="the reduced engine needs it")
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[oracles]'")
 
 from tests.runs.fmu.master import STEP, Fmu, Instance, drive, plates_of, written

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-pytest.importorskip("numba", reason="the reduced engine needs it")
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[oracles]'")
 pytest.importorskip("libcosimpy", reason="libcosim is missing: pip install 'vehicle-on-shaker[oracles]'")
 

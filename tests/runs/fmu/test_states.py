@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("numba", reason="the reduced engine needs it")
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[oracles]'")
 
 from tests.runs.fmu.master import STEP, Fmu, Instance, drive, plates_of, written

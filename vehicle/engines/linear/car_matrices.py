@@ -25,7 +25,7 @@ from vehicle.engines.linear.damper_elements import (
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, DisplacementLaw, displacement_laws
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
@@ -92,14 +92,12 @@ class CarMatrices:
         return f"CarMatrices({len(self.system.mass)} coordinates, {len(self.dampers)} dampers)"
 
 
-def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = True) -> CarMatrices:
+def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     """Read the matrices of a trimmed car from its model.
 
     Args:
         model: compiled and trimmed car (not yet prepared for stepping).
         static: preloads of the car.
-        compiled: compile the laws. Compiling takes 15 s without a cache; the Python form takes 0.3 s for one car and
-            differs by round-off, 1e-11.
 
     Returns:
         The matrices.
@@ -107,7 +105,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim, *, compiled: bool = 
     data = mujoco.MjData(model)
     rows = Rows(model, static.preload)
     e = rows.layout
-    stiffness = _tangent_stiffness(rows, compiled)
+    stiffness = _tangent_stiffness(rows)
     with installed(rows):
         mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
@@ -212,33 +210,28 @@ def law_matrices(rows: Rows, jacobian: Vector, joint_damping: Vector, preload: V
     )
 
 
-def _tangent_stiffness(rows: Rows, compiled: bool) -> Vector:
+def _tangent_stiffness(rows: Rows) -> Vector:
     """Return K = -dF/du of all static forces, by central differences; rubber friction without its limits."""
     rubber = rows.layout.rubber
     if rubber.elements.size:
         rows = rows.anew()
         rows.layout = rows.layout._replace(rubber=rubber._replace(limit=np.full_like(rubber.limit, np.inf)))
-    return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied, compiled=compiled)
+    return -differences(rows, lambda data: data.qfrc_passive - data.qfrc_bias + data.qfrc_applied)
 
 
-def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector], *, compiled: bool = True) -> Vector:
+def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector]) -> Vector:
     """Return central differences of a function of the state over the velocity coordinates in the design position.
 
     Args:
         rows: rows of the car at rest.
         read: function of a state with written rows that returns an array (...); only the solution of the step is
             missing in the state.
-        compiled: see `car_matrices`.
 
     Returns:
         Derivatives, (..., n).
     """
     model = rows.model
     data = mujoco.MjData(model)
-    rewrite: Callable[[mujoco.MjModel, mujoco.MjData], None] = rows
-    if compiled:
-        rewrite = compiled_form = compiled_rows(rows)
-        compiled_form.attach(data)
     start, direction, columns = data.qpos.copy(), np.zeros(model.nv), []
     for column in range(model.nv):
         ends = []
@@ -249,7 +242,7 @@ def differences(rows: Rows, read: Callable[[mujoco.MjData], Vector], *, compiled
             # Run a step without the solution of the rows, which would double the cost.
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
-            rewrite(model, data)
+            rows(model, data)
             ends.append(read(data))
         direction[column] = 0.0
         columns.append((ends[0] - ends[1]) / (2.0 * DIFFERENCE_STEP))

@@ -1,6 +1,6 @@
 """One-step (discrete) map of the linear part of a time step, whose eigenvalues are the discrete poles of the car.
 
-The force of the rows in a step is f = f0 - D J a (`vehicle.engines.simulation.kernel`), in MuJoCo's Euler integration.
+The force of the rows in a step is f = f0 - D J a (`vehicle/core/source/rows.h`), in MuJoCo's Euler integration.
 In the motions u = N y that the ideal joints allow, with v the velocity at the middle of the past step, F the branch
 forces,
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from vehicle.engines.linear.displacement_laws import DisplacementLaw, forces_at_start
 from vehicle.engines.reduced.pole_model import Outputs
 from vehicle.engines.reduced.step_factors import CarFactors
-from vehicle.engines.reduced.table_layout import DOUBLE, TILE, TableRows, aligned_table
+from vehicle.engines.reduced.table_layout import BLOCK, DOUBLE, TILE, TableRows, aligned_table
 from vehicle.errors import SimulationError
 from vehicle.model.laws.curve import BEYOND
 from vehicle.model.laws.damper import RECORD, damper_curve, pack
@@ -74,6 +74,7 @@ class CarTable:
         initial: states of the first sample; (..., columns).
         rows: first rows of the sections.
         table: the table, which the time stepping changes; (rows, columns).
+        poles: factors of the poles in blocks, see `_packed_poles`; (rows, columns).
         laws: records of the dampers if a friction limit depends on the velocity, (d, columns) or, in double precision,
             (d, 1); otherwise empty.
     """
@@ -101,26 +102,30 @@ class CarTable:
         # The elements of rubber friction are distributed over the parts of a car, too.
         layers = -(-max((law.elements.shape[1] for car in cars for law in car.laws), default=0) // split)
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
+        # Real poles begin a block, so that the sums of a car do not depend on the poles of others.
+        pairs = BLOCK // 2 * -(-2 * pairs // BLOCK)
         self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         count = len(sensors[0].poles)
         self.inputs, self.sums = cars[0].step.shape[1] - 1, d + g + count
         damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
         node_count = max(len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car)
-        sizes = {"pair": 2 * pairs * (1 + self.inputs), "real": reals * (1 + self.inputs)}
-        sizes |= {"sum": 2 * pairs * self.sums, "real_sum": reals * self.sums}
-        sizes |= {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
+        sizes = {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
         sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
         sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": groups}
-        sizes["static"] = len(static[0]) if static else 0
+        sizes["rest"] = len(static[0]) if static else 0
         sizes |= dict.fromkeys(("spring", "give", "share", "slider"), groups * e)
         sizes |= {"corner": 3 * (laws - rubbers) * corners, "own": laws, "excess": laws, "heard": count * laws}
         sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach", "anchor", "middle"), rubbers * layers)
         sizes["ahead"] = rubbers
-        sizes |= {"work": d * (4 + 4 * node_count) + groups * (2 + 4 * e) + 2 * self.sums + TILE}
+        sizes |= {"work": d * (2 + 4 * node_count) + groups * (2 + 4 * e) + self.sums}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
-        self.table, self.initial = (aligned_table(rows, element) for rows in (section_ends[-1], self.states - m))
+        blocks = -(-(2 * pairs + reals) // BLOCK)
+        pole_rows = blocks * (2 * BLOCK + BLOCK * (self.inputs + self.sums))
+        self.table, self.poles, self.initial = (
+            aligned_table(rows, element) for rows in (section_ends[-1], pole_rows, self.states - m)
+        )
         self.initial[-m:] = start[1][:, None]
         record = np.zeros((d, lanes), dtype=RECORD)
         rows_of_cars = [car.rows(car_sensors.poles) for car, car_sensors in zip(cars, sensors, strict=True)]
@@ -128,9 +133,9 @@ class CarTable:
             record[:, lane] = [array for array, _, _ in damper_data[car]]
             # Repeating the last node gives segments of zero length.
             law = [nodes[np.minimum(np.arange(node_count), len(nodes) - 1)] for _, _, nodes in damper_data[car]]
-            poles = zip(("pair", "real", "sum", "real_sum"), (rows[part] for rows in rows_of_cars[car]), strict=True)
+            self.poles[:, lane] = _packed_poles([rows[part] for rows in rows_of_cars[car]], pairs, blocks).ravel()
             slip, gain, ramp = cars[car].gains
-            values = {**dict(poles), "gain": gain, "ramp": ramp, "law": np.array(law)}
+            values = {"gain": gain, "ramp": ramp, "law": np.array(law)}
             # Sums over the poles are added over the parts of a car, with the contribution of the plates once.
             values["slip"] = slip if part.start == 0 else 0.0 * slip
             values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
@@ -139,7 +144,7 @@ class CarTable:
             values["sensors"] = car_sensors.height[:, columns] @ start[0] + car_sensors.velocity[:, columns] @ start[1]
             sliders = cars[car].sliders
             values |= {"level": cars[car].levels if part.start == 0 else 0.0 * cars[car].levels}
-            values |= {"static": static[car]} if static else {}
+            values |= {"rest": static[car]} if static else {}
             if laws:
                 effect = np.diag(gain)[d + groups :]
                 tables, friction = cars[car].laws[: laws - rubbers], cars[car].laws[laws - rubbers :]
@@ -164,22 +169,20 @@ class CarTable:
             self.initial[2 * pairs :, lane][: len(real_start)] = real_start
         for name in ("stuck", "stick"):
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
-        del first_rows["pair"], first_rows["real_sum"]
         iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
         self.rows = TableRows(
-            pairs=pairs,
-            reals=reals,
+            states=2 * pairs + reals,
             iterations=iterations,
-            groups=(0.0,) * groups,
+            groups=groups,
             elements=e,
-            curves=(0.0,) * laws,
+            curves=laws,
             corners=corners,
             rubbers=rubbers,
             layers=layers,
             pieces=node_count - 1,
             **first_rows,
         )
-        varying = sizes["static"] > 0
+        varying = sizes["rest"] > 0
         varying |= any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
 
@@ -211,6 +214,34 @@ class CarTable:
         return table
 
 
+def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
+    """Return the factors of the poles of a column in blocks of BLOCK states, as `poles.c` reads them.
+
+    A block has for each pair the 2 x 2 matrix of E - 1, where a real pole is half of a pair; then for each input of a
+    step its factors in the changes of the states, and for each sum the weights of the states.
+
+    Args:
+        rows: rows of the column, see `CarFactors.rows`.
+        pairs: number of pairs in the columns of the group; the states of this column's real poles follow those.
+        blocks: number of blocks.
+
+    Returns:
+        Table; (blocks, 2 BLOCK + BLOCK (inputs + sums)).
+    """
+    pair, real, pair_sums, real_sums = rows
+    p, q, n, w = len(pair), len(real), real.shape[1] - 1, real_sums.shape[1]
+    change, factors = np.zeros((blocks * BLOCK // 2, 2, 2)), np.zeros((blocks * BLOCK, n + w))
+    decay, rotation = pair[:, 0], pair[:, 1]
+    change[:p] = np.stack([decay, -rotation, rotation, decay], axis=1).reshape(p, 2, 2)
+    factors[: 2 * p, :n] = pair[:, 2:].reshape(2 * p, n)
+    factors[: 2 * p, n:] = pair_sums.reshape(2 * p, w)
+    states = 2 * pairs + np.arange(q)
+    change[states // 2, states % 2, states % 2] = real[:, 0]
+    factors[states, :n], factors[states, n:] = real[:, 1:], real_sums
+    by_block = factors.reshape(blocks, BLOCK, n + w).transpose(0, 2, 1)
+    return np.hstack([change.reshape(blocks, 2 * BLOCK), by_block.reshape(blocks, -1)])
+
+
 def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Vector:
     """Return the laws g over r = x + G g(x)/2 as sides, breakpoints and slope changes; (laws, count, 3).
 
@@ -237,7 +268,7 @@ def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Ve
 
 
 def _rubber(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> dict[str, Vector]:
-    """Return the elements of rubber friction for the time step; see `vehicle.engines.reduced.scalar_elements`.
+    """Return the elements of rubber friction for the time step; see `scalar_elements.h` of the core.
 
     Args:
         laws: rubber friction.

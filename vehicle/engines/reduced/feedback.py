@@ -1,6 +1,6 @@
 """Inputs of a step that depend on the motion at its beginning: loads of rolling tyres on slopes, controlled dampers.
 
-A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle.engines.simulation.rolling_tyres`). The poles
+A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle/core/source/rolling.h`). The poles
 contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
 load and a slope that is not z'/V add
 
@@ -24,10 +24,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.compiler import jitable
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import tyre_outputs
-from vehicle.model.laws.control_laws import NUMBERS, PRESENT, RING, act, in_steps, pack
+from vehicle.model.laws.control_laws import NUMBERS, RING, in_steps, pack
 from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
@@ -39,20 +38,18 @@ class Feedback(NamedTuple):
     Attributes:
         tyres: number of driven plates whose tyre loads act on the slope.
         plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
-        dampers: indices of the k controlled dampers.
-        laws: their records of `vehicle.model.laws.control_laws`; (k,).
+        controlled: indices of the k controlled dampers.
+        settings: their records of `vehicle.model.laws.control_laws`; (k,).
         memory: states of their laws, with delayed settings; (k, ...).
-        step: index of the next step; (1,).
         owners: index of the damper of each group of Jenkins elements; (g,).
         sides: indices of the dampers whose friction limit depends on their side force; (k,).
     """
 
     tyres: int
     plate_inputs: int
-    dampers: npt.NDArray[np.int64]
-    laws: npt.NDArray[Any]
+    controlled: npt.NDArray[np.int64]
+    settings: npt.NDArray[Any]
     memory: Vector
-    step: npt.NDArray[np.int64]
     owners: npt.NDArray[np.int64]
     sides: npt.NDArray[np.int64]
 
@@ -127,31 +124,15 @@ def feedback_at_rest(
     """
     controlled = [index for index, damper in enumerate(dampers) if damper.controlled]
     numbers = [pack(damper.controlled) for damper in dampers if damper.controlled]
-    laws = in_steps(np.reshape(numbers, (-1, NUMBERS)), timestep)
-    memory = np.zeros((len(controlled), RING + 1 + int(np.max(laws["lag"], initial=0.0))))
-    memory[:] = laws["softest"][:, None]
+    settings = in_steps(np.reshape(numbers, (-1, NUMBERS)), timestep)
+    memory = np.zeros((len(controlled), RING + 1 + int(np.max(settings["lag"], initial=0.0))))
+    memory[:] = settings["softest"][:, None]
     return Feedback(
         tyres=tyres,
         plate_inputs=plate_inputs,
-        dampers=np.array(controlled, dtype=np.int64),
-        laws=laws,
+        controlled=np.array(controlled, dtype=np.int64),
+        settings=settings,
         memory=memory,
-        step=np.zeros(1, dtype=np.int64),
         owners=owners,
         sides=sides,
     )
-
-
-@jitable
-def excess_coefficient(feedback: Feedback, k: int, wheel: float, body: float) -> float:
-    """Return the mean coefficient of a controlled damper in the next step, less the softest one [N s/m].
-
-    Args:
-        feedback: changed in place.
-        k: number of the controlled damper.
-        wheel, body: measured velocities [m/s].
-    """
-    law, memory = feedback.laws[k], feedback.memory[k]
-    act(law, feedback.step[0], body, wheel, memory)
-    excess: float = memory[PRESENT] - law["softest"]
-    return excess

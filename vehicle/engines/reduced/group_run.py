@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.core.library import core
+from vehicle.core.records import packed
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import forces_at_start
 from vehicle.engines.linear.load_rows import LoadRows
@@ -18,7 +21,7 @@ from vehicle.engines.reduced.load_outputs import load_outputs
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
-from vehicle.engines.reduced.table_layout import INNER_BLOCK, PAST, SINGLE, TILE, OutputTiles, aligned_table
+from vehicle.engines.reduced.table_layout import BLOCK, INNER_BLOCK, PAST, SINGLE, TILE, OutputTiles, aligned_table
 from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bodies, tyre_outputs
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
@@ -28,7 +31,7 @@ from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
 
-BLOCK = 64 * INNER_BLOCK
+SAMPLES = 64 * INNER_BLOCK
 """Samples in a block of plate displacements."""
 
 
@@ -135,9 +138,9 @@ class GroupRun:
         for index, wheel in enumerate(system.inputs[:count]):
             names = f"damper_{wheel}_velocity", f"damper_{wheel}_force", f"friction_{index}"
             rows |= {name: speeds + part * count + index for part, name in enumerate(names)}
-        for k, index in enumerate(self.feedback.dampers.tolist()):
+        for k, index in enumerate(self.feedback.controlled.tolist()):
             rows[f"damper_{system.inputs[index]}_coefficient"] = speeds + 3 * count + k
-        curves = speeds + 3 * count + len(self.feedback.dampers)
+        curves = speeds + 3 * count + len(self.feedback.controlled)
         rows |= {f"law_{index}": curves + index for index in range(len(laws))}
         static_values = np.zeros((len(channels), self.cars.table.shape[1]))
         for row, name in enumerate(channels):
@@ -164,13 +167,13 @@ class GroupRun:
             ),
             rotations=self.cars.tiles(rotations),
             loads=len(tyre_wheels),
-            tyres=np.array([law.plate for law in laws], dtype=np.int64),
+            tyre_of=np.array([law.plate for law in laws], dtype=np.int64),
             watched=watched,
-            every=check_stride(self.interval),
+            check_every=check_stride(self.interval),
             always=any(name in tyre_wheels or name in load_names for name in channels),
             wanted=np.array([rows.get(name, -1) for name in channels], dtype=np.int64),
             offset=static_values,
-            weights=(np.cumsum(WEIGHTS[::-1])[::-1][1:] / self.interval**2).astype(self.element),
+            weights=(np.cumsum(WEIGHTS[::-1])[None, ::-1][:, 1:] / self.interval**2).astype(self.element),
         )
         width = curves + len(laws)
         y = aligned_table((PAST + INNER_BLOCK) * width, self.element)
@@ -185,14 +188,14 @@ class GroupRun:
             for law, force in zip(laws, excess, strict=True):
                 if law.plate >= 0:
                     first_sample[levels + law.plate, lane] -= force
-        first_sample[speeds + 3 * count : curves] = 0.5 * self.feedback.laws["softest"][:, None]
+        first_sample[speeds + 3 * count : curves] = 0.5 * self.feedback.settings["softest"][:, None]
         peaks = aligned_table(len(bodies) + 2 * watched, self.element)
         controls = [
             (f"damper_{system.inputs[index]}", law.controlled)
             for index, law in enumerate(self.dampers[0])
             if law.controlled
         ]
-        with controllers(self.feedback.laws, controls, self.timestep) as check:
+        with controllers(self.feedback.settings, controls, self.timestep) as check:
             self._step_blocks(reading, y, peaks, table, rows_of_cars)
             check()
         return [
@@ -221,33 +224,37 @@ class GroupRun:
     def _step_blocks(
         self, reading: OutputTiles, y: Vector, peaks: Vector, table: Vector, rows_of_cars: Sequence[int]
     ) -> None:
-        """Advance the cars block by block; see `time_stepping.step_cars` for the arguments."""
-        from vehicle.engines.reduced.time_stepping import compiled_stepping
-
-        stepping, cars, every = compiled_stepping(), self.cars, self.every
-        m, x = cars.plates, aligned_table((INNER_BLOCK + 1) * cars.states, self.element)
-        kept = INNER_BLOCK + 1 if self.element == SINGLE and self.models[0].slope.shape[1] else 0
-        changes = aligned_table(kept * (2 * cars.rows.pairs + cars.rows.reals), self.element)
+        """Advance the cars block by block: fill the record March of the core, and call it, for each block."""
+        cars, every, m = self.cars, self.every, self.cars.plates
+        x = aligned_table((INNER_BLOCK + 1) * cars.states + BLOCK, self.element)
+        kept = self.element == SINGLE and self.models[0].slope.shape[1] > 0
+        changes = aligned_table(((INNER_BLOCK + 1) * cars.rows.states + BLOCK) * kept, self.element)
         x[: len(cars.initial)] = cars.initial
-        lengths = tuple((0.0,) * count for count in (cars.inputs, cars.sums, len(self.dampers[0])))
-        constant, indices = (cars.table, cars.rows, cars.laws, self.feedback), np.array(rows_of_cars, dtype=np.int64)
+        constant = reading._asdict() | self.feedback._asdict()
+        constant |= {"rows": cars.rows, "table": cars.table, "poles": cars.poles, "laws": cars.laws}
+        constant |= {"inputs": cars.inputs, "sums": cars.sums, "plates": m, "dampers": len(self.dampers[0])}
+        constant |= {"every": every, "x": x, "changes": changes, "y": y, "peaks": peaks, "out": table}
+        constant |= {"cars": np.array(rows_of_cars, dtype=np.int64)}
+        march = core().core_march_f if self.element == SINGLE else core().core_march_d
         sample, end = 1, table.shape[2] + AHEAD
         while sample < end:
-            size, first = min(BLOCK, end - sample), (sample - 1) * every
-            plates = self.plates[first : first + size * every + 1]
+            size, step = min(SAMPLES, end - sample), (sample - 1) * every
+            plates = self.plates[step : step + size * every + 1]
             rates = np.zeros((len(plates), 4 * m), dtype=self.element)
             rates[:, :m], rates[:, 2 * m : 3 * m], rates[:, 3 * m :] = plates[:, 1::3], plates[:, 0::3], plates[:, 2::3]
             rates[:-1, m : 2 * m] = np.diff(plates[:, 0::3], axis=0) / self.timestep
             displacements = plates[::every, 0::3]
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(self.element)
-            stepping(*constant, rates, plate_z, every, reading, x, changes, y, peaks, table, sample, indices, *lengths)
+            block = {"rates": rates, "plate_z": plate_z, "first": sample, "step": step}
+            record = packed("March", constant | block)
+            march(ctypes.c_void_p(record.address))
             sample += size
 
     @staticmethod
     def _validity(
         car_peaks: Vector, model: PoleModel, bodies: Sequence[str], tyre_load: Mapping[str, float]
     ) -> Validity:
-        """Return the validity of the motion of a car from its peaks; see `step_cars` for their order."""
+        """Return the validity of the motion of a car from its peaks; see `outputs.c` of the core for their order."""
         rotations, low = car_peaks[: len(bodies)], car_peaks[len(bodies) :: 2]
         wheels = model.matrices.system.inputs
         return Validity(

@@ -178,7 +178,7 @@ class CarFactors:
         return eta[: self.pairs], eta[self.pairs :].real
 
     def rows(self, sensors: Complex) -> tuple[Vector, Vector, Vector, Vector]:
-        """Return the rows of the pairs and of the real poles for `vehicle.engines.reduced.time_step.advance`.
+        """Return the rows of the pairs and of the real poles for the tables of the core.
 
         Args:
             sensors: rows of sensors over the poles; (s, n).

@@ -22,6 +22,9 @@ VECTOR_BYTES = 32
 LANES = VECTOR_BYTES // SINGLE.itemsize
 """Cars in a SIMD vector in single precision."""
 
+BLOCK = 8
+"""States of a column in a block of `poles.c`; the states and changes of samples end with as many more rows."""
+
 INNER_BLOCK = 64
 """Samples in an inner block, after which outputs are computed: their states fit in the cache of a core."""
 
@@ -33,18 +36,13 @@ PAST = 2 * AHEAD
 
 
 class TableRows(NamedTuple):
-    """First rows of the sections of a table of cars, and their sizes.
+    """First rows of the sections of a table of cars, and their sizes: the record Sections of the core.
 
     Attributes:
-        pairs, reals: numbers of pole pairs and real poles in a column; the table begins with the factors of the
-            pairs.
+        states: number of states of the poles in a column, of pairs and of real poles.
         iterations: Gauss-Seidel iterations over the forces.
-        real: first row of the factors of the real poles.
-        sum: damper velocities, displacements of groups and laws, and sensors over the states of the poles.
-        groups: tuple with the length of the groups of Jenkins elements, which the compiler knows.
-        elements: number of elements of a group.
-        curves: tuple with the length of the laws over displacement, which the compiler knows.
-        corners: number of breakpoints of a law.
+        groups: number of groups of Jenkins elements. elements: number of elements of a group.
+        curves: number of laws over displacement. corners: number of breakpoints of a law.
         rubbers: number of the laws that are rubber friction, which come last.
         layers: number of elements of a rubber friction in a column.
         slip: contribution of z' at the end of a step to the damper velocities and to the displacements of groups and
@@ -53,8 +51,8 @@ class TableRows(NamedTuple):
         law: `pieces` + 1 breakpoints (x, F_c/2, friction over its limit) of each damper.
         pieces: number of segments of the laws.
         limit, full: friction limits; velocities of full friction.
-        inputs: damper forces, their slopes, forces of groups and laws, z' and mean z' of a step, and the inputs by
-            `vehicle.engines.reduced.feedback`.
+        inputs: damper forces, their slopes, forces of groups and laws, z' and mean z' of a step, slope forces of
+            rolling tyres, and z of the plates of slow poles.
         viscous: damping constants in the poles.
         velocity, earlier: current velocities and those of the last step.
         hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
@@ -64,30 +62,27 @@ class TableRows(NamedTuple):
         spring, give, share: stiffness k of the Jenkins elements, 1/k (0 without), and their shares of the limit.
         slider: forces of the elements at the beginning of the step.
         place: displacements of the groups there.
-        static: side forces at rest.
+        rest: side forces at rest.
         corner: `corners` numbers (side, breakpoint, slope change) of each law, over the displacement without its force
             at the end of the step.
         own: halves of the effects of the forces of the laws on their displacements.
         excess: forces g of the laws. heard: contributions of these to each sensor.
         stiff, stroke: stiffness k and stroke x of the elements of rubber friction.
         part, weight, reach: shares, weights and half widths of these over the displacement without their own force, see
-            `vehicle.engines.reduced.scalar_elements`.
+            `scalar_elements.h` of the core.
         anchor, middle: positions of their sliders, and the middles over that displacement. ahead: further part of the
             middles in a column, by the elements of the columns before.
         work: work space for the solution of a step.
     """
 
-    pairs: int
-    reals: int
+    states: int
     iterations: int
-    groups: tuple[float, ...]
+    groups: int
     elements: int
-    curves: tuple[float, ...]
+    curves: int
     corners: int
     rubbers: int
     layers: int
-    real: int
-    sum: int
     slip: int
     level: int
     gain: int
@@ -111,7 +106,7 @@ class TableRows(NamedTuple):
     share: int
     slider: int
     place: int
-    static: int
+    rest: int
     corner: int
     own: int
     excess: int
@@ -130,26 +125,28 @@ class TableRows(NamedTuple):
 class OutputTiles(NamedTuple):
     """Weights of the outputs of a sample, in tiles, and their use.
 
+    Its arrays are those of the record March of the core.
+
     Attributes:
         positions, levels: tiles of the positions of acceleration channels, and of forces and displacements.
         rotations: one tile of rotations for each body.
         loads: number of the levels that are tyre loads, which come first.
-        tyres: level of the tyre of each law over displacement; -1 for a law that is no tyre.
+        tyre_of: level of the tyre of each law over displacement; -1 for a law that is no tyre.
         watched: number of the levels whose extremes are kept, a multiple of TILE.
-        every: samples from one check of rotations and tyre loads to the next.
+        check_every: samples from one check of rotations and tyre loads to the next.
         always: compute levels at every sample; otherwise only at the checks.
         wanted: row of a sample for each channel, positions first; -1 for channels that are not computed here.
         offset: static value of each channel; (channels, columns).
-        weights: weights of the differences of positions for `acceleration`; (2 AHEAD,).
+        weights: weights of the differences of positions in an acceleration; (1, 2 AHEAD).
     """
 
     positions: Any
     levels: Any
     rotations: Any
     loads: int
-    tyres: Any
+    tyre_of: Any
     watched: int
-    every: int
+    check_every: int
     always: bool
     wanted: Any
     offset: Any
@@ -157,7 +154,7 @@ class OutputTiles(NamedTuple):
 
 
 def aligned_table(rows: int, element: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return an aligned table (rows, columns) of zeros; `simd_vector.load` and `store` need the alignment."""
+    """Return an aligned table (rows, columns) of zeros; the core needs the alignment."""
     size = rows * VECTOR_BYTES
     buffer = np.zeros(size + VECTOR_BYTES, dtype=np.uint8)
     start = -buffer.ctypes.data % VECTOR_BYTES

@@ -115,7 +115,7 @@ class AxleParts:
         struts: dampers.
         standing: force [N] and torque [N m] of the ground on each wheel in the design position, without the vertical
             load, (wheels, 6).
-        round: ids of the wheels with a round tyre; see `vehicle.engines.simulation.round_tyres`.
+        round: ids of the wheels with a round tyre; see `vehicle/core/source/rows.h`.
     """
 
     wheels: tuple[int, ...]

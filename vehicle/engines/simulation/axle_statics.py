@@ -224,7 +224,7 @@ class AxleStatics:
         carried, rotated = self.jacobian(int(bodies[carrier]), data.site_xpos[moving])
         gap = law_frame.T @ (data.site_xpos[moving] - data.site_xpos[carrier])
         relative = frame.T @ data.site_xmat[moving].reshape(3, 3)
-        # sin(angle) n, the law of the runs (`vehicle.engines.simulation.rotations`).
+        # sin(angle) n, the law of the runs (`vehicle/core/source/rotations.h`).
         angle = 0.5 * np.array([relative[i, j] - relative[j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
         return gap, angle, law_frame.T @ (moved - carried), frame.T @ (turned - rotated)
 

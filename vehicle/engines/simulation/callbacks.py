@@ -1,4 +1,8 @@
-"""Process-wide callbacks of MuJoCo: compiled for a run, in Python for single states; installed for one model only."""
+"""Process-wide callbacks of MuJoCo, installed for one model only.
+
+A run has functions of the core in their place; single states have Python functions, which call the core and let errors
+through.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ import mujoco
 
 from vehicle.engines.simulation.damper_force import fill_sensors
 from vehicle.engines.simulation.rows import Rows
-from vehicle.errors import MissingPartError, SimulationError
+from vehicle.errors import SimulationError
 
 if TYPE_CHECKING:
     from vehicle.engines.simulation.compiled import CompiledRows
@@ -25,8 +29,8 @@ def installed(rows: Rows, compiled: CompiledRows | None = None) -> Iterator[None
 
     Args:
         rows: rows of the model that is stepped inside the block.
-        compiled: compiled form of the callbacks, installed in place of the Python form; it acts on attached states,
-            and is detached from them at the end.
+        compiled: callbacks of the core, installed in place of the Python functions; they act on attached states, and
+            are detached from them at the end.
 
     Raises:
         SimulationError: other callbacks are installed already.
@@ -69,24 +73,3 @@ def _write_log(log: mujoco.MjLogConfig, *, console: bool, file: bool) -> None:
     """Switch the console and file output of MuJoCo's messages."""
     log.logto_console, log.logto_file = console, file
     mujoco.MjLogConfig.set(log)
-
-
-def compiled_rows(rows: Rows) -> CompiledRows:
-    """Return the compiled callbacks of a simulation.
-
-    Args:
-        rows: rows of a prepared model, before the run; the callbacks work on their records.
-
-    Returns:
-        Compiled callbacks without an attached state.
-
-    Raises:
-        MissingPartError: numba cannot be imported, or the installed MuJoCo does not fit its declarations.
-    """
-    try:
-        from vehicle.engines.simulation.compiled import CompiledRows
-    except ImportError as error:
-        raise MissingPartError(
-            f"a run needs numba, which cannot be imported ({error}); install it: pip install --force-reinstall numba"
-        ) from None
-    return CompiledRows(rows)

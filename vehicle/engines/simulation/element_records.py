@@ -1,4 +1,4 @@
-"""Records of the elements of a car for compiled code: constraint rows of each element and constants of its law.
+"""Records of the elements of a car for the core: constraint rows of each element and constants of its law.
 
 Arrays are contiguous, of 64 bits. The types name their dimensions: `Vector` and `Index` one, `Table` and `Indices` two,
 `Tables3` three.
@@ -10,8 +10,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from vehicle.compiler import jitable
 
 Vector = npt.NDArray[np.float64]
 Table = npt.NDArray[np.float64]
@@ -223,7 +221,7 @@ class Modes(NamedTuple):
 
 
 class ModalSpace(NamedTuple):
-    """Modal coordinates that the callbacks integrate (`vehicle.engines.simulation.modal_space`), n of them or 0.
+    """Modal coordinates that the callbacks integrate (`vehicle/core/source/modes.h`), n of them or 0.
 
     Attributes:
         mass, stiffness, damping, rest: modal parameters weighted for the step, and unstrained positions; (n,).
@@ -337,10 +335,3 @@ class Layout(NamedTuple):
     reach: Indices
     row_count: int
     velocity_count: int
-
-
-@jitable
-def copy_row(row: Vector, values: Vector) -> None:
-    """Copy values in a loop: an array assignment would double the compile time by its error messages."""
-    for entry in range(values.shape[0]):
-        row[entry] = values[entry]

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.compiled import SteppingLoop
 from vehicle.engines.simulation.damper_force import damper_forces, has_stops, stop_forces
 from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.load_channels import LoadPlaces, slope_forces, spring_coordinates
@@ -17,7 +18,7 @@ from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Energies, Recording, Statistics
 from vehicle.engines.simulation.row_layout import numeric
 from vehicle.engines.simulation.rows import Rows, joint_dampers
-from vehicle.engines.simulation.sampling import Order, Samples, Sources, empty_samples, keep_sample
+from vehicle.engines.simulation.sampling import Order, Samples, Sources, empty_samples
 from vehicle.names import AXES, channel_units
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -133,10 +134,10 @@ class Recorder:
             self.new_poses.append(self.data.qpos.copy())
             self.pose_index.append(self.done + self.filled)
 
-    def after_step(self, *, moved: bool) -> None:
+    def after_step(self, loop: SteppingLoop, *, moved: bool) -> None:
         """Store the sample of the present time; `moved` is True after a step, False after an evaluation."""
         half = self.order.half if moved else -self.order.half
-        keep_sample(self.filled, half, self.order, self.sources, self.data.efc_force, self.buffers)
+        loop.keep_sample(self.filled, half)
         self.filled += 1
         if self.energy_at_start is None or not moved:
             energy = self._stored_energy(half)
@@ -145,7 +146,7 @@ class Recorder:
             self.energy_at_end = energy
 
     def keep(self, last: int, posed: int) -> None:
-        """Register the samples up to step `last` from the compiled loop, and copy the `posed` new poses."""
+        """Register the samples up to step `last` from the loop, and copy the `posed` new poses."""
         samples = np.arange(self.done + self.filled, last // self.every + 1)
         self.filled += len(samples)
         self.new_poses.extend(self.buffers.poses[:posed].copy())

@@ -210,8 +210,8 @@ def _modes(
         first_position=int(model.jnt_qposadr[joints[0]]) if joints else 0,
         turns=dofs[_turns(model)[dofs]],
         rows=np.ascontiguousarray(_triples(rows_of(names)).T),
-        node_shapes=by_node.transpose(1, 0, 2).reshape(3, len(names) * len(modal)),
-        mode_shapes=by_node.transpose(2, 1, 0).reshape(len(modal), 3 * len(names)),
+        node_shapes=np.ascontiguousarray(by_node.transpose(1, 0, 2).reshape(3, len(names) * len(modal))),
+        mode_shapes=np.ascontiguousarray(by_node.transpose(2, 1, 0).reshape(len(modal), 3 * len(names))),
     )
 
 

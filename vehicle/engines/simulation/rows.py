@@ -8,16 +8,21 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.core.records import Packed
 from vehicle.engines.simulation.element_records import Layout, ModalSpace
 from vehicle.engines.simulation.force_curves import standing_on
-from vehicle.engines.simulation.kernel import EMPTY_ROW, damper_force, rewrite
 from vehicle.engines.simulation.law_arrays import Numbers, law_names, with_numbers
 from vehicle.engines.simulation.row_layout import read_layout
-from vehicle.engines.simulation.step_records import Efc, Fields, State, Weights
+from vehicle.engines.simulation.simulation_record import functions, packed_simulation
+from vehicle.engines.simulation.step_records import State, Weights
 from vehicle.engines.simulation.step_weights import FITTED_PHASE, FOURTH_ORDER, average, implicit_share
+from vehicle.errors import SimulationError
 from vehicle.model.laws.control_laws import RING
 
 Vector = npt.NDArray[np.float64]
+
+EMPTY_ROW = 1e-9
+"""Impedance [kg] of a row without damping and stiffness: nonzero, and small against every mass."""
 
 
 def prepare_model(model: mujoco.MjModel) -> None:
@@ -85,6 +90,9 @@ class Rows:
         self.layout = standing_on(layout, preload)
         self.weights = weights(model, self.layout, force)
         self.state = _at_rest(self.layout)
+        # Loaded here: MuJoCo cannot be asked for its layout inside a callback.
+        self._core = functions()
+        self._packed: tuple[tuple[object, ...], Packed] | None = None
 
     @property
     def directions(self) -> dict[int, Vector]:
@@ -113,21 +121,30 @@ class Rows:
         for present, fresh in zip(self.state, _at_rest(self.layout), strict=True):
             present[...] = fresh
 
-    def fields(self, data: mujoco.MjData) -> Fields:
-        """Return the fields of a state with constant addresses that the laws read and write."""
-        return Fields(**{name: getattr(data, name) for name in Fields._fields})
-
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Rewrite the rows of `data` in Python, as `mjcb_control`."""
-        efc = {name: getattr(data, f"efc_{name}") for name in Efc._fields}
-        efc["J"] = efc["J"].reshape(self.layout.row_count, model.nv)
+        """Rewrite the rows of a state in MuJoCo's dense format, as `mjcb_control`.
+
+        Raises:
+            SimulationError: the state has other constraint rows than the car.
+        """
+        if data.nefc != self.layout.row_count or data.nJ != data.nefc * model.nv:
+            raise SimulationError(
+                f"the state has {data.nefc} constraint rows with {data.nJ} numbers, the car has "
+                f"{self.layout.row_count} dense ones; leave its equalities and the format of its rows as they are"
+            )
         # The caller detects nonfinite states.
-        with np.errstate(all="ignore"):
-            rewrite(data.time, self.fields(data), Efc(**efc), self.layout, self.weights, self.state)
+        self._core.core_rewrite_d(self._record(data).address, data._address)
 
     def actuator_bias(self, model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:
         """Return the viscous force of a damper [N], as `mjcb_act_bias`."""
-        return float(damper_force(index, self.fields(data), self.layout, self.state))
+        return float(self._core.core_damper_force_d(self._record(data).address, index))
+
+    def _record(self, data: mujoco.MjData) -> Packed:
+        """Return the record of a state for the core, packed anew only if one of its parts is another one."""
+        parts = (data, self.layout, self.weights, self.state)
+        if self._packed is None or any(one is not other for one, other in zip(self._packed[0], parts, strict=True)):
+            self._packed = parts, packed_simulation(self, data)
+        return self._packed[1]
 
     @staticmethod
     def actuator_gain(model: mujoco.MjModel, data: mujoco.MjData, index: int) -> float:

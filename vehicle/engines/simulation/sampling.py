@@ -1,4 +1,4 @@
-"""Plate motion before `mj_step` and sampling after it, for compiled code."""
+"""Records of the stepping loop (`vehicle/core/source/stepping.h`): plate motion before a step, samples after it."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vehicle.compiler import jitable
-from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector, copy_row
-from vehicle.engines.simulation.modal_space import modal_acceleration
+from vehicle.engines.simulation.element_records import Index, Indices, ModalSpace, Table, Tables3, Vector
 
 
 class Plates(NamedTuple):
@@ -140,76 +138,9 @@ class Order(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """Records of the compiled loop."""
+    """Records of the loop."""
 
     order: Order
     plates: Plates
     sources: Sources
     samples: Samples
-
-
-@jitable
-def move_plates(index: int, p: Plates) -> None:
-    """Set the plate heights of a step, and the plate motion of the tyre rows."""
-    for plate in range(p.mocap.shape[0]):
-        p.mocap_position[p.mocap[plate], 2] = p.height[index, plate]
-        p.row_velocity[plate, 2] = p.velocity[index, plate]
-        p.row_acceleration[plate, 2] = p.acceleration[index, plate]
-        p.row_slope[plate] = p.slope[index, plate]
-
-
-@jitable
-def keep_modes(row: int, order: Order, s: Sources, b: Samples) -> None:
-    """Store the modal coordinates of the last evaluation, and their velocities half a step later."""
-    q, v, pull, first = s.modal[0], s.modal[1], b.modal_pull, order.first_velocity
-    for j in range(pull.shape[0]):
-        pull[j] = s.acceleration[first + j] - s.modal_force[j]
-    for mode in range(q.shape[0]):
-        b.modal_position[row, mode] = q[mode]
-        if pull.shape[0] == 0:
-            faster = s.acceleration[first + mode]
-        else:
-            faster = modal_acceleration(mode, q, v, pull, s.space)
-        b.modal_velocity[row, mode] = v[mode] - order.half * faster
-
-
-@jitable
-def keep_sample(row: int, half: float, order: Order, s: Sources, solved: Vector, b: Samples) -> None:
-    """Store forces, rates and positions of the present time.
-
-    MuJoCo's velocity is that of the middle of a step; `half` times the acceleration extrapolates to the present. After
-    a step, with `half` negative, the positions of the joints are those of its end.
-    """
-    for point in range(s.sites.shape[0]):
-        for axis in range(3):
-            b.places[row, 3 * point + axis] = s.site_positions[s.sites[point], axis]
-    copy_row(b.turn[row], s.orientation[order.body])
-    keep_modes(row, order, s, b)
-    for damper in range(s.dampers.shape[0]):
-        dof = s.dampers[damper]
-        b.damper_velocity[row, damper] = s.velocity[dof] + half * s.acceleration[dof]
-    copy_row(b.coefficient[row], s.coefficient)
-    copy_row(b.actuator[row], s.actuator)
-    copy_row(b.solved[row], solved)
-    copy_row(b.explicit[row], s.explicit)
-    for element in range(s.rate.shape[0]):
-        copy_row(b.rate[row, element], s.rate[element])
-        copy_row(b.branch[row, element], s.branch[element])
-    copy_row(b.contact[row], s.contact[0])
-    copy_row(b.rubber[row], s.rubber[0])
-    copy_row(b.heading[row], s.heading[0])
-    b.pushed[row] = 0.0
-    for dof in range(s.push.shape[0]):
-        b.pushed[row] += s.push[dof] * (s.velocity[dof] + half * s.acceleration[dof])
-    for spring in range(s.spring_rates.shape[0]):
-        dof = s.spring_rates[spring]
-        b.spring_rates[row, spring] = s.velocity[dof] + half * s.acceleration[dof]
-    for body in range(s.load_bodies.shape[0]):
-        for axis in range(3):
-            b.load_frames[row, 12 * body + axis] = s.origins[s.load_bodies[body], axis]
-        for entry in range(9):
-            b.load_frames[row, 12 * body + 3 + entry] = s.orientation[s.load_bodies[body], entry]
-    for spring in range(s.load_springs.shape[0]):
-        point, dof = s.load_springs[spring, 0], s.load_springs[spring, 1]
-        b.load_springs[row, 2 * spring] = s.position[point] + min(2.0 * half, 0.0) * s.velocity[dof]
-        b.load_springs[row, 2 * spring + 1] = s.velocity[dof] + half * s.acceleration[dof]

@@ -19,11 +19,13 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.element_records import Layout
-from vehicle.engines.simulation.predicted_acceleration import TILE
 from vehicle.engines.simulation.step_records import Solution, SparseRows
 from vehicle.engines.simulation.structures import SPARSE, Offsets
 
 Mask = npt.NDArray[np.bool_]
+
+TILE = 4
+"""Rows and columns of a tile, as in `vehicle/core/source/prediction.h`."""
 
 
 def nonzero_columns(model: mujoco.MjModel, layout: Layout) -> Mask:

@@ -25,19 +25,6 @@ class Fields(NamedTuple):
     M: Vector
 
 
-class Efc(NamedTuple):
-    """Fields of mjData over the constraint rows, whose addresses change between steps; in mjData `efc_` + name."""
-
-    J: Table
-    KBIP: Table
-    pos: Vector
-    vel: Vector
-    aref: Vector
-    D: Vector
-    R: Vector
-    frictionloss: Vector
-
-
 class Weights(NamedTuple):
     """Weights of the rows for a time step; arrays over the elements as in `Layout`.
 
@@ -152,13 +139,13 @@ class SparseRows(NamedTuple):
 
 
 class Ticket(NamedTuple):
-    """Addresses with which a compiled callback finds and checks its state.
+    """Addresses with which a callback finds and checks its state.
 
     Attributes:
         model: address of mjModel.
         rows: number of constraint rows in the records.
         row_count, time: byte offsets of `nefc` and `time` in mjData.
-        efc: byte offsets of the pointers of `Efc`, in its order; (8,).
+        efc: byte offsets of the pointers to the fields over the rows, in the order of `structures.ROW_FIELDS`; (8,).
         sparse: Jacobian in MuJoCo's sparse format.
     """
 
@@ -171,7 +158,7 @@ class Ticket(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """Equations of a step in tiles of 4 x 4; see `vehicle.engines.simulation.predicted_acceleration`.
+    """Equations of a step in tiles of 4 x 4; see `vehicle/core/source/prediction.h`.
 
     Attributes:
         size: number of velocity coordinates nv; n is the next multiple of 4.
@@ -202,7 +189,7 @@ class Solution(NamedTuple):
 
 
 class Simulation(NamedTuple):
-    """Records of a compiled callback."""
+    """Records of a callback."""
 
     ticket: Ticket
     fields: Fields

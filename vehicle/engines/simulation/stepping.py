@@ -10,8 +10,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.callbacks import compiled_rows, installed
+from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.compiled import CompiledRows, SteppingLoop
 from vehicle.engines.simulation.judgement import judge_energy
 from vehicle.engines.simulation.plate_arrays import PlateArrays, PlateBlock
 from vehicle.engines.simulation.recorded_acceleration import AHEAD
@@ -19,7 +20,7 @@ from vehicle.engines.simulation.recorder import CHUNK, Recorder
 from vehicle.engines.simulation.recording import Recording, Statistics
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
-from vehicle.engines.simulation.sampling import Loop, Plates, move_plates
+from vehicle.engines.simulation.sampling import Loop, Plates
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.controller_fmu import controllers
 from vehicle.signals.excitation.signal import Signal
@@ -55,7 +56,7 @@ def simulate(
 
     Raises:
         ConfigurationError: the recording rate is not an integer fraction of the step rate.
-        MissingPartError: numba is missing, or the installed MuJoCo version does not match its declarations.
+        MissingPartError: there is no core for this platform, or the installed MuJoCo does not match its declarations.
         SimulationError: the state is not finite, MuJoCo warned, or the energy balance does not close; the
             message contains time and joint.
     """
@@ -83,12 +84,12 @@ def simulate(
         row_acceleration=rows.state.plate_acceleration,
         row_slope=rows.state.slope_velocity,
     )
-    compiled = compiled_rows(rows)
+    compiled = CompiledRows(rows)
     recorder = Recorder(
         car, model, data, rows, samples=count // every + 1, every=every, pose_every=pose_every, requested=requested
     )
     compiled.attach(data, sparse=True)
-    advance = compiled.loop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
+    loop = SteppingLoop(Loop(recorder.order, plates, recorder.sources, recorder.buffers))
     laws = {damper.name: damper.law.controlled for damper in car.vehicle.composition.dampers}
     names = [rows.laws.dampers[index] for index in rows.layout.controls.dampers]
     controls = [(name, control) for name in names if (control := laws[name]) is not None]
@@ -102,11 +103,11 @@ def simulate(
             # The block must contain all samples in the buffers, which are evaluated together.
             offset = block.reach(min(index, every * recorder.done), last if several else index)
             if several:
-                recorder.keep(last, advance(index - offset, last - offset, recorder.filled))
+                recorder.keep(last, loop.advance(index - offset, last - offset, recorder.filled))
                 index = last
             else:
-                move_plates(index - offset, plates)
-                _step(model, data, recorder, recorded=index % every == 0, moved=index < count)
+                loop.move_plates(index - offset)
+                _step(model, data, recorder, loop, recorded=index % every == 0, moved=index < count)
             if index == count or recorder.filled == CHUNK:
                 check()
                 _check_state(model, data, recorder, every * step)
@@ -115,7 +116,7 @@ def simulate(
                     progress(index / count)
             index += 1
         for index in range(count, count + AHEAD * every):
-            move_plates(index - block.reach(index, index), plates)
+            loop.move_plates(index - block.reach(index, index))
             mujoco.mj_step(model, data)
             if (index + 1) % every == 0:
                 recorder.keep_ahead((index + 1 - count) // every - 1)
@@ -141,7 +142,9 @@ def simulate(
     return recorder.recording(signal, statistics)
 
 
-def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, recorded: bool, moved: bool) -> None:
+def _step(
+    model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, loop: SteppingLoop, *, recorded: bool, moved: bool
+) -> None:
     """Take a step, or evaluate the final state if not `moved`; store a sample if `recorded`."""
     if recorded:
         recorder.before_step()
@@ -150,7 +153,7 @@ def _step(model: mujoco.MjModel, data: mujoco.MjData, recorder: Recorder, *, rec
     else:
         mujoco.mj_forward(model, data)
     if recorded:
-        recorder.after_step(moved=moved)
+        recorder.after_step(loop, moved=moved)
 
 
 def record_every(car: CarModel) -> int:

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import mujoco
 
-from vehicle.engines.simulation.step_records import Efc
 from vehicle.errors import MissingPartError
 
 Layout = type[ctypes.Structure]
@@ -34,7 +33,11 @@ PLAIN_TYPES: dict[str, Any] = {
 SPARSE = ("efc_J_rownnz", "efc_J_rowadr", "efc_J_rowsuper", "efc_J_colind", "efc_J")
 """Arrays of a sparse constraint Jacobian in mjData."""
 
-POINTERS = (*(f"efc_{name}" for name in Efc._fields), *SPARSE[:-1], "efc_force", "userdata")
+ROW_FIELDS = ("J", "KBIP", "pos", "vel", "aref", "D", "R", "frictionloss")
+"""Fields of mjData over the constraint rows, whose addresses change between steps, without `efc_`; the order of
+`Ticket.efc`."""
+
+POINTERS = (*(f"efc_{name}" for name in ROW_FIELDS), *SPARSE[:-1], "efc_force", "userdata")
 """Array pointers of mjData that compiled code follows."""
 
 PROBE = """<mujoco><size nuserdata="2"/><option jacobian="sparse"/><worldbody><body>

@@ -13,7 +13,7 @@ law switches by share and 1 - share of the range. Without the brackets the hybri
 are c and the share is a half: a passive damper.
 
 The law `fmu` takes its coefficient, within the limits, from a controller in an FMU
-(`vehicle.model.laws.controller_call`).
+(`vehicle.model.laws.controller_fmu`).
 
 Once a period the controller reads both velocities and holds its demand until the next reading. The damper receives the
 demand after the delay, and follows with its maximum rate; c v opposes v at every instant.
@@ -46,7 +46,7 @@ SETTING = np.dtype(
             "period",  # steps between two readings of the sensors
             "lag",  # steps from reading to setting
             "change",  # largest change of the coefficient in a step [N s/m]
-            "controller",  # address of the memory of a controller FMU during a run, otherwise 0
+            "controller",  # address of the record of a controller FMU during a run, otherwise 0
         )
     ],
     align=True,

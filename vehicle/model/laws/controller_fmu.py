@@ -3,9 +3,20 @@
 An FMU is native code, which runs with all rights of the user. So it is loaded only if the car has its digest, which
 says that somebody has checked where this very file comes from, and it unpacks within limits.
 
-`controller_call` has names and timing of the variables. Each instance has its own copy of the library, so that a
-library with global variables serves several dampers. An instance is made at the beginning of a run and freed at its
-end, so that runs are independent. FMPy reads and loads the FMU; it is imported only for a car with such a controller.
+At the communication point t_k = k T the FMU gets its sensors, does the communication step from t_k to t_k + T, and
+returns the damper coefficient c that holds over this step. T is the control period, a multiple of the time step.
+
+    body_velocity      vb      velocity of the damper end on the body, along the damper [m/s]
+    wheel_velocity     vw      likewise on the wheel
+    damper_velocity    vb - vw, rate of extension
+    body_acceleration  (vb(t_k) - vb(t_k - T)) / T, mean over the last communication step; 0 in the first [m/s2]
+    wheel_acceleration likewise of vw
+
+The core calls the functions of the FMU by their addresses (`controller.c`). After a failed call the controller is not
+called again in this run, and the last coefficient holds; the engine then raises. Each instance has its own copy of the
+library, so that a library with global variables serves several dampers. An instance is made at the beginning of a run
+and freed at its end, so that runs are independent. FMPy reads and loads the FMU; it is imported only for a car with
+such a controller.
 """
 
 from __future__ import annotations
@@ -25,8 +36,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.core.library import core
+from vehicle.core.records import Packed, packed
 from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
-from vehicle.model.laws import controller_call as call
 from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
 from vehicle.signals.records.unpacked_size import require_archive
 
@@ -36,15 +48,26 @@ LARGEST = 200e6
 REALS = ("Real", "Float64")
 """Types of the variables in FMI 2.0 and 3.0."""
 
+SENSORS = ("body_velocity", "wheel_velocity", "damper_velocity", "body_acceleration", "wheel_acceleration")
+"""Names of the inputs of a controller FMU, in the order of their values in the core."""
+
+COEFFICIENT = "coefficient"
+"""Name of the output of a controller FMU [N s/m]."""
+
+WARNING = 1
+"""Maximum status of a successful call of FMI."""
+NOT_FINITE, TERMINATED = 10, 11
+"""Further status: a coefficient that is not a finite number; a controller that ends the simulation."""
+
 STATUS = {
     2: "discards the step",
     3: "reports an error",
     4: "reports a fatal error",
     5: "has not finished its step (asynchronous steps are not supported)",
-    call.NOT_FINITE: f"returns a {call.COEFFICIENT} that is not a finite number",
-    call.TERMINATED: "asks to end the simulation",
+    NOT_FINITE: f"returns a {COEFFICIENT} that is not a finite number",
+    TERMINATED: "asks to end the simulation",
 }
-"""Meaning of the status of a failed call."""
+"""Meaning of the status of a failed """
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -128,20 +151,20 @@ def _with_variables(path: Path, content: bytes, description: Any) -> ControllerF
     numbers = {name: entry for name, entry in variables.items() if entry.type in REALS and not entry.dimensions}
     inputs = [name for name, entry in variables.items() if entry.causality == "input"]
     outputs = [name for name, entry in numbers.items() if entry.causality == "output"]
-    wrong = [name for name in inputs if name not in call.SENSORS or name not in numbers]
-    if wrong or not inputs or call.COEFFICIENT not in outputs:
+    wrong = [name for name in inputs if name not in SENSORS or name not in numbers]
+    if wrong or not inputs or COEFFICIENT not in outputs:
         raise DataError(
             f"controller {path}: found inputs {_listed(inputs)} and outputs {_listed(outputs)}; "
-            f"inputs must be among {', '.join(call.SENSORS)}, and an output must be {call.COEFFICIENT} [N s/m], all "
+            f"inputs must be among {', '.join(SENSORS)}, and an output must be {COEFFICIENT} [N s/m], all "
             "scalar real numbers: rename the variables in the tool of the controller"
         )
     return ControllerFile(
         path=path,
         content=content,
         description=description,
-        sensors=tuple(call.SENSORS.index(name) for name in inputs),
+        sensors=tuple(SENSORS.index(name) for name in inputs),
         inputs=tuple(numbers[name].valueReference for name in inputs),
-        output=numbers[call.COEFFICIENT].valueReference,
+        output=numbers[COEFFICIENT].valueReference,
         parameters={
             name: numbers[name].valueReference
             for name in CONTROLLER_PARAMETERS
@@ -173,7 +196,7 @@ class Controller:
         self, file: ControllerFile, damper: str, control: SemiActiveDamper, period: float, messages: list[str]
     ) -> None:
         self.file, self.damper, self.period, self.messages = file, damper, period, messages
-        self.memory: npt.NDArray[np.int64] = np.zeros(call.SIZE, dtype=np.int64)
+        self.record: Packed | None = None
         self.folder = tempfile.mkdtemp(prefix="controller-")
         self.slave: Any = None
         try:
@@ -205,18 +228,33 @@ class Controller:
         names = ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal") if second else (
             *("fmi3SetFloat64", "fmi3DoStep", "fmi3GetFloat64"),
         )  # fmt: skip
-        self.memory[call.CALL] = call.compiled_step().address
-        self.memory[call.SET : call.GET + 1] = [
-            ctypes.cast(getattr(slave.dll, name), ctypes.c_void_p).value or 0 for name in names
-        ]
-        self.memory[call.INSTANCE] = int(getattr(slave.component, "value", slave.component))
-        self.memory[call.COUNT] = len(file.inputs)
-        self.memory[call.SOURCES : call.SOURCES + len(file.sensors)] = file.sensors
-        references = self.memory.view(np.uint32)
-        references[2 * call.REFERENCES :][: len(file.inputs)] = file.inputs
-        references[2 * call.OUTPUT_REFERENCE] = file.output
-        numbers = self.memory.view(np.float64)
-        numbers[call.PERIOD], numbers[call.OUTPUT] = self.period, control.minimum_damping
+        functions = [ctypes.cast(getattr(slave.dll, name), ctypes.c_void_p).value or 0 for name in names]
+        record = self.record = packed(
+            "Controller",
+            {
+                "call": {
+                    "function": ctypes.cast(core().core_controller_step, ctypes.c_void_p).value or 0,
+                    "memory": 0,
+                },
+                **dict(zip(("set", "step", "get"), functions, strict=True)),
+                "instance": int(getattr(slave.component, "value", slave.component)),
+                "status": 0,
+                "readings": 0,
+                "period": self.period,
+                "coefficient": control.minimum_damping,
+                "measured": np.zeros(len(SENSORS)),
+                "sources": np.array(file.sensors, dtype=np.int64),
+                "inputs": np.zeros(len(file.inputs)),
+                "references": np.array([*file.inputs, file.output], dtype=np.uint32),
+                "results": np.zeros(4, dtype=np.int64),
+            },
+        )
+        record.memory.call.memory = record.address
+
+    @property
+    def address(self) -> int:
+        """Return the address of the record of the controller for the core."""
+        return self.record.address if self.record else 0
 
     def _logger(self, second: bool) -> Callable[..., None]:
         """Return the function that takes the messages of warnings and errors."""
@@ -239,16 +277,17 @@ class Controller:
         Raises:
             SimulationError: a call has failed; with damper, time and the last message of the FMU.
         """
-        status = int(self.memory[call.STATUS])
-        if status <= call.WARNING:
+        memory = self.record.memory if self.record else None
+        if memory is None or memory.status <= WARNING:
             return
+        status = int(memory.status)
         step_size = getattr(self.file.description.defaultExperiment, "stepSize", None)
         hint = f"its communication step is control_period = {self.period:g} s"
         if step_size:
             hint += f", the step in its model description {step_size} s"
         raise SimulationError(
             f"{self.damper}: controller {self.file.path.name} {STATUS.get(status, f'returns the status {status}')} at "
-            f"t = {self.memory[call.READINGS] * self.period:.4f} s{self._last_message()}; {hint}: check the step "
+            f"t = {memory.readings * self.period:.4f} s{self._last_message()}; {hint}: check the step "
             "and the inputs"
         )
 
@@ -291,7 +330,7 @@ def controllers(
                 controller = Controller(files[key], name, control, period, messages)
                 stack.callback(controller.close)
                 started.append(controller)
-                laws["controller"][index] = float(controller.memory.ctypes.data)
+                laws["controller"][index] = float(controller.address)
 
         def check() -> None:
             for controller in started:

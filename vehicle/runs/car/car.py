@@ -242,7 +242,7 @@ class Car:
         if self._from_terms:
             return self._from_terms.matrices
         # Chosen by the car, not by the functions compiled so far: equal cars have bitwise identical matrices.
-        return car_matrices(self.model.model, self.model.static, compiled=self._base is not None)
+        return car_matrices(self.model.model, self.model.static)
 
     @property
     def geometry(self) -> Car:

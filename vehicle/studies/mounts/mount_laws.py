@@ -15,7 +15,7 @@ follow by integration over a cycle. Re Kf falls from F/x2 at small to 0 at large
 
 Source: Berg, A non-linear rubber spring model for rail vehicle dynamics analysis, Vehicle System Dynamics 30 (1998);
 Masing, Proc. 2nd International Congress of Applied Mechanics (1926); hydromount: see
-`vehicle.engines.simulation.fluid_rows`.
+`vehicle/core/source/rows.h`.
 """
 
 from __future__ import annotations

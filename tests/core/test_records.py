@@ -1,0 +1,58 @@
+"""Records of Python and of the core have one layout; arrays that do not fit are refused, not read as other numbers."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, get_type_hints
+
+import numpy as np
+import pytest
+
+from vehicle.core.records import core_layout, dtype, layout, packed, records
+from vehicle.engines.simulation.sampling import Loop
+from vehicle.engines.simulation.step_records import Simulation
+from vehicle.model.laws.control_laws import SETTING
+from vehicle.model.laws.damper import RECORD
+
+
+def test_sizes_and_offsets_are_those_of_the_compiler():
+    ours = layout()
+    assert len(ours) > 300 and ours == core_layout()
+
+
+def test_laws_have_the_fields_of_their_records():
+    assert dtype("DamperLaw") == RECORD
+    assert dtype("Setting") == SETTING
+
+
+@pytest.mark.parametrize("kind", [Simulation, Loop])
+def test_records_of_mujoco_have_the_fields_of_their_classes(kind):
+    checked, waiting = [], [kind]
+    while waiting:
+        this = waiting.pop()
+        assert tuple(field.name for field in records()[this.__name__]) == this._fields, this.__name__
+        checked.append(this)
+        waiting += [hint for hint in get_type_hints(this).values() if hasattr(hint, "_fields")]
+    assert len(checked) >= 5
+
+
+class Friction(NamedTuple):
+    elements: np.ndarray
+    axes: np.ndarray
+    stiffness: np.ndarray
+    limit: np.ndarray
+
+
+def test_arrays_are_passed_by_address_and_shape():
+    record = Friction(np.arange(3), np.zeros(3, dtype=np.int64), np.ones(3), np.arange(3.0))
+    memory = packed("RubberFriction", record).memory
+    assert memory.elements.at == record.elements.ctypes.data and list(memory.elements.n) == [3]
+    assert memory.limit.at == record.limit.ctypes.data
+
+
+@pytest.mark.parametrize(
+    "wrong", [np.ones(3, dtype=np.float32), np.ones((3, 1)), np.ones(6)[::2], np.ones(3, dtype=np.int64)]
+)
+def test_another_type_shape_or_order_is_refused(wrong):
+    right = np.zeros(3, dtype=np.int64)
+    with pytest.raises(TypeError, match=r"RubberFriction\.limit: .* is no double of 1 dimensions"):
+        packed("RubberFriction", Friction(right, right, np.ones(3), wrong))

@@ -1,0 +1,105 @@
+"""The library of the core: shipped for this platform, or compiled from its sources with the C compiler at hand.
+
+A library belongs to the sources whose digest it returns as its stamp. Where no shipped one does, as beside changed
+sources, it is compiled once into a private cache folder (`vehicle.compiler`), from which the next process loads it.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from functools import cache
+from pathlib import Path
+
+from vehicle.compiler import cache_folder
+from vehicle.core.build import SOURCES, compile_core, digest
+from vehicle.errors import MissingPartError
+
+BINARIES = Path(__file__).parent / "binaries"
+
+SUFFIXES = {"linux": "so", "darwin": "dylib", "windows": "dll"}
+"""Suffix of a library by operating system."""
+
+MACHINES = {"amd64": "x86_64", "arm64": "aarch64"}
+"""Other names of processors."""
+
+COMPILERS = ("cc", "gcc", "clang")
+"""Commands that are tried in this order; the environment variable CC comes before them."""
+
+
+@cache
+def core() -> ctypes.CDLL:
+    """Return the library of the core, loaded once in a process.
+
+    Raises:
+        MissingPartError: no shipped library fits and there is no C compiler, or it fails.
+    """
+    stamp = digest()
+    shipped = BINARIES / platform_name() / f"core.{_suffix()}"
+    library = _loaded(shipped, stamp) if shipped.is_file() else None
+    if library is None:
+        library = _loaded(_compiled(stamp), stamp)
+    if library is None:
+        raise MissingPartError(
+            f"the compiled core for {platform_name()} cannot be loaded; install a C compiler (gcc or clang), or a "
+            "wheel of this package for this platform"
+        )
+    return library
+
+
+def platform_name() -> str:
+    """Return processor and operating system, as x86_64-linux."""
+    machine = platform.machine().lower()
+    return f"{MACHINES.get(machine, machine)}-{platform.system().lower()}"
+
+
+def _suffix() -> str:
+    return SUFFIXES.get(platform.system().lower(), "so")
+
+
+def _loaded(path: Path, stamp: str) -> ctypes.CDLL | None:
+    """Return the library of a file; None if it cannot be loaded or belongs to other sources."""
+    try:
+        library = ctypes.CDLL(str(path))
+    except OSError:
+        return None
+    library.core_stamp.restype = ctypes.c_char_p
+    return library if library.core_stamp() == stamp.encode() else None
+
+
+def _compiled(stamp: str) -> Path:
+    """Return the library of the present sources from the cache folder, after compiling it there if it is missing.
+
+    Raises:
+        MissingPartError: there is no C compiler, or it fails.
+    """
+    kept = cache_folder() / f"core-{stamp[:16]}.{_suffix()}"
+    if kept.is_file():
+        return kept
+    compiler = shlex.split(os.environ.get("CC", "")) or [name for name in COMPILERS if shutil.which(name)][:1]
+    if not compiler:
+        raise MissingPartError(
+            f"there is no compiled core for {platform_name()} that fits its sources, and no C compiler to make it; "
+            "install gcc or clang, or set CC to the command of one"
+        )
+    with tempfile.TemporaryDirectory(dir=kept.parent) as folder:
+        sources = Path(folder) / "source"
+        shutil.copytree(SOURCES, sources)
+        library = sources / f"core.{_suffix()}"
+        shared = [] if sys.platform == "win32" else ["-fPIC"]
+        try:
+            compile_core(compiler, platform_name().split("-")[0], library, ["-Wno-psabi", *shared], ["-shared", "-lm"])
+        except (OSError, subprocess.CalledProcessError) as error:
+            message = getattr(error, "stderr", "") or str(error)
+            raise MissingPartError(
+                f"the core cannot be compiled with {' '.join(compiler)}: {message.strip().splitlines()[0]}; set CC to "
+                "the command of another C compiler"
+            ) from None
+        library.replace(kept)
+    return kept

@@ -1,0 +1,176 @@
+"""Records that Python and the core share: structures read from layout.h, and packing of Python objects into them.
+
+`packed("March", record)` takes the attributes of an object (or the keys of a mapping) by the names of the fields. An
+array is passed by its address and shape, without a copy, so it must have the type, the dimensions and the order that
+layout.h states; `Packed` keeps it alive.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import re
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.core.build import SOURCES
+from vehicle.core.library import core
+
+NUMBERS: dict[str, type[Any]] = {"double": ctypes.c_double, "int64_t": ctypes.c_int64}
+"""ctypes of the kinds of numbers."""
+
+ELEMENTS: dict[str, tuple[type[Any], ...]] = {
+    "double": (np.float64,),
+    "int64_t": (np.int64,),
+    "uint32_t": (np.uint32,),
+    "REAL": (np.float32, np.float64),
+}
+"""numpy types of the elements of arrays."""
+
+LANE_BYTES = 32
+"""Size and alignment of a row of a `Lanes` array."""
+
+
+class Field(NamedTuple):
+    """Field of a record: kind and name, as in layout.h."""
+
+    kind: str
+    name: str
+
+
+class ArrayKind(NamedTuple):
+    """Kind of arrays: type of an element, and number of dimensions."""
+
+    element: str
+    dimensions: int
+
+
+class Packed(NamedTuple):
+    """Record in memory for the core.
+
+    Attributes:
+        memory: the structure. kept: arrays whose addresses are in it.
+    """
+
+    memory: ctypes.Structure
+    kept: tuple[Any, ...]
+
+    @property
+    def address(self) -> int:
+        """Return the address of the structure."""
+        return ctypes.addressof(self.memory)
+
+
+@cache
+def _text() -> str:
+    """Return layout.h without comments and continued lines."""
+    text = (SOURCES / "layout.h").read_text(encoding="utf-8")
+    return re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL).replace("\\\n", " ")
+
+
+def _listed(macro: str, entry: str) -> list[tuple[str, ...]]:
+    """Return the entries of a macro of layout.h: the arguments of each F(...), S(...) or A(...)."""
+    found = re.search(rf"^#define {macro}\({entry}\)(.*)$", _text(), flags=re.MULTILINE)
+    if found is None:
+        raise KeyError(macro)
+    return [tuple(re.split(r",\s*", arguments)) for arguments in re.findall(rf"\b{entry}\(([^)]*)\)", found[1])]
+
+
+@cache
+def records() -> dict[str, tuple[Field, ...]]:
+    """Return the fields of all records by name, in the order of layout.h."""
+    names = [*_listed("EACH_LAW", "S"), *_listed("EACH_RECORD", "S")]
+    return {name: tuple(Field(*entry) for entry in _listed(macro, "F")) for name, macro in names}
+
+
+@cache
+def array_kinds() -> dict[str, ArrayKind]:
+    """Return the kinds of arrays by name."""
+    return {name: ArrayKind(element, int(count)) for name, element, count in _listed("EACH_ARRAY", "A")}
+
+
+@cache
+def structure(name: str) -> type[ctypes.Structure]:
+    """Return the ctypes structure of a record or of a kind of arrays."""
+    if name in array_kinds():
+        fields = [("at", ctypes.c_uint64), ("n", ctypes.c_int64 * array_kinds()[name].dimensions)]
+    else:
+        fields = [(field, NUMBERS.get(kind) or structure(kind)) for kind, field in records()[name]]
+    return type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+@cache
+def dtype(name: str) -> np.dtype[Any]:
+    """Return the numpy type of a record of numbers, for arrays of records."""
+    kinds = {"double": np.float64, "int64_t": np.int64}
+    return np.dtype([(field, kinds[kind]) for kind, field in records()[name]], align=True)
+
+
+def layout() -> list[int]:
+    """Return size and offsets of all records as ctypes has them, in the order of `core_layout`."""
+    return [
+        number
+        for name in records()
+        for number in (
+            ctypes.sizeof(structure(name)),
+            *(getattr(structure(name), field).offset for _, field in records()[name]),
+        )
+    ]
+
+
+def core_layout() -> list[int]:
+    """Return the same numbers as the compiler of the core chose them."""
+    numbers = (ctypes.c_int64 * len(layout()))()
+    function = core().core_layout
+    function.restype = ctypes.c_int64
+    count = int(function(numbers, ctypes.c_int64(len(numbers))))
+    return list(numbers) if count == len(numbers) else [count]
+
+
+def packed(name: str, record: Any) -> Packed:
+    """Return a record for the core.
+
+    Args:
+        name: name in layout.h.
+        record: object whose attributes, or mapping whose keys, have the names of the fields.
+
+    Raises:
+        TypeError: type, dimensions, order or alignment of an array differs from its kind.
+    """
+    memory, kept = structure(name)(), list[Any]()
+    _fill(memory, name, record, kept)
+    return Packed(memory, tuple(kept))
+
+
+def _fill(memory: ctypes.Structure, name: str, record: Any, kept: list[Any]) -> None:
+    """Write the fields of a record into a structure."""
+    for kind, field in records()[name]:
+        value = record[field] if isinstance(record, Mapping) else getattr(record, field)
+        if kind in NUMBERS:
+            setattr(memory, field, value)
+        elif kind in array_kinds():
+            _point(getattr(memory, field), f"{name}.{field}", array_kinds()[kind], value)
+            kept.append(value)
+        else:
+            _fill(getattr(memory, field), kind, value, kept)
+
+
+def _point(memory: Any, name: str, kind: ArrayKind, array: npt.NDArray[Any]) -> None:
+    """Write address and shape of an array.
+
+    Raises:
+        TypeError: see `packed`.
+    """
+    if kind.element == "void":
+        fits = array.ndim == 2 and array.shape[1] * array.itemsize == LANE_BYTES
+        fits &= array.dtype in ELEMENTS["REAL"] and (array.ctypes.data % LANE_BYTES == 0 or array.size == 0)
+    else:
+        types = ELEMENTS.get(kind.element) or (dtype(kind.element),)
+        fits = array.ndim == kind.dimensions and array.dtype in types
+    if not (fits and array.flags.c_contiguous):
+        raise TypeError(f"{name}: {array.dtype} {array.shape} is no {kind.element} of {kind.dimensions} dimensions")
+    memory.at = array.ctypes.data
+    memory.n[:] = array.shape[: kind.dimensions]
