@@ -25,6 +25,10 @@ Each command replaces results of another input (`--force`). After each case the 
 for byte, or the new ones, complete; the exit code and the message must be true; what is left must be mentioned, and the
 next command must succeed, say what it found, and leave nothing of it.
 
+Several files that a command adds to a folder with others (`loads`, `spectra`, `road`, `fit-mount`) cannot be exchanged
+in one step: after a kill between their renames, the next command that reads or writes them moves the others too, and is
+run here before the results are judged.
+
 `make faults` runs all calls and writes this page; `make test` runs a sample. "Calls" are the system calls of the
 command that the fault can meet, "cases" those that were made to fail.
 """
@@ -80,6 +84,7 @@ def main() -> int:
         with lines_of(options.work, name).open("w", encoding="utf-8") as file:
             for line in outcomes(library, options.work, name, options.most, options.kills, limit):
                 file.write(json.dumps(line) + "\n")
+                file.flush()
         table = read_table(options.work, all_names)
         PAGE.write_text(page(table, [each for each in all_names if not lines_of(options.work, each).exists()]))
         print(
