@@ -84,7 +84,7 @@ def commands(inputs: Path) -> list[Written]:
     vary = ["--vary", "damper.coulomb_friction=50:100", "--minimise", "weighted", "--cars", "8", "--population", "8"]
     kinematics = ["kinematics", "--vehicle", "sedan", "--output", "a", "--axle"]
     new = ["new", "a", "--from", "sedan", "--wheelbase", "2.65", "--front-axle-load", "800", "--kerb-mass"]
-    formats = {ending: f"shaker --format {ending}" for ending in ("h5", "mat", "uff", "rpc", "mf4")}
+    formats = {ending: f"shaker --format {ending}" for ending in ("h5", "mat", "rpc", "mf4")}
     return [
         Written("shaker", *pair(lambda path: [*shaker, str(path)])),
         Written("shaker with figures", *pair(lambda path: [*drawn, str(path)])),

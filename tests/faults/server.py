@@ -27,14 +27,14 @@ def serve(work: Path, name: str, most: int, kills: int) -> None:
         known = commands(work / "inputs")
         command = next(command for command in known if command.name == name)
         bench = Bench(command, work / name.replace(" ", "_"))
+    chance = random.Random(name)
+    for number in range(kills):
+        print(json.dumps(dataclasses.asdict(bench.killed(number, chance))), flush=True)
     for fault_name, fault in FAULTS.items():
-        count = bench.count(fault)
+        count = sum(calls for kind, calls in bench.calls.items() if kind & fault.calls)
         print(json.dumps({"command": name, "fault": fault_name, "calls": count}), flush=True)
         for number in spread(count, most):
             print(json.dumps(dataclasses.asdict(bench.outcome(fault_name, number))), flush=True)
-    chance, duration = random.Random(name), bench.duration()
-    for number in range(kills):
-        print(json.dumps(dataclasses.asdict(bench.killed(number, chance, duration))), flush=True)
 
 
 def spread(count: int, most: int) -> Sequence[int]:

@@ -62,7 +62,7 @@ def outcomes(library: Path, work: Path, names: str, most: int, kills: int, limit
         sys.executable,
         "-m",
         "tests.faults.server",
-        work,
+        str(work),
         names,
         str(most),
         str(kills),

@@ -131,7 +131,9 @@ def test_undeletable_old_results_are_no_error(tmp_path, monkeypatch, capsys):
     assert visible(tmp_path) == ["run"] and "are in place now" in capsys.readouterr().err
 
 
-def test_several_files_are_all_new_or_all_old(tmp_path, capsys):
+@pytest.mark.parametrize("touched", [0, 1, 2])
+def test_several_files_are_all_new_or_all_old(touched, tmp_path, capsys):
+    """The next command that touches one of the files, or their folder, moves all of them."""
     files = [tmp_path / "a.csv", tmp_path / "b.csv"]
     with whole_files(files) as work:
         for path in work:
@@ -147,7 +149,7 @@ def test_several_files_are_all_new_or_all_old(tmp_path, capsys):
     )
     killed(tmp_path, program)
     assert [path.read_text() for path in files] == ["new", "old"]
-    put_in_order(files[0])
+    put_in_order(files[touched] if touched < 2 else tmp_path)
     assert [path.read_text() for path in files] == ["new", "new"] and visible(tmp_path) == ["a.csv", "b.csv"]
     assert "are in place now" in capsys.readouterr().err
 

@@ -173,6 +173,32 @@ def test_two_sweeps_in_one_folder(signal, tmp_path, capsys):
         assert (tmp_path / "out" / "rows.jsonl").read_bytes() == rows
 
 
+def test_an_interrupted_force_keeps_the_old_sweep_and_goes_on(signal, tmp_path, capsys, monkeypatch):
+    out = tmp_path / "out"
+    arguments = ["--input", str(signal), "--output", str(out), "--skip", "0.5", "--engine", "reduced"]
+    arguments += ["--executor", "tests.faults.commands:InProcess", "--vary"]
+    assert main([*arguments, "damper.viscous=2000"]) == 0
+    old = {path.name: path.read_bytes() for path in out.iterdir()}
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("vehicle.studies.sweeps.sweep.write_table", interrupted)
+        assert main([*arguments, "damper.viscous=2500", "--force"]) == 130
+    said = capsys.readouterr().err.splitlines()
+    assert said[-2:] == [
+        f"notice: {out}: the finished rows are kept (.out.partial/rows.jsonl); --resume goes on",
+        "error: interrupted; no results are half-written",
+    ]
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == old
+    assert main([*arguments, "damper.viscous=2500"]) == 2
+    assert main([*arguments, "damper.viscous=2500", "--resume"]) == 0
+    assert "# 0 runs computed" in (out / "timing.csv").read_text(encoding="utf-8")
+    assert [row["damper.viscous"] for row in table_of(out)] == ["2500"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "road.csv"]
+
+
 def test_an_executor_that_cannot_be_made(signal, tmp_path, capsys):
     arguments = ["--input", str(signal), "--output", str(tmp_path / "out"), "--vary", "damper.viscous=2000"]
     assert main([*arguments, "--executor", "json:loads"]) == 2

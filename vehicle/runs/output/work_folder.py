@@ -137,20 +137,37 @@ def put_in_order(path: Path) -> None:
     """
     with suppress(OSError, RuntimeError, ValueError):
         goal = path.resolve()
-        remains = _remains(goal)
-        if is_claimed(goal) and lock_file(goal).name in remains:
-            remains.remove(lock_file(goal).name)
-        if not remains or is_being_made(work_of(goal) / MARKER):
-            return
-        try:
-            with folder_lock(goal):
-                say(*_put_in_order(goal, remains))
-        except OccupiedError:
-            return  # of a command that is running
-        except (OSError, OutputError) as error:
-            names = ", ".join(name for name in remains if not name.endswith(".lock"))
-            reason = error.strerror if isinstance(error, OSError) else "the folder cannot be written"
-            say(f"{goal}: a killed command left {names or 'a lock file'} there, which cannot be put in order: {reason}")
+        _put_goal_in_order(goal)
+        # Files that were completed together are found at each of them, and at their folder.
+        for folder in (goal.parent, goal):
+            for work in _complete_works(folder):
+                _put_goal_in_order(folder / work.removeprefix(".").removesuffix(".partial"))
+
+
+def _complete_works(folder: Path) -> list[str]:
+    """Return the hidden folders with complete results in a folder."""
+    if not folder.is_dir():
+        return []
+    with os.scandir(folder) as entries:
+        names = [entry.name for entry in entries if entry.name[0] == "." and entry.name.endswith(".partial")]
+    return [name for name in names if (folder / name / COMPLETE).exists()]
+
+
+def _put_goal_in_order(goal: Path) -> None:
+    remains = _remains(goal)
+    if is_claimed(goal) and lock_file(goal).name in remains:
+        remains.remove(lock_file(goal).name)
+    if not remains or is_being_made(work_of(goal) / MARKER):
+        return
+    try:
+        with folder_lock(goal):
+            say(*_put_in_order(goal, remains))
+    except OccupiedError:
+        return  # of a command that is running
+    except (OSError, OutputError) as error:
+        names = ", ".join(name for name in remains if not name.endswith(".lock"))
+        reason = error.strerror if isinstance(error, OSError) else "the folder cannot be written"
+        say(f"{goal}: a killed command left {names or 'a lock file'} there, which cannot be put in order: {reason}")
 
 
 def _remains(goal: Path) -> list[str]:
@@ -182,9 +199,9 @@ def _put_in_order(goal: Path, remains: Sequence[str]) -> list[str]:
         _remove(work)
         said.append(f"{goal}: a killed command left unfinished results; they are removed")
     for name in remains:
-        number = name.removeprefix(f".{goal.name}.").partition(".")[0]
-        if number.isdigit() and not _lives(int(number)) and not (goal.parent / name).is_dir():
-            (goal.parent / name).unlink(missing_ok=True)
+        number, path = name.removeprefix(f".{goal.name}.").partition(".")[0], goal.parent / name
+        if number.isdigit() and not _lives(int(number)) and (not path.is_dir() or (path / MARKER).exists()):
+            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)  # a folder: of an earlier version
             said.append(f"{goal}: a killed command left an unfinished file; it is removed")
     if not said and lock_file(goal).name in remains:
         said.append(f"{goal}: an earlier command left only its lock there, which is removed")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 from vehicle.runs.output.folder import check_file, write_text
+from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
 
@@ -38,6 +39,8 @@ def write_report(
         OutputError: the file cannot be written.
     """
     folders = [Path(runs)] if isinstance(runs, Path | str) else [Path(run) for run in runs]
+    for folder in folders:
+        put_in_order(folder)
     missing = next((folder for folder in folders if not folder.is_dir()), None)
     if missing is not None:
         raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
