@@ -33,6 +33,11 @@ def test_files(tmp_path, capsys):
     assert "exists" in capsys.readouterr().err
 
 
+def test_a_change_without_effect_is_said_beside_a_search_too(capsys):
+    assert main(["focus", "--search", "smoothing", "--set", "damper.presliding_stiffness=5e5"]) == 0
+    assert "note: damper.presliding_stiffness=5e5: without effect; it belongs to " in capsys.readouterr().out
+
+
 def test_search(capsys):
     assert main(["sedan", "--search", "rear damper coulomb"]) == 0
     lines = capsys.readouterr().out.splitlines()

@@ -37,7 +37,6 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.model.parameters.idle import idle_parameters
     from vehicle.runs.car import Car
 
     if options.search is not None and options.output is not None:
@@ -45,6 +44,7 @@ def _job(options: argparse.Namespace) -> None:
     car = Car.load(options.car, options.overrides)
     if options.search is not None:
         _print_parameters(car, options)
+        _note_idle(car, options)
         return
     folder = None if options.output is None else output_folder_of(options, options.output)
     data = car.show()
@@ -53,6 +53,13 @@ def _job(options: argparse.Namespace) -> None:
 
         write_car(folder, car, data, force=options.force)
     print(json.dumps(data.summary(), indent=2, allow_nan=False) if options.json else data)
+    _note_idle(car, options)
+
+
+def _note_idle(car: Any, options: argparse.Namespace) -> None:
+    """Print a note for each changed parameter without effect."""
+    from vehicle.model.parameters.idle import idle_parameters
+
     for notice in idle_parameters(car.vehicle, car.overrides):
         print(f"note: {notice}", file=sys.stderr if options.json else sys.stdout)
 

@@ -20,6 +20,7 @@ def plain(value):
 @pytest.mark.parametrize("name", shipped_cars())
 def test_every_offered_path_is_read_and_set(name):
     car = Car.load(name)
+    assert car.folder is not None
     optional = optional_paths(car.vehicle.table, car.folder)
     listed = {parameter.path: parameter.value for parameter in car.search()}
     sliders = {path: setting.value for path, setting in settings(car).items()}

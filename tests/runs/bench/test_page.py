@@ -166,7 +166,7 @@ def test_absurd_values_change_nothing(bench, value, capsys, caplog):
     bench.wait_for(lambda: bench.slider.value == 80.0)
 
 
-def test_garbage_and_closed_browsers_do_not_end_the_bench(bench):
+def test_garbage_and_closed_browsers_do_not_end_the_bench(bench, capfd, caplog):
     for content in (b"", b"\x00", os.urandom(2000), msgspec.msgpack.encode({"type": "NoSuchMessage"})):
         with bench.client() as client:
             client.send(content)
@@ -174,6 +174,9 @@ def test_garbage_and_closed_browsers_do_not_end_the_bench(bench):
     client.socket.close()  # as a browser that is killed
     with bench.client() as client:
         bench.follows(client, 65.0)
+    said = capfd.readouterr().err
+    assert "bench: a connection was closed (" in said and "Traceback" not in said
+    assert not any(record.exc_info for record in caplog.records)
 
 
 def test_nobody_gets_a_tunnel_to_the_internet(bench):

@@ -11,14 +11,14 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import IsoRoad, drive
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.records import npz_format
+from vehicle.signals.records import unpacked_size
 from vehicle.signals.records.reader import read_record
 
 
 def test_arrays_that_are_no_channels_stay_unread(tmp_path, monkeypatch):
     file = tmp_path / "many.npz"
     np.savez_compressed(file, time=np.arange(100) / 100.0, a=np.ones(100), image=np.zeros((400, 500)))
-    monkeypatch.setattr(npz_format, "MEMORY_LIMIT", 10_000)  # less than the image
+    monkeypatch.setattr(unpacked_size, "MEMORY_LIMIT", 10_000)  # less than the image
     assert [one.name for one in read_record(file).channels] == ["a"]
     np.savez_compressed(file, image=np.zeros((400, 500)))
     with pytest.raises(DataError, match=r"no array 'time'; found no array of one dimension"):
@@ -28,12 +28,12 @@ def test_arrays_that_are_no_channels_stay_unread(tmp_path, monkeypatch):
 def test_an_archive_of_nothing_but_zeros_is_refused_before_it_is_unpacked(tmp_path, monkeypatch):
     file = tmp_path / "zeros.npz"
     np.savez_compressed(file, time=np.zeros(100_000), a=np.zeros(100_000))
-    monkeypatch.setattr(npz_format, "FREELY", 1_000_000)
+    monkeypatch.setattr(unpacked_size, "FREELY", 1_000_000)
     monkeypatch.setattr(np, "load", lambda *_, **__: pytest.fail("was unpacked"))
     with pytest.raises(DataError, match=r"1\.6 MB are compressed to .* must be at most 200 to 1"):
         read_record(file)
-    monkeypatch.setattr(npz_format, "MEMORY_LIMIT", 1_000_000)
-    with pytest.raises(DataError, match=r"its arrays need 0\.00149 GiB"):
+    monkeypatch.setattr(unpacked_size, "MEMORY_LIMIT", 1_000_000)
+    with pytest.raises(DataError, match=r"its data need 0\.00149 GiB"):
         read_record(file)
 
 

@@ -86,8 +86,8 @@ def test_the_shaker_reads_the_plates_of_a_run(run):
 
 def test_arrays_beyond_the_memory_are_refused_before_they_are_unpacked(tmp_path, monkeypatch):
     np.savez_compressed(tmp_path / "own.npz", time=TIME, x=0.0 * TIME)  # zeros pack a thousand times smaller
-    monkeypatch.setattr("vehicle.signals.records.npz_format.MEMORY_LIMIT", 60_000)
-    with pytest.raises(DataError, match=r"own\.npz: its arrays need .* GiB of memory, must be at most"):
+    monkeypatch.setattr("vehicle.signals.records.unpacked_size.MEMORY_LIMIT", 60_000)
+    with pytest.raises(DataError, match=r"own\.npz: its data need .* GiB unpacked, must be at most"):
         read_columns(tmp_path / "own.npz")
 
 

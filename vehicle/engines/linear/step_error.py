@@ -16,7 +16,8 @@ the laws over displacement a fourth:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from vehicle.engines.linear.car_modes import require_stable
 from vehicle.engines.linear.displacement_laws import law_rows
 from vehicle.engines.linear.first_order import FirstOrder, first_order
 from vehicle.engines.linear.step_map import StepMap, StepRows, step_map, step_rows
-from vehicle.engines.linear.strained_part import holding_parameter, moving_part
+from vehicle.engines.linear.strained_part import Strained, moving_part, parameter_text, strained_elements
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.errors import ConfigurationError
 
@@ -65,6 +66,13 @@ SMALLEST_STEP = 1e-5
 """Minimum step [s] that is suggested: if it is too long, a parameter of the car is wrong."""
 
 
+LEFT = 0.5
+"""What is left of an element that is softened to see its effect [-]."""
+
+TRIED = 8
+"""Number of the most strained parameters whose effect is tried."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class StepError:
     """Violated criterion of the time-step check.
@@ -94,13 +102,19 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
         The time step [s].
 
     Raises:
-        ConfigurationError: the car is unstable, or fails at every step down to `SMALLEST_STEP`.
+        ConfigurationError: the car is unstable, or fails at every step down to `SMALLEST_STEP`; the message names the
+            moving part and the responsible parameter.
     """
-    check, step = _StepCheck(car, matrices), float(car.model.opt.timestep)
-    while check.worst(step) is not None:
-        step /= 2.0
-        if step < SMALLEST_STEP:
-            require_accurate_step(car, matrices)
+    check, first = _StepCheck(car, matrices), float(car.model.opt.timestep)
+    step = first
+    while (violation := check.worst(step)) is not None:
+        if 0.5 * step < SMALLEST_STEP:
+            raise ConfigurationError(
+                f"no time step from {first:g} s down to {step:.2g} s answers this car: {step:.2g} s, "
+                f"{check.cause(violation, step)}; correct that parameter, or the mass of the part; the reduced engine "
+                "does not need this step"
+            )
+        step *= 0.5
     return step
 
 
@@ -123,11 +137,7 @@ def require_accurate_step(car: CarModel, matrices: CarMatrices) -> None:
     step = timestep / 2.0
     while step >= SMALLEST_STEP and check.worst(step) is not None:
         step /= 2.0
-    cause = (
-        f"{violation.message} ({abs(violation.pole) / (2.0 * np.pi):.0f} Hz: "
-        f"{moving_part(matrices, violation.shape)} moves, held by "
-        f"{violation.element or holding_parameter(car, violation.pole, violation.shape)})"
-    )
+    cause = check.cause(violation, timestep)
     remedy = (
         f"set solver.timestep={step:g}, or correct that parameter"
         if step >= SMALLEST_STEP
@@ -143,11 +153,12 @@ class _StepCheck:
 
     Args:
         car: compiled and trimmed car.
-        matrices: matrices of the car.
+        matrices: matrices of the car, with some elements softened to `LEFT`.
+        softened: constraint rows of these elements.
     """
 
-    def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
-        self.car, self.matrices = car, matrices
+    def __init__(self, car: CarModel, matrices: CarMatrices, softened: Sequence[int] = ()) -> None:
+        self.car, self.matrices, self.softened = car, matrices, softened
         self.forms = {stuck: first_order(matrices.system, stuck=stuck) for stuck in (True, False)}
         self.poles, self.shapes = np.linalg.eig(self.forms[False].state)
         require_stable(car, matrices, self.poles)
@@ -156,13 +167,49 @@ class _StepCheck:
 
     def worst(self, step: float) -> StepError | None:
         """Return the most severe violation at a step [s], or None."""
-        rows = step_rows(self.car, self.matrices, step)
+        rows = step_rows(self.car, self.matrices, step, self.softened, LEFT)
         violations = self._stiff_segments(rows, step)
         for stuck, form in self.forms.items():
             one_step = step_map(rows, form)
             values = np.linalg.eigvals(one_step.matrix).astype(complex)
             violations += self._growing(values, one_step.matrix, form, step) or self._poles(values, step, stuck)
         return max(violations, key=lambda violation: violation.severity, default=None) or self._ringing(one_step, step)
+
+    def cause(self, violation: StepError, step: float) -> str:
+        """Return message, frequency, moving part and responsible parameter of a violation at a step [s].
+
+        The parameter is the one of the most strained that, softened to `LEFT`, reduces the violation most: its effect
+        decides, not its share in the motion.
+        """
+        return (
+            f"{violation.message} ({abs(violation.pole) / (2.0 * np.pi):.0f} Hz: "
+            f"{moving_part(self.matrices, violation.shape)} moves, held by "
+            f"{violation.element or self._holding(violation, step)})"
+        )
+
+    def _holding(self, violation: StepError, step: float) -> str:
+        """Return path and value of the parameter with the largest effect on a violation at a step [s]."""
+        strained = strained_elements(self.car, violation.pole, violation.shape)[:TRIED]
+        effects = [violation.severity - self._softened_severity(element, step) for element in strained]
+        return parameter_text(self.car, strained[int(np.argmax(effects))].path)
+
+    def _softened_severity(self, element: Strained, step: float) -> float:
+        """Return the severity of the worst violation with softened elements; 0 without a violation."""
+        system, less, row = self.matrices.system, 1.0 - LEFT, element.rows
+        effects = system.effects.copy()
+        effects[element.branches[element.branches >= 0]] *= LEFT
+        softer = replace(
+            system,
+            stiffness=system.stiffness - less * row.T @ (element.stiffness[:, None] * row),
+            damping=system.damping - less * row.T @ (element.damping[:, None] * row),
+            branch_effects=effects,
+        )
+        constraints = element.constraints[element.constraints >= 0].tolist()
+        try:
+            worst = _StepCheck(self.car, replace(self.matrices, system=softer), constraints).worst(step)
+        except ConfigurationError:  # without this element the car does not stand
+            return np.inf
+        return 0.0 if worst is None else worst.severity
 
     def _stiff_segments(self, rows: StepRows, step: float) -> list[StepError]:
         """Return the law over displacement with a segment too stiff for the step, if any."""

@@ -16,6 +16,7 @@ run.
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -64,13 +65,17 @@ class StepRows:
     average: Vector
 
 
-def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows:
+def step_rows(
+    car: CarModel, matrices: CarMatrices, timestep: float, softened: Sequence[int] = (), share: float = 1.0
+) -> StepRows:
     """Return the terms that a MuJoCo step adds to the matrices of a car: inertia of rows and joints, branches.
 
     Args:
         car: compiled and trimmed car.
         matrices: matrices of the same car.
         timestep: time step h [s].
+        softened: constraint rows of elements that `matrices` has softer than `car`.
+        share: what is left of these elements [-].
     """
     model = copy.copy(car.model)
     model.opt.timestep = timestep
@@ -83,6 +88,7 @@ def step_rows(car: CarModel, matrices: CarMatrices, timestep: float) -> StepRows
     weights = np.zeros(e.row_count)
     weights[e.bushings.rows] = weights_of_step.impedance
     weights[e.springs.rows] = weights_of_step.spring_impedance
+    weights[list(softened)] *= share
     present = e.bushings.branch_stiffness > 0.0
     mass = matrices.system.mass + jacobian.T @ (weights[:, None] * jacobian) + np.diag(joint_weights(model))
     mass[matrices.dampers, matrices.dampers] += weights_of_step.damper_impedance

@@ -37,8 +37,8 @@ def of_arrays(raw: bytes) -> Superelement:
         DataError: not an npz file, incomplete, an unknown array, or a failed check of `check_superelement`.
     """
     try:
-        require_archive("the npz", io.BytesIO(raw))
         with np.load(io.BytesIO(raw), allow_pickle=False) as file:
+            require_archive("the npz", io.BytesIO(raw))
             content = {name: np.asarray(file[name]) for name in file.files}
         head = json.loads(str(content.get("head", "null")))
     except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile, zlib.error, NotImplementedError) as error:

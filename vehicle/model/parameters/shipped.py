@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
 
@@ -34,3 +36,18 @@ def vehicle_file(path: Path | str) -> Path:
     if path.name not in CARS:
         raise ConfigurationError(f"{path}: no such file, and no shipped car; these are {', '.join(CARS)}")
     return VEHICLES / path / "vehicle.toml"
+
+
+def sets_step(file: str | None, overrides: Iterable[str]) -> bool:
+    """Return True if the user has set the time step, by a change or in a vehicle file of his own.
+
+    Args:
+        file: vehicle file of the car; None for a car from no file.
+        overrides: changed parameters as "path=value".
+    """
+    if any(text.partition("=")[0].strip().endswith("timestep") for text in overrides):
+        return True
+    if file is None or VEHICLES in Path(file).resolve().parents:
+        return False
+    table = tomllib.loads(Path(file).read_text(encoding="utf-8-sig"))
+    return "timestep" in table.get("solver", {})

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import logging
+import sys
 from contextlib import redirect_stdout
 from importlib import import_module
 from typing import Any
@@ -48,6 +50,7 @@ def open_server(guard: Guard, port: int) -> Any:
         """Server of websockets that checks requests first."""
 
         def __init__(self, *arguments: Any, process_request: Any, **options: Any) -> None:
+            options["logger"] = connection_log()
             super().__init__(*arguments, process_request=guard.checked(process_request), **options)
             started.append(True)
 
@@ -68,6 +71,22 @@ def open_server(guard: Guard, port: int) -> Any:
         raise OutputError("bench: viser starts its web server in an unknown way, so its page would not be guarded; "
                           "install the version of constraints.txt")  # fmt: skip
     return server
+
+
+class OneLine(logging.Handler):
+    """Prints a failed connection as a line: a malformed message ends its connection, not the bench."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print the error of a record."""
+        error = record.exc_info[1] if record.exc_info else None
+        print(f"bench: a connection was closed ({type(error).__name__}: {error})", file=sys.stderr)
+
+
+def connection_log() -> logging.Logger:
+    """Return the log of the connections, whose errors are lines without a traceback."""
+    log = logging.Logger("bench", logging.ERROR)
+    log.addHandler(OneLine())
+    return log
 
 
 def close_server(server: Any) -> None:

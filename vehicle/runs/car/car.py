@@ -33,7 +33,7 @@ from vehicle.model.parameters.additions import new_loads
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.parameter_list import parameter_at
 from vehicle.model.parameters.paths import assignments
-from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.model.parameters.shipped import sets_step, vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle, load_file, load_vehicle, varied_file, vehicle_of
 from vehicle.model.parameters.vehicle_variants import VehicleVariants
 from vehicle.model.parameters.whole_body import restated
@@ -296,16 +296,21 @@ class Car:
     def stepped(self) -> Car:
         """Return this car with a sufficiently small time step: the given step, else the largest that passes all checks.
 
+        The step of a shipped car is only the first to try: nobody who changes another number of it has set the step.
+
         Raises:
             ConfigurationError: the given step is too large, or no step is small enough.
         """
-        if self.vehicle.solver.timestep is not None:
+        if self.vehicle.solver.timestep is not None and sets_step(self.origin["file"], self.overrides):
             if "mujoco" not in self._checked:
                 require_accurate_step(self.model, self.matrices)
                 self._checked.add("mujoco")
             return self
         if self._stepped is None:
             step = accurate_step(self.model, self.matrices)
+            if step == self.vehicle.solver.timestep:
+                self._checked.add("mujoco")
+                return self
             solver = {**self.vehicle.table["solver"], "timestep": step}
             car = Car(vehicle_of({**self.vehicle.table, "solver": solver}, self.folder), folder=self.folder)
             car.origin, car.overrides = self.origin, self.overrides

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
@@ -63,8 +64,13 @@ def simulated_run(
             return car, recording, reason
         reason = "; ".join(recording.statistics.warnings)
     stepped = car.stepped()
+    given, taken = car.vehicle.solver.timestep, stepped.vehicle.solver.step
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
     require_finite(recording)
+    if given is not None and taken < given:
+        said = f"time step {taken:g} s: that of the vehicle file, {given:g} s, is too long for this car"
+        statistics = recording.statistics
+        recording = replace(recording, statistics=replace(statistics, notices=(*statistics.notices, said)))
     if channels is not None:
         recording = recording.only(channels)
     return stepped, recording, reason

@@ -20,7 +20,7 @@ MOST_ENTRIES = 10_000
 
 
 def require_unpacked(
-    place: object, size: float, packed: float, *, limit: float = MEMORY_LIMIT, freely: float = FREELY,
+    place: object, size: float, packed: float, *, limit: float | None = None, freely: float | None = None,
     densest: float = DENSEST,
 ) -> None:  # fmt: skip
     """Refuse data that would fill the memory, or that are far denser than measurements.
@@ -29,13 +29,14 @@ def require_unpacked(
         place: file, for the message.
         size: size of the unpacked data, as their headers state it [byte].
         packed: size in the file [byte].
-        limit: maximum size [byte].
-        freely: size up to which every compression ratio is accepted [byte].
+        limit: maximum size [byte]; `MEMORY_LIMIT` by default.
+        freely: size up to which every compression ratio is accepted [byte]; `FREELY` by default.
         densest: maximum compression ratio above it [-].
 
     Raises:
         DataError: too large, or too dense.
     """
+    limit, freely = MEMORY_LIMIT if limit is None else limit, FREELY if freely is None else freely
     if size > limit:
         raise DataError(
             f"{place}: its data need {size / 1024**3:.3g} GiB unpacked, must be at most {limit / 1024**3:.3g} GiB; cut "
@@ -52,8 +53,8 @@ def require_archive(
     place: object,
     file: BinaryIO,
     *,
-    limit: float = MEMORY_LIMIT,
-    freely: float = FREELY,
+    limit: float | None = None,
+    freely: float | None = None,
     densest: float = DENSEST,
 ) -> None:
     """Refuse a ZIP archive whose files would be too large, too dense or too many.
