@@ -204,9 +204,11 @@ def test_a_searched_parameter_gets_a_slider(bench):
     path = "front.hardpoints.strut_top.z"
     bench.page.add_slider(path, more=True)
     with bench.client() as client:
-        bench.send(client, bench.page.state.setting(path).value + 0.01, path)
-        bench.wait_for(lambda: path in bench.page.state.changes)
-        bench.wait_for(lambda: path in bench.page._table.content)
+        slider, value = bench.page._sliders[path], bench.page.state.setting(path).value
+        assert slider.label.endswith("strut top z [mm]") and slider.value == pytest.approx(1e3 * value, rel=5e-4)
+        bench.send(client, 1e3 * value + 10.0, path)
+        bench.wait_for(lambda: bench.page.state.changes.get(path) == pytest.approx(value + 0.01))
+        bench.wait_for(lambda: f"strut top z {1e3 * value + 10.0:.5g} mm" in bench.page._table.content)
     bench.page._reset()
     bench.wait_for(lambda: "**B** unchanged" in bench.page._table.content)
 

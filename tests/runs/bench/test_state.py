@@ -80,10 +80,9 @@ def test_changes_give_the_numbers_of_the_changed_car(car, state):
     table = state.present[1].table()
     loaded = car.with_({FRICTION: 60.0}).run(state.drive.record, engine="reduced").comfort()
     assert table["comfort unweighted"][0] == pytest.approx(loaded.unweighted.overall, rel=1e-9)
-    name, a, b, change, unit = state.rows()[0]
+    name, a, b, unit = state.rows()[0]
     assert (name, unit) == ("comfort unweighted", "m/s2")
-    assert (a, b) == (unchanged[name][0], table[name][0]) and change == pytest.approx(100.0 * (b / a - 1.0))
-    assert change < -5.0
+    assert (a, b) == (unchanged[name][0], table[name][0]) and b < 0.95 * a
     state.keep()
     assert all(row[1] == row[2] for row in state.rows())
     state.change(FRICTION, 125.0)

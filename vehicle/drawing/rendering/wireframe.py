@@ -21,6 +21,9 @@ GROUPS = ("body", "mass", "link", "spring", "wheel", "ground")
 SPOKES, TREAD, PLATE = 24, 0.18, 0.22
 """Corners of a drawn wheel; its width and half the side of a plate [m]."""
 
+CORNERS = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
+"""Corners of a square [half sides]."""
+
 BOX_MASS = 40.0
 """Minimum mass [kg] of a part, other than a wheel, that is also drawn as the box of its mass and inertia."""
 
@@ -65,13 +68,13 @@ def unit_factor(displacement: npt.NDArray[np.complex128]) -> complex:
 
 
 def car_wireframe(car: CarModel) -> CarWireframe:
-    """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, and the plates.
+    """Draw a car: the frame of its body, its links, springs and wheels, boxes for heavy parts, plates and stands.
 
     Args:
         car: compiled car.
 
     Returns:
-        Points and lines of the car, and J of u_point = J u, which is zero for plates.
+        Points and lines of the car, and J of u_point = J u, which is zero for plates and stands.
     """
     pen = _Pen(car)
     element, composition = car.superelement, car.vehicle.composition
@@ -88,6 +91,10 @@ def car_wireframe(car: CarModel) -> CarWireframe:
         pen.polyline(_coil(low, high), "spring", spring.parts)
     for wheel in composition.wheels:
         _wheel(pen, wheel)
+    floor = min(wheel.patch[2] for wheel in composition.wheels)
+    for connection in composition.connections:
+        if {connection.moving, connection.carrier} == {"body", "world"}:
+            _stand(pen, np.asarray(connection.at), floor)
     return pen.finished()
 
 
@@ -195,9 +202,16 @@ def _wheel(pen: _Pen, wheel: PlacedWheel) -> None:
     pen.join([(rings[0][i], rings[1][i]) for i in range(0, SPOKES, 3)], "wheel")
     outer = rings[0 if wheel.side > 0 else 1]
     pen.join([(hub, outer[i]) for i in range(0, SPOKES, SPOKES // 4)], "wheel")
-    corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-    plate = [pen.point(np.add(wheel.patch, (PLATE * x, PLATE * y, 0.0)), "world") for x, y in corners]
+    plate = [pen.point(np.add(wheel.patch, (PLATE * x, PLATE * y, 0.0)), "world") for x, y in CORNERS]
     pen.join(list(zip(plate, [*plate[1:], plate[0]], strict=True)), "ground")
+
+
+def _stand(pen: _Pen, top: Vector, floor: float) -> None:
+    """Draw what holds the body where it has no wheels: four legs from a point at rest to the floor."""
+    feet = [(top[0] + PLATE * x, top[1] + PLATE * y, floor) for x, y in CORNERS]
+    base, head = [pen.point(foot, "world") for foot in feet], pen.point(top, "world")
+    pen.join(list(zip(base, [*base[1:], base[0]], strict=True)), "ground")
+    pen.join([(foot, head) for foot in base], "ground")
 
 
 def _coil(low: Vector, high: Vector) -> Vector:

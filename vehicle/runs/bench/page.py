@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.engines.reduced.validity import REMEDY
 from vehicle.errors import VehicleError
 from vehicle.runs.bench.curves import damper_curves, density_curves, frf_curves
@@ -20,7 +21,8 @@ from vehicle.runs.bench.setting import Setting
 from vehicle.runs.bench.stage import Stage
 from vehicle.runs.bench.state import BenchState, LatestOnly
 from vehicle.runs.bench.view import View
-from vehicle.runs.report.differences import parameter_words
+from vehicle.runs.car import Car
+from vehicle.runs.report.differences import difference, parameter_words
 
 FIRST = ("coulomb_friction", "damper.viscous", "main_spring.stiffness", "tyre.stiffness.z", "body.mass")
 """Ends of the paths of the sliders at the start; the first path with each."""
@@ -129,13 +131,13 @@ class Page:
         if path in self._sliders:
             return
         setting = self.state.setting(path)
-        prefix, scale = _prefix(setting)
-        unit = "" if setting.unit in ("", "-") else f" [{prefix}{setting.unit}]"
-        low, high, step, value = (number / scale for number in (setting.low, setting.high, setting.step, setting.value))
+        unit, scale = _unit(setting)
+        low, high, step = (end / scale for end in (setting.low, setting.high, setting.step))
 
         def add() -> Any:
             hint = f"{path}: {setting.meaning}"
-            return self.server.gui.add_slider(f"{parameter_words(path)}{unit}", low, high, step, value, hint=hint)
+            label = f"{parameter_words(path)} [{unit}]" if unit else parameter_words(path)
+            return self.server.gui.add_slider(label, low, high, step, _shown(setting), hint=hint)
 
         if more:
             with self._added:
@@ -148,12 +150,16 @@ class Page:
     def _change(self, path: str) -> None:
         """Take the value of a slider; put the slider back if the value is outside its range."""
         slider, setting = self._sliders[path], self.state.settings[path]
-        value, (_, scale) = slider.value, _prefix(setting)
+        value, (_, scale) = slider.value, _unit(setting)
         try:
-            self.state.change(path, value if scale == 1.0 else round(value * scale, 6))
+            if value == _shown(setting):  # the value of the unchanged car, of which the field shows four digits
+                self.state.change(path, setting.value)
+            else:
+                self.state.change(path, value if scale == 1.0 else round(value * scale, 6))
         except VehicleError:
             if slider.value is value:  # otherwise a newer value has arrived, whose event follows
-                slider.value = self.state.changes.get(path, setting.value) / scale
+                changed = self.state.changes.get(path)
+                slider.value = _shown(setting) if changed is None else changed / scale
             raise
         self._request()
 
@@ -169,7 +175,7 @@ class Page:
     def _reset(self) -> None:
         self.state.reset()
         for path, slider in self._sliders.items():
-            slider.value = self.state.settings[path].value / _prefix(self.state.settings[path])[1]
+            slider.value = _shown(self.state.settings[path])
         self._request()
 
     def _write(self, write: Callable[[BenchState, Path], Path]) -> None:
@@ -205,11 +211,12 @@ class Page:
         state = self.state
         (car, present), (other, reference) = state.present, state.reference
         lines = ["| | A | B | change |", "|---|---|---|---|"]
-        for name, a, b, change, unit in state.rows():
-            text = "" if change is None or math.isnan(change) else f"{change:+.1f}\u00a0%"
-            lines.append(f"| {name} [{unit}] | {_short(a)} | {_short(b)} | {text} |")
-        base = len(state.car.overrides)
-        texts = ["; ".join(shown.overrides[base:]) or "unchanged" for shown in (car, other)]
+        for name, a, b, unit in state.rows():
+            change = "" if math.isnan(a) or math.isnan(b) else difference(a, b, unit)
+            # Long words in the last column would break the names into one word a line.
+            change = change.replace("percentage ", "").replace(" ", "\u00a0")
+            lines.append(f"| {name} [{unit}] | {_short(a)} | {_short(b)} | {change} |")
+        texts = [_escaped(self._changed(shown)) for shown in (car, other)]
         label = f"{_escaped(state.drive.label)}; computed in {1e3 * present.seconds:.0f} ms"
         lines.append(f"\n**A** {texts[1]} · **B** {texts[0]}\n\n{label}")
         with self.server.atomic():
@@ -222,6 +229,15 @@ class Page:
                 self._say(
                     f"outside the valid range: {warnings}; write the vehicle file and run it with --engine mujoco"
                 )
+
+    def _changed(self, car: Car) -> str:
+        """Return what differs from the car of the start, in words."""
+        changes = [text.partition("=") for text in car.overrides[len(self.state.car.overrides) :]]
+        words = []
+        for path, _, value in changes:
+            unit, scale = _unit(self.state.setting(path))
+            words.append(f"{parameter_words(path)} {number(float(value) / scale, 5)} {unit}".rstrip())
+        return ", ".join(words) or "unchanged"
 
     def _add_plots(self) -> list[tuple[Any, Callable[..., Any]]]:
         """Add the plots; return each with the function of its curves."""
@@ -283,9 +299,16 @@ class Page:
         self.stage.stop()
 
 
-def _prefix(setting: Setting) -> tuple[str, float]:
-    """Return the prefix of the unit of a slider and its factor: the field of a slider shows five digits alone."""
-    return ("k", 1e3) if setting.high >= 1e5 and setting.unit.startswith("N") else ("", 1.0)
+def _unit(setting: Setting) -> tuple[str, float]:
+    """Return the unit of a slider, empty for none, and its factor: the field of a slider shows five digits alone."""
+    if setting.high >= 1e5 and setting.unit.startswith("N"):
+        return f"k{setting.unit}", 1e3
+    return ("mm", 1e-3) if setting.unit == "m" else ("" if setting.unit == "-" else setting.unit, 1.0)
+
+
+def _shown(setting: Setting) -> float:
+    """Return the value of the unchanged car in the unit of the slider, with four digits."""
+    return float(f"{setting.value / _unit(setting)[1]:.4g}")
 
 
 def _escaped(text: str) -> str:

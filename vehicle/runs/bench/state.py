@@ -120,13 +120,10 @@ class BenchState:
         """Undo all changes; `update` computes."""
         self.changes = {}
 
-    def rows(self) -> list[tuple[str, float, float, float | None, str]]:
-        """Return name, A, B, relative change [%] (None from zero) and unit of each number."""
+    def rows(self) -> list[tuple[str, float, float, str]]:
+        """Return name, A, B and unit of each number."""
         before = self.reference[1].table()
-        return [
-            (name, before[name][0], value, 100.0 * (value / before[name][0] - 1.0) if before[name][0] else None, unit)
-            for name, (value, unit) in self.present[1].table().items()
-        ]
+        return [(name, before[name][0], value, unit) for name, (value, unit) in self.present[1].table().items()]
 
 
 class LatestOnly:

@@ -70,7 +70,6 @@ def _content(run: FinishedRun) -> Markup:
     return joined(
         [
             tag("p", "Computing ...", class_="answer", id="trial-words"),
-            tag("p", id="trial-notices"),
             tag("noscript", tag("p", "This section needs JavaScript; the others do not.")),
             tag(
                 "div",
@@ -78,6 +77,7 @@ def _content(run: FinishedRun) -> Markup:
                 tag("div", tag("div", id="trial-controls"), *picture, class_="controls"),
                 class_="modes",
             ),
+            tag("p", id="trial-notices"),
             tag(
                 "p",
                 "Grey: A, the reference; red: B, the car with these settings. The page computes the first "

@@ -9,7 +9,7 @@ const trialPicture = (() => {
   let runs = [], playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, seen = false, time = 0, last = 0, chosen = false;
   wireframe.measure(car);
 
-  // Points of each plate, wheel by wheel: each is drawn with four lines.
+  // Points of each plate, wheel by wheel: each is drawn with four lines; stands of the body come after them.
   const ground = modes.groups.indexOf("ground");
   const corners = car.groups.flatMap((group, k) => (group === ground ? [[car.lines[2 * k], car.lines[2 * k + 1]]] : []));
   const plates = Array.from({ length: corners.length / 4 }, (_, wheel) => [...new Set(corners.slice(4 * wheel, 4 * wheel + 4).flat())]);
@@ -22,7 +22,7 @@ const trialPicture = (() => {
       const amount = value(history) * steps[motion];
       for (let i = 0; i < n; i++) result[i] += amount * shapes[motion * n + i];
     });
-    plates.forEach((points, wheel) => { for (const point of points) result[3 * point + 2] += value(heights[wheel]); });
+    heights.forEach((history, wheel) => { for (const point of plates[wheel]) result[3 * point + 2] += value(history); });
     return result;
   }
 
