@@ -33,13 +33,13 @@ WINGS = {
 DATA = {"inputs", "templates", "vehicles"}
 """Rooms that hold no modules."""
 
-BELOW = EVERYWHERE | {"compiler", "threads", "version"}
+BELOW = EVERYWHERE | {"threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
-    "core": {"compiler"},
+    "core": set(),
     "parameters": {"records"},
-    "laws": {"compiler", "core", "parameters"},
+    "laws": {"core", "parameters"},
     "records": {"analysis"},
     "excitation": {"analysis", "records"},
     "flexbody": {"analysis", "parameters", "records"},
@@ -77,7 +77,6 @@ ROOMS: dict[str, set[str]] = {
     | {"sweeps", "threads", "tuning", "version"},
     "threads": set(),
     "version": set(),
-    "compiler": set(),
     "errors": set(),
     "names": set(),
     "__init__": {
