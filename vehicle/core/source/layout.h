@@ -92,7 +92,7 @@
 /* ---- rows of MuJoCo: `element_records`, `step_records` and `sampling` of vehicle/engines/simulation ---- */
 
 #define SPARSE_ROWS_FIELDS(F) \
-  F(Table, jacobian) F(Vector, values) F(Index, places) F(Index, offsets) F(Index, addresses) \
+  F(Table, jacobian) F(Vector, values) F(Index, places) F(Index, own) F(Index, offsets) F(Index, addresses) \
   F(Index, replaced) F(int64_t, size)
 
 #define TICKET_FIELDS(F) \
