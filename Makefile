@@ -22,7 +22,6 @@ shaker: setup
 	fi
 
 test: setup .stamps/for-tests check
-	$(BIN)/python -m tests.compile_first
 	$(BIN)/python -m pytest -n 2
 
 check: setup

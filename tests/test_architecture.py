@@ -33,13 +33,13 @@ WINGS = {
 DATA = {"inputs", "templates", "vehicles"}
 """Rooms that hold no modules."""
 
-BELOW = EVERYWHERE | {"compiler", "replacement", "threads", "version"}
+BELOW = EVERYWHERE | {"replacement", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
-    "core": {"compiler"},
+    "core": set(),
     "parameters": {"records"},
-    "laws": {"compiler", "core", "parameters", "records"},
+    "laws": {"core", "parameters", "records"},
     "records": {"analysis"},
     "excitation": {"analysis", "records", "replacement"},
     "flexbody": {"analysis", "parameters", "records", "replacement"},
@@ -78,7 +78,6 @@ ROOMS: dict[str, set[str]] = {
     "threads": set(),
     "version": set(),
     "replacement": set(),
-    "compiler": set(),
     "digits": set(),
     "errors": set(),
     "names": set(),

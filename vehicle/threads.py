@@ -14,7 +14,7 @@ from functools import cache
 from threading import Lock, get_ident
 from typing import Any
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Environment variables with the number of threads; a library reads them when it is loaded."""
 
 _lock = Lock()

@@ -1,7 +1,7 @@
 """The library of the core: shipped for this platform, or compiled from its sources with the C compiler at hand.
 
 A library belongs to the sources whose digest it returns as its stamp. Where no shipped one does, as beside changed
-sources, it is compiled once into a private cache folder (`vehicle.compiler`), from which the next process loads it.
+sources, it is compiled once into a private cache folder (`cache_folder`), from which the next process loads it.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from vehicle.compiler import cache_folder
 from vehicle.core.build import SOURCES, compile_core, digest
+from vehicle.core.cache_folder import cache_folder
 from vehicle.errors import MissingPartError
 
 BINARIES = Path(__file__).parent / "binaries"

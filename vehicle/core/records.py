@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import ctypes
 import re
+import struct
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -140,37 +141,38 @@ def packed(name: str, record: Any) -> Packed:
     Raises:
         TypeError: type, dimensions, order or alignment of an array differs from its kind.
     """
-    memory, kept = structure(name)(), list[Any]()
-    _fill(memory, name, record, kept)
-    return Packed(memory, tuple(kept))
+    words, kept = list[int](), list[Any]()
+    _add(words, name, record, kept)
+    return Packed(structure(name).from_buffer(bytearray(struct.pack(f"{len(words)}q", *words))), tuple(kept))
 
 
-def _fill(memory: ctypes.Structure, name: str, record: Any, kept: list[Any]) -> None:
-    """Write the fields of a record into a structure."""
+def _add(words: list[int], name: str, record: Any, kept: list[Any]) -> None:
+    """Append the fields of a record as 64-bit words."""
+    kinds, read = array_kinds(), record.__getitem__ if isinstance(record, Mapping) else partial(getattr, record)
     for kind, field in records()[name]:
-        value = record[field] if isinstance(record, Mapping) else getattr(record, field)
-        if kind in NUMBERS:
-            setattr(memory, field, value)
-        elif kind in array_kinds():
-            _point(getattr(memory, field), f"{name}.{field}", array_kinds()[kind], value)
+        value, wanted = read(field), kinds.get(kind)
+        if wanted is not None:
+            if not _fits(wanted, value):
+                raise TypeError(
+                    f"{name}.{field}: {value.dtype} {value.shape} is no {wanted.element} of {wanted.dimensions} "
+                    "dimensions in C order"
+                )
+            words += (value.__array_interface__["data"][0], *value.shape[: wanted.dimensions])
             kept.append(value)
+        elif kind == "double":
+            words.append(struct.unpack("q", struct.pack("d", value))[0])
+        elif kind == "int64_t":
+            words.append(int(value))
         else:
-            _fill(getattr(memory, field), kind, value, kept)
+            _add(words, kind, value, kept)
 
 
-def _point(memory: Any, name: str, kind: ArrayKind, array: npt.NDArray[Any]) -> None:
-    """Write address and shape of an array.
-
-    Raises:
-        TypeError: see `packed`.
-    """
+def _fits(kind: ArrayKind, array: npt.NDArray[Any]) -> bool:
+    """Return True for an array with type, dimensions, order and alignment of a kind."""
     if kind.element == "void":
         fits = array.ndim == 2 and array.shape[1] * array.itemsize == LANE_BYTES
         fits &= array.dtype in ELEMENTS["REAL"] and (array.ctypes.data % LANE_BYTES == 0 or array.size == 0)
     else:
         types = ELEMENTS.get(kind.element) or (dtype(kind.element),)
         fits = array.ndim == kind.dimensions and array.dtype in types
-    if not (fits and array.flags.c_contiguous):
-        raise TypeError(f"{name}: {array.dtype} {array.shape} is no {kind.element} of {kind.dimensions} dimensions")
-    memory.at = array.ctypes.data
-    memory.n[:] = array.shape[: kind.dimensions]
+    return fits and array.flags.c_contiguous

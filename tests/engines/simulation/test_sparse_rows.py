@@ -14,7 +14,7 @@ from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.compiled import CompiledRows
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
-from vehicle.engines.simulation.sparse_rows import nonzero_columns, solution_of
+from vehicle.engines.simulation.sparse_rows import Pattern, solution_of
 from vehicle.runs.car import Car
 
 STEPS = 400
@@ -46,16 +46,16 @@ def driven(car: Car, *, sparse: bool) -> tuple[np.ndarray, np.ndarray, int]:
     assert model.opt.jacobian == mujoco.mjtJacobian.mjJAC_DENSE
     assert data.nJ == len(data.efc_J) != 0
     assert not sparse or data.nJ == data.efc_J_rowadr[-1] + data.efc_J_rownnz[-1]
-    assert not sparse or data.nJ <= np.count_nonzero(nonzero_columns_of(model, rows))
+    assert not sparse or data.nJ <= np.count_nonzero(pattern_of(model, rows).nonzero)
     return np.array(velocities), np.array(forces), iterations
 
 
-def nonzero_columns_of(model: mujoco.MjModel, rows: Rows) -> np.ndarray:
+def pattern_of(model: mujoco.MjModel, rows: Rows) -> Pattern:
     """Return where the rows may be nonzero; the format of the model stays dense."""
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
-    nonzero = nonzero_columns(model, rows.layout)
+    pattern = Pattern.of(model, rows.layout)
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
-    return nonzero
+    return pattern
 
 
 @pytest.mark.parametrize("name", ["focus", "focus_road", "sedan"])
@@ -76,8 +76,8 @@ def test_the_factor_solves_the_equations_of_a_step() -> None:
     car = Car.load("focus")
     model, space = run_model(car.model)
     rows = Rows(model, car.model.static.preload, space)
-    nonzero = nonzero_columns_of(model, rows)
-    solution = solution_of(model, rows.layout, nonzero)
+    pattern = pattern_of(model, rows)
+    nonzero, solution = pattern.nonzero, solution_of(model, rows.layout, pattern)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     random = np.random.default_rng(5)

@@ -13,12 +13,13 @@ import pytest
 
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[fmu]'")
 
+from tests.core import laws as core_laws
+from tests.core.laws import called
 from tests.model.laws.controller_files import NUMBERS, PARAMETERS, controller_fmu
 from tools.controller_library import FOLDER, digests
 from vehicle.errors import ConfigurationError, DataError, SimulationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
 from vehicle.model.laws.controller_fmu import NOT_FINITE, TERMINATED, Controller, controllers, read_controller
-from vehicle.model.laws.function_address import result_at
 from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.signals.records.reader import digest
 
@@ -57,7 +58,7 @@ def test_the_call_equals_the_own_law(tmp_path, version):
     wanted = [float(demanded(record, body, wheel)) for body, wheel in [*speeds(), (0.0, 0.0)]]
     controller = started(path)
     for n, (body, wheel) in enumerate([*speeds(), (0.0, 0.0)]):
-        assert result_at(float(controller.address), body, wheel) == pytest.approx(wanted[n], rel=1e-14)
+        assert called(controller.address, body, wheel) == pytest.approx(wanted[n], rel=1e-14)
     assert controller.record.memory.readings == len(wanted)
     controller.close()
 
@@ -72,7 +73,7 @@ def test_a_damper_with_period_delay_and_rate_equals_the_own_law(tmp_path, versio
     with controllers(laws, [("damper_fr", outside(own, path))], STEP) as check:
         for step, (body, wheel) in enumerate(speeds()):
             act(record, step, body, wheel, past)
-            act(laws[0], step, body, wheel, other)
+            core_laws.act(laws, step, body, wheel, other)
             assert other[PRESENT] == pytest.approx(past[PRESENT], rel=1e-13)
         check()
     assert laws["controller"][0] == 0.0
@@ -91,7 +92,7 @@ def test_values_and_times_of_the_sensors(tmp_path, sensor, wanted):
     numbers = {**NUMBERS, "coefficient": NUMBERS[sensor]}
     path = controller_fmu(tmp_path / "sensor.fmu", inputs=("wheel_velocity", sensor), references=numbers)
     controller = started(path)
-    found = [result_at(float(controller.address), body, wheel) for body, wheel in speeds()]
+    found = [called(controller.address, body, wheel) for body, wheel in speeds()]
     np.testing.assert_allclose(found, wanted(*speeds().T), rtol=1e-14, atol=1e-12)
     controller.close()
 
@@ -102,7 +103,7 @@ def test_the_coefficient_stays_within_the_damper(tmp_path):
     control = outside(replace(SKYHOOK, minimum_damping=400.0, maximum_damping=600.0), path)
     laws = np.array([in_steps(pack(control), STEP)])
     with controllers(laws, [("damper_fr", control)], STEP):
-        found = [float(demanded(laws[0], body, wheel)) for body, wheel in speeds()]
+        found = [core_laws.demanded(laws, body, wheel) for body, wheel in speeds()]
     assert min(found) == 400.0 and max(found) == 600.0
     assert any(400.0 < value < 600.0 for value in found)
 
@@ -110,12 +111,12 @@ def test_the_coefficient_stays_within_the_damper(tmp_path):
 def test_instances_and_runs_are_independent(tmp_path):
     path = controller_fmu(tmp_path / "skyhook.fmu")
     firm, soft = started(path, replace(SKYHOOK, skyhook_damping=5000.0)), started(path)
-    first = [result_at(float(each.address), 0.1, -0.1) for each in (firm, soft)]
+    first = [called(each.address, 0.1, -0.1) for each in (firm, soft)]
     assert first == pytest.approx([2500.0, 1500.0], rel=1e-14)
     # A library of its own each: also global variables would be separate.
     assert firm.record.memory.set != soft.record.memory.set
     again = started(path)
-    assert result_at(float(again.address), 0.1, -0.1) == first[1]
+    assert called(again.address, 0.1, -0.1) == first[1]
     for each in (firm, soft, again):
         each.close()
 
@@ -131,7 +132,7 @@ def test_instances_and_runs_are_independent(tmp_path):
 def test_a_failure_in_a_run_is_said_with_its_time(tmp_path, version, fault, status, text):
     path = controller_fmu(tmp_path / "faulty.fmu", version, parameters=(*PARAMETERS, "skyhook_share"))
     controller = started(path, replace(SKYHOOK, skyhook_share=fault))
-    answers = [result_at(float(controller.address), 0.3, 0.1) for _ in range(120)]
+    answers = [called(controller.address, 0.3, 0.1) for _ in range(120)]
     assert len(set(answers)) == 1 and controller.record.memory.status == status
     with pytest.raises(SimulationError) as caught:
         controller.check()

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.core.laws import friction_limit
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb
-from vehicle.model.laws.damper import damper_law, friction_limit, pack
+from vehicle.model.laws.damper import damper_law, pack
 from vehicle.model.laws.degressive import Degressive
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.kelvin import Kelvin

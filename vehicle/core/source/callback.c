@@ -42,13 +42,9 @@ static Now now_of(Simulation *s, const void *data) {
            .pos = of[2], .vel = of[3], .aref = of[4], .D = of[5], .R = of[6], .loss = of[7],
            .rows = s->ticket.rows, .width = s->layout.velocity_count};
   if (p->jacobian.n[0] == 0) return o;
-  const int *counts = FIELD_AT(const int *const, data, p->offsets.at[0]);
-  const int *starts = FIELD_AT(const int *const, data, p->offsets.at[1]);
-  const int *columns = FIELD_AT(const int *const, data, p->offsets.at[3]);
   const double *values = FIELD_AT(const double *const, data, p->offsets.at[4]);
   o.J = p->jacobian.at, o.width = p->jacobian.n[1];
-  for (int64_t row = 0; row < o.rows; row++)
-    for (int k = starts[row]; k < starts[row] + counts[row]; k++) row_of(&o, row)[columns[k]] = values[k];
+  for (int64_t k = 0; k < p->own.n[0]; k++) o.J[p->own.at[k]] = values[k];
   return o;
 }
 
@@ -119,7 +115,9 @@ void NAME(detach)(const Simulation *s, void *data) {
 void NAME(control)(const void *model, void *data) {
   Simulation *s = records_of(model, data);
   if (s == NULL) return;
-  if (FIELD_AT(int, data, s->ticket.row_count) == s->ticket.rows) {
+  const SparseRows *p = &s->ticket.sparse;
+  const int same = p->jacobian.n[0] == 0 || FIELD_AT(int, data, p->size) == p->own.n[0];
+  if (same && FIELD_AT(int, data, s->ticket.row_count) == s->ticket.rows) {
     NAME(rewrite)(s, data);
   } else { /* the rows are not those of the records: make the state invalid, so that the run stops */
     for (int64_t i = 0; i < s->layout.velocity_count; i++) s->fields.qfrc_applied.at[i] = 0.0 / 0.0;

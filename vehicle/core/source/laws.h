@@ -15,11 +15,15 @@ static inline double slope_at_rest(double limit, double smoothing) {
   return 0.6366197723675814 * limit * smoothing;
 }
 
-/* Friction limit L(v) of a damper [N]; Stribeck: Fd + (Fs - Fd) exp(-|v/vs|^delta). A ratio of 1e15 is sliding. */
+/* Weight exp(-|v/vs|^delta) of Stribeck friction; a ratio of 1e15 is sliding. */
+static inline double stribeck_weight(double velocity, double scale, double exponent) {
+  return exponential(-power(smaller(absolute(velocity / scale), 1e15), exponent));
+}
+
+/* Friction limit L(v) of a damper [N]; Stribeck: Fd + (Fs - Fd) exp(-|v/vs|^delta). */
 static inline double friction_limit(const DamperLaw *law, double velocity) {
   if (law->friction_law != STRIBECK) return law->friction_limit;
-  double ratio = smaller(absolute(velocity / law->stribeck_velocity), 1e15);
-  double weight = exponential(-power(ratio, law->stribeck_exponent), 0.0);
+  double weight = stribeck_weight(velocity, law->stribeck_velocity, law->stribeck_exponent);
   return law->friction_limit + (law->static_limit - law->friction_limit) * weight;
 }
 

@@ -27,5 +27,6 @@ EXPORT void core_act(const Setting *law, int64_t step, double body, double wheel
 EXPORT double core_curve_force(double x, const double *edge, const double *slope, const double *offset) {
   return curve_force(x, edge, slope, offset);
 }
-EXPORT double core_exponential(double x) { return exponential(x, 0.0); }
+EXPORT double core_exponential(double x) { return exponential(x); }
+EXPORT double core_logarithm(double x) { return logarithm(x); }
 EXPORT double core_power(double x, double y) { return power(x, y); }

@@ -57,7 +57,7 @@
 
 /* Numbers and first rows of the sections of the table of a group; `vehicle.engines.reduced.table_layout.TableRows`. */
 #define SECTIONS_FIELDS(F) \
-  F(int64_t, states) F(int64_t, iterations) F(int64_t, groups) F(int64_t, elements) F(int64_t, curves) \
+  F(int64_t, pairs) F(int64_t, states) F(int64_t, iterations) F(int64_t, groups) F(int64_t, elements) F(int64_t, curves) \
   F(int64_t, corners) F(int64_t, rubbers) F(int64_t, layers) F(int64_t, slip) F(int64_t, level) F(int64_t, gain) \
   F(int64_t, ramp) F(int64_t, law) F(int64_t, pieces) F(int64_t, limit) F(int64_t, full) F(int64_t, inputs) \
   F(int64_t, viscous) F(int64_t, velocity) F(int64_t, earlier) F(int64_t, hold) F(int64_t, stuck) \
@@ -92,7 +92,7 @@
 /* ---- rows of MuJoCo: `element_records`, `step_records` and `sampling` of vehicle/engines/simulation ---- */
 
 #define SPARSE_ROWS_FIELDS(F) \
-  F(Table, jacobian) F(Vector, values) F(Index, places) F(Index, offsets) F(Index, addresses) \
+  F(Table, jacobian) F(Vector, values) F(Index, places) F(Index, own) F(Index, offsets) F(Index, addresses) \
   F(Index, replaced) F(int64_t, size)
 
 #define TICKET_FIELDS(F) \

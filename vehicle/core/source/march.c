@@ -43,6 +43,24 @@ static void control(const March *job) {
   }
 }
 
+/* Friction limits of a damper of each car at its velocity: friction_limit of laws.h, the weights of all cars at once. */
+static V limits_at(V velocity, const DamperLaw *law, int64_t lanes) {
+  double weight[LANES], ratio[LANES], scale[LANES], exponent[LANES];
+  V limit = {0};
+  if (lanes < LANES) {
+    limit[0] = (REAL)friction_limit(law, (double)velocity[0]);
+    return limit;
+  }
+  for (int i = 0; i < LANES; i++)
+    ratio[i] = (double)velocity[i], scale[i] = law[i].stribeck_velocity, exponent[i] = law[i].stribeck_exponent;
+  for (int i = 0; i < LANES; i++) weight[i] = stribeck_weight(ratio[i], scale[i], exponent[i]);
+  for (int i = 0; i < LANES; i++) {
+    double excess = law[i].friction_law == STRIBECK ? law[i].static_limit - law[i].friction_limit : 0.0;
+    limit[i] = (REAL)(law[i].friction_limit + excess * weight[i]);
+  }
+  return limit;
+}
+
 /* Friction limits by the velocity in the middle of the step, extrapolated from both ends of the last step, and their
  * growth with the side force, extrapolated likewise. */
 static void friction_limits(const March *job) {
@@ -51,11 +69,7 @@ static void friction_limits(const March *job) {
   int64_t varying = job->laws.n[0], lanes = job->laws.n[1], first = job->tyres + 2 * job->controlled.n[0];
   for (int64_t i = 0; i < job->dampers; i++) {
     V now = t[r->velocity + i], *limit = t + r->limit + i;
-    if (varying) {
-      *limit = now + half * (now - t[r->earlier + i]);
-      for (int64_t lane = 0; lane < lanes; lane++)
-        (*limit)[lane] = (REAL)friction_limit(job->laws.at + i * lanes + lane, (double)(*limit)[lane]);
-    }
+    if (varying) *limit = limits_at(now + half * (now - t[r->earlier + i]), job->laws.at + i * lanes, lanes);
     t[r->earlier + i] = now;
   }
   for (int64_t k = 0; k < job->sides.n[0]; k++) {

@@ -1,9 +1,9 @@
-/* Scalar mathematics of the core's own: equal bits with every compiler, library and processor.
+/* Scalar mathematics of the core's own: equal bits with every compiler, library and processor, if products and sums are
+ * rounded one by one. Without branches: a compiler computes them for several numbers at once.
  *
- * exp(x) = 2^k exp(r), |r| <= ln(2)/2, exp(r) = 1 + 2 r / (2 - c(r)) with Remez's rational form of FreeBSD's e_exp.c.
- * pow(x, y) = exp(y ln x) with y ln x in two numbers: ln m = 2 (s + s^3/3 + ...), s = (m - 1)/(m + 1), x = 2^k m; its
- * leading terms are carried with their rounding errors (Dekker 1971), so the relative error of the power is about 1e-16
- * times its own logarithm at most. Needs no fused products, and must not be compiled with them. */
+ * exp(x) = 2^k exp(r), |r| <= ln(2)/2, exp(r) = 1 + 2 r / (2 - c(r)) with Remez's rational form of FreeBSD's e_exp.c;
+ * ln(x) = k ln(2) + ln(m), x = 2^k m, with the polynomials of s = (m - 1)/(m + 1) of its e_log.c. Both have errors below
+ * one unit in the last place; x^y = exp(y ln x) has a relative error of about 1e-16 (1 + |y ln x|). */
 #ifndef CORE_MATHEMATICS_H
 #define CORE_MATHEMATICS_H
 #include <stdint.h>
@@ -13,58 +13,36 @@ static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline double root(double x) { return __builtin_sqrt(x); }
 
-/* 2^k for -1022 <= k <= 1023. */
-static inline double power_of_two(int64_t k) {
-  union { uint64_t bits; double x; } value = {(uint64_t)(k + 1023) << 52};
-  return value.x;
+typedef union { double x; int64_t bits; } Bits;
+static const double LN2 = 6.93147180369123816490e-01, LN2_REST = 1.90821492927058770002e-10; /* 32 bits, and the rest */
+static const double TO_WHOLE = 6755399441055744.0; /* 1.5 2^52: x + this has the nearest integer in its last bits */
+
+/* exp(x); x beyond -708 ... 708 counts as its end there. */
+static inline double exponential(double x) {
+  x = smaller(larger(x, -708.0), 708.0);
+  Bits shifted = {x * 1.4426950408889634 + TO_WHOLE}, power;
+  double k = shifted.x - TO_WHOLE, high = x - k * LN2, low = k * LN2_REST, r = high - low, z = r * r;
+  double c = r - z * (1.66666666666666019037e-01 + z * (-2.77777777770155933842e-03 + z * (6.61375632143793436117e-05 +
+             z * (-1.65339022054652515390e-06 + z * 4.13813679705723846039e-08))));
+  power.bits = (shifted.bits << 52) + (1023LL << 52);
+  return (1.0 - ((low - (r * c) / (2.0 - c)) - high)) * power.x;
 }
 
-/* exp(high + low), |low| small against |high|. */
-static inline double exponential(double high, double low) {
-  if (!(high > -745.0)) return high != high ? high : 0.0;
-  if (high > 709.7) return high > 709.9 ? 1.0 / 0.0 : exponential(high - 1.0, low) * 2.718281828459045;
-  double k = (double)(int64_t)(high * 1.4426950408889634 + (high < 0 ? -0.5 : 0.5));
-  double first = high - k * 6.93147180369123816490e-01, second = k * 1.90821492927058770002e-10 - low;
-  double r = first - second, square = r * r;
-  double c = r - square * (1.66666666666666019037e-01 + square * (-2.77777777770155933842e-03 +
-             square * (6.61375632143793436117e-05 + square * (-1.65339022054652515390e-06 +
-             square * 4.13813679705723846039e-08))));
-  double value = 1.0 - ((second - (r * c) / (2.0 - c)) - first);
-  int64_t exponent = (int64_t)k;
-  if (exponent < -1000) return value * power_of_two(exponent + 1000) * power_of_two(-1000);
-  return exponent > 1000 ? value * power_of_two(exponent - 1) * 2.0 : value * power_of_two(exponent);
+/* ln(x) for a normal x > 0. */
+static inline double logarithm(double x) {
+  Bits m = {x}, exponent;
+  int64_t above = m.bits - 0x3fe6a09e00000000; /* distance from sqrt(1/2): m is in [sqrt(1/2), sqrt(2)) */
+  exponent.bits = ((above >> 52) & 0xfff) ^ 0x800; /* exponent + 2048 mod 4096, from its sign */
+  exponent.bits |= 0x4330000000000000; /* 2^52 + it */
+  double k = exponent.x - 4503599627372544.0;
+  m.bits -= above & (int64_t)0xfff0000000000000;
+  double f = m.x - 1.0, s = f / (2.0 + f), z = s * s, w = z * z, half = 0.5 * f * f;
+  double r = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
+             z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 +
+                  w * 1.479819860511658591e-01)));
+  return k * LN2 - ((half - (s * (half + r) + k * LN2_REST)) - f);
 }
 
-/* Product of two numbers and its rounding error. */
-static inline double exact_product(double a, double b, double *error) {
-  double p = a * b, split = 134217729.0, x = split * a, y = split * b;
-  double a1 = x - (x - a), a2 = a - a1, b1 = y - (y - b), b2 = b - b1;
-  *error = ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2;
-  return p;
-}
-
-/* x^y for x >= 0 and y > 0, both finite and far from overflow of their splitting (below 1e280). */
-static inline double power(double x, double y) {
-  if (x == 0.0) return 0.0;
-  int64_t k = 0;
-  if (x < 1e-290) x *= 1.8446744073709552e19, k = -64;
-  union { double x; uint64_t bits; } m = {x};
-  k += (int64_t)(m.bits >> 52) - 1023;
-  m.bits = (m.bits & 0x000fffffffffffff) | 0x3ff0000000000000;
-  if (m.x > 1.4142135623730951) m.x *= 0.5, k++;
-  /* s = (m - 1)/(m + 1) and its error: m - 1 is exact, m + 1 is rounded. */
-  double top = m.x - 1.0, bottom = m.x + 1.0, lost = (1.0 - bottom) + m.x, error, more;
-  double s = top / bottom, p = exact_product(s, bottom, &error);
-  double s_low = (((top - p) - error) - s * lost) / bottom, z = s * s;
-  /* 2 (s^3/3 + s^5/5 + ...) up to |s| = 0.172: the terms after s^21 are below 1e-17 of the sum. */
-  double series = z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * (1.0 / 9 + z * (1.0 / 11 + z * (1.0 / 13 +
-                  z * (1.0 / 15 + z * (1.0 / 17 + z * (1.0 / 19 + z / 21)))))))));
-  double tail = 2.0 * (s * series + s_low), ln2 = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
-  /* ln x = k ln 2 + 2 s + tail in two numbers; k times the 32 bits of the first part of ln 2 is exact. */
-  double a = (double)k * ln2, b = 2.0 * s, sum = a + b, rest = sum - a;
-  double low = ((a - (sum - rest)) + (b - rest)) + (tail + (double)k * ln2_low), high = sum + low;
-  low = (sum - high) + low;
-  double exponent = exact_product(high, y, &more);
-  return exponential(exponent, more + low * y);
-}
+/* x^y for x >= 0 and y > 0; a power below 1e-307 counts as that. */
+static inline double power(double x, double y) { return exponential(y * logarithm(larger(x, 1e-300))); }
 #endif

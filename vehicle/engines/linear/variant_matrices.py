@@ -76,7 +76,7 @@ class VariantTerms:
         self.rows = Rows(model)
         rows_at_rest = self.rows.anew(car.static.preload)
         self.numbers = element_numbers(car.vehicle, car.superelement)
-        self.rest_state = at_rest(self.rows)
+        self.rest_state = at_rest(self.rows, mujoco.MjData(self.rows.model))
         geometric, self.by_preload = _geometric_stiffness(rows_at_rest)
         same = BodyChange(trimmed=trimmed_body, body=car.superelement)
         self.sum = self._stiffness(rows_at_rest, joint_springs(model), car.static.preload, self.rest_state, same)

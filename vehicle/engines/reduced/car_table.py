@@ -122,7 +122,7 @@ class CarTable:
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         blocks = -(-(2 * pairs + reals) // BLOCK)
-        pole_rows = blocks * (2 * BLOCK + BLOCK * (self.inputs + self.sums))
+        pole_rows = blocks * BLOCK * (1 + self.inputs + self.sums)
         self.table, self.poles, self.initial = (
             aligned_table(rows, element) for rows in (section_ends[-1], pole_rows, self.states - m)
         )
@@ -171,6 +171,7 @@ class CarTable:
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
         iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
         self.rows = TableRows(
+            pairs=2 * pairs,
             states=2 * pairs + reals,
             iterations=iterations,
             groups=groups,
@@ -217,29 +218,25 @@ class CarTable:
 def _packed_poles(rows: Sequence[Vector], pairs: int, blocks: int) -> Vector:
     """Return the factors of the poles of a column in blocks of BLOCK states, as `poles.c` reads them.
 
-    A block has for each pair the 2 x 2 matrix of E - 1, where a real pole is half of a pair; then for each input of a
-    step its factors in the changes of the states, and for each sum the weights of the states.
+    A block has the real and imaginary parts of E - 1 of four pairs, or E - 1 of eight real poles; for each input of
+    a step its factors in the changes of the states; and for each sum the weights of the states.
 
     Args:
         rows: rows of the column, see `CarFactors.rows`.
-        pairs: number of pairs in the columns of the group; the states of this column's real poles follow those.
+        pairs: number of pairs in the columns of the group, full blocks; then follow the real poles.
         blocks: number of blocks.
 
     Returns:
-        Table; (blocks, 2 BLOCK + BLOCK (inputs + sums)).
+        Table; (blocks, BLOCK (1 + inputs + sums)).
     """
     pair, real, pair_sums, real_sums = rows
     p, q, n, w = len(pair), len(real), real.shape[1] - 1, real_sums.shape[1]
-    change, factors = np.zeros((blocks * BLOCK // 2, 2, 2)), np.zeros((blocks * BLOCK, n + w))
-    decay, rotation = pair[:, 0], pair[:, 1]
-    change[:p] = np.stack([decay, -rotation, rotation, decay], axis=1).reshape(p, 2, 2)
-    factors[: 2 * p, :n] = pair[:, 2:].reshape(2 * p, n)
-    factors[: 2 * p, n:] = pair_sums.reshape(2 * p, w)
-    states = 2 * pairs + np.arange(q)
-    change[states // 2, states % 2, states % 2] = real[:, 0]
-    factors[states, :n], factors[states, n:] = real[:, 1:], real_sums
-    by_block = factors.reshape(blocks, BLOCK, n + w).transpose(0, 2, 1)
-    return np.hstack([change.reshape(blocks, 2 * BLOCK), by_block.reshape(blocks, -1)])
+    factors, reals = np.zeros((blocks * BLOCK, 1 + n + w)), slice(2 * pairs, 2 * pairs + q)
+    factors[: 2 * p, 0] = pair[:, :2].ravel()
+    factors[: 2 * p, 1 : 1 + n] = pair[:, 2:].reshape(2 * p, n)
+    factors[: 2 * p, 1 + n :] = pair_sums.reshape(2 * p, w)
+    factors[reals, : 1 + n], factors[reals, 1 + n :] = real, real_sums
+    return factors.reshape(blocks, BLOCK, 1 + n + w).transpose(0, 2, 1).reshape(blocks, -1)
 
 
 def _corners(laws: Sequence[DisplacementLaw], effects: Vector, count: int) -> Vector:

@@ -39,7 +39,7 @@ class TableRows(NamedTuple):
     """First rows of the sections of a table of cars, and their sizes: the record Sections of the core.
 
     Attributes:
-        states: number of states of the poles in a column, of pairs and of real poles.
+        pairs: number of states of pole pairs in a column, a multiple of BLOCK; states: of all poles.
         iterations: Gauss-Seidel iterations over the forces.
         groups: number of groups of Jenkins elements. elements: number of elements of a group.
         curves: number of laws over displacement. corners: number of breakpoints of a law.
@@ -75,6 +75,7 @@ class TableRows(NamedTuple):
         work: work space for the solution of a step.
     """
 
+    pairs: int
     states: int
     iterations: int
     groups: int

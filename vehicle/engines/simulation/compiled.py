@@ -10,7 +10,7 @@ from vehicle.core.records import Packed, packed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.sampling import Loop
 from vehicle.engines.simulation.simulation_record import functions, packed_simulation
-from vehicle.engines.simulation.sparse_rows import nonzero_columns
+from vehicle.engines.simulation.sparse_rows import Pattern
 from vehicle.engines.simulation.structures import offsets
 from vehicle.errors import SimulationError
 
@@ -52,11 +52,11 @@ class CompiledRows:
             sparse: until `detach`, store the rows in MuJoCo's sparse format and solve for the acceleration of each
                 step; for runs. Otherwise MuJoCo's rows are dense, for code that reads them.
         """
-        nonzero = None
+        pattern = None
         if sparse:
             self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
-            nonzero = nonzero_columns(self.model, self.rows.layout)
-        record = packed_simulation(self.rows, data, nonzero)
+            pattern = Pattern.of(self.model, self.rows.layout)
+        record = packed_simulation(self.rows, data, pattern)
         self.library.core_attach_d(record.address, data._address)
         self.attached.append((data, record))
 

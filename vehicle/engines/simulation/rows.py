@@ -88,7 +88,8 @@ class Rows:
         layout = layout if space is None else layout._replace(space=space)
         force = np.zeros(layout.row_count + 3 * len(layout.rotations.sites)) if preload is None else preload
         self.layout = standing_on(layout, preload)
-        self.weights = weights(model, self.layout, force)
+        self._masses = _row_masses(model, layout)
+        self.weights = weights(model, self.layout, force, self._masses)
         self.state = _at_rest(self.layout)
         # Loaded here: MuJoCo cannot be asked for its layout inside a callback.
         self._core = functions()
@@ -105,7 +106,7 @@ class Rows:
         other = copy.copy(self)
         if preload is not None:
             other.layout = standing_on(self.layout, preload)
-            other.weights = weights(self.model, other.layout, preload)
+            other.weights = weights(self.model, other.layout, preload, self._masses)
         other.state = _at_rest(self.layout)
         return other
 
@@ -199,13 +200,14 @@ class Rows:
         return np.asarray(turn @ elements.shapes.reshape(len(elements.nodes), 3, self.layout.modes.size))
 
 
-def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
+def weights(model: mujoco.MjModel, layout: Layout, preload: Vector, masses: Vector) -> Weights:
     """Compute the weights of the rows for the time step of a model.
 
     Args:
         model: model with its time step.
         layout: elements of the model.
         preload: static forces of the rows [N], then the torques of the rotations [N m]; see `StaticTrim`.
+        masses: effective mass of each element row [kg]; (n, 3).
 
     Returns:
         Weights of the rows.
@@ -219,7 +221,6 @@ def weights(model: mujoco.MjModel, layout: Layout, preload: Vector) -> Weights:
             stiffness[element, axis] = steepest
         elif law_type == 1:
             springs[element] = steepest
-    masses = _row_masses(model, layout)
     averaged = np.where(b.averaged[:, None] > 0, average(stiffness * h**2 / masses), FOURTH_ORDER)
     present = b.branch_time > 0.0
     tau = np.where(present, b.branch_time, 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.core.library import core
 from vehicle.core.records import Packed, packed
-from vehicle.engines.simulation.sparse_rows import Mask, solution_of, sparse_rows
+from vehicle.engines.simulation.sparse_rows import Pattern, solution_of, sparse_rows
 from vehicle.engines.simulation.step_records import Fields, Simulation, Ticket
 from vehicle.engines.simulation.structures import ROW_FIELDS, offsets
 
@@ -46,16 +46,16 @@ def functions() -> ctypes.CDLL:
     return library
 
 
-def packed_simulation(rows: Rows, data: mujoco.MjData, nonzero: Mask | None = None) -> Packed:
+def packed_simulation(rows: Rows, data: mujoco.MjData, pattern: Pattern | None = None) -> Packed:
     """Return the record of a state; its memory keeps the addresses of the arrays of state, rows and MuJoCo.
 
     Args:
         rows: rows of the model of the state.
         data: the state.
-        nonzero: nonzero columns of the rows for a run in MuJoCo's sparse format; None for dense rows.
+        pattern: nonzero numbers of the rows for a run in MuJoCo's sparse format; None for dense rows.
     """
     located = offsets()
-    record, pattern = sparse_rows(nonzero, located)
+    record, arrays = sparse_rows(pattern, located)
     ticket = Ticket(
         model=rows.model._address,
         rows=rows.layout.row_count,
@@ -65,6 +65,6 @@ def packed_simulation(rows: Rows, data: mujoco.MjData, nonzero: Mask | None = No
         sparse=record,
     )
     fields = Fields(**{name: getattr(data, name) for name in Fields._fields})
-    solution = solution_of(rows.model, rows.layout, nonzero)
+    solution = solution_of(rows.model, rows.layout, pattern)
     memory, kept = packed("Simulation", Simulation(ticket, fields, rows.layout, rows.weights, rows.state, solution))
-    return Packed(memory, (*kept, pattern, data))
+    return Packed(memory, (*kept, arrays, data))

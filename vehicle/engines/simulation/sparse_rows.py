@@ -12,7 +12,7 @@ Equations and tolerance of the solver are those of the dense format.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -28,30 +28,45 @@ TILE = 4
 """Rows and columns of a tile, as in `vehicle/core/source/prediction.h`."""
 
 
-def nonzero_columns(model: mujoco.MjModel, layout: Layout) -> Mask:
-    """Return where the rows of a model with the sparse format may be nonzero, modal columns included; (rows, nv)."""
-    data = mujoco.MjData(model)
-    mujoco.mj_fwdPosition(model, data)
-    nonzero = np.zeros((layout.row_count, model.nv), dtype=np.bool_)
-    nonzero[np.repeat(np.arange(layout.row_count), data.efc_J_rownnz), data.efc_J_colind] = True
-    for row, count, first, last in layout.reach:
-        nonzero[row : row + count, first:last] = True
-    return nonzero
+class Pattern(NamedTuple):
+    """Nonzero numbers of the rows of a model with the sparse format.
+
+    Attributes:
+        nonzero: where the rows may be nonzero, modal columns included; (rows, nv).
+        rows, columns: row and column of each of MuJoCo's own values, in its order.
+    """
+
+    nonzero: Mask
+    rows: npt.NDArray[np.integer[Any]]
+    columns: npt.NDArray[np.integer[Any]]
+
+    @classmethod
+    def of(cls, model: mujoco.MjModel, layout: Layout) -> Pattern:
+        """Read the pattern of a model, which does not depend on its state."""
+        data = mujoco.MjData(model)
+        mujoco.mj_fwdPosition(model, data)
+        rows, columns = np.repeat(np.arange(layout.row_count), data.efc_J_rownnz), data.efc_J_colind.copy()
+        nonzero = np.zeros((layout.row_count, model.nv), dtype=np.bool_)
+        nonzero[rows, columns] = True
+        for row, count, first, last in layout.reach:
+            nonzero[row : row + count, first:last] = True
+        return cls(nonzero, rows, columns)
 
 
-def sparse_rows(nonzero: Mask | None, offsets: Offsets) -> tuple[SparseRows, tuple[object, ...]]:
+def sparse_rows(pattern: Pattern | None, offsets: Offsets) -> tuple[SparseRows, tuple[object, ...]]:
     """Return the sparse Jacobian of a run.
 
     Args:
-        nonzero: nonzero columns of the rows, (rows, nv); None for a state in the dense format.
+        pattern: nonzero numbers of the rows; None for a state in the dense format.
         offsets: offsets in MuJoCo's structures.
 
     Returns:
         The record, and the arrays of the pattern, to which it contains only addresses.
     """
-    if nonzero is None:
+    if pattern is None:
         none = np.zeros(0, dtype=np.int64)
-        return SparseRows(np.zeros((0, 0)), np.zeros(0), none, none, none, none, 0), ()
+        return SparseRows(np.zeros((0, 0)), np.zeros(0), none, none, none, none, none, 0), ()
+    nonzero = pattern.nonzero
     counts = np.count_nonzero(nonzero, axis=1).astype(np.int32)
     starts = np.cumsum([0, *counts[:-1]], dtype=np.int32)
     # Number of following rows with the same columns.
@@ -60,33 +75,34 @@ def sparse_rows(nonzero: Mask | None, offsets: Offsets) -> tuple[SparseRows, tup
         following[row] = following[row + 1] + 1 if np.array_equal(nonzero[row], nonzero[row + 1]) else 0
     rows, columns = np.nonzero(nonzero)
     jacobian, values = np.zeros((len(nonzero), TILE * -(-nonzero.shape[1] // TILE))), np.zeros(rows.size)
-    pattern = (counts, starts, following, columns.astype(np.int32), values)
+    arrays = (counts, starts, following, columns.astype(np.int32), values)
     record = SparseRows(
         jacobian=jacobian,
         values=values,
         places=rows * jacobian.shape[1] + columns,
+        own=np.asarray(pattern.rows * jacobian.shape[1] + pattern.columns, dtype=np.int64),
         offsets=np.array([offsets.pointers[name] for name in SPARSE], dtype=np.int64),
-        addresses=np.array([array.ctypes.data for array in pattern], dtype=np.int64),
+        addresses=np.array([array.ctypes.data for array in arrays], dtype=np.int64),
         replaced=np.zeros(len(SPARSE) + 1, dtype=np.int64),
         size=offsets.nonzeros,
     )
-    return record, pattern
+    return record, arrays
 
 
-def solution_of(model: mujoco.MjModel, layout: Layout, nonzero: Mask | None) -> Solution:
+def solution_of(model: mujoco.MjModel, layout: Layout, pattern_of_rows: Pattern | None) -> Solution:
     """Return the record of the equations of a step, with the pattern of H = M + J' D J and of its factor.
 
     Args:
         model: model of the run.
         layout: its elements.
-        nonzero: nonzero columns of the rows, (rows, nv); None for a state in the dense format: an empty record.
+        pattern_of_rows: nonzero numbers of the rows; None for a state in the dense format: an empty record.
     """
-    if nonzero is None:
+    if pattern_of_rows is None:
         empty: dict[str, Any] = dict.fromkeys(("inertia", "singles", "frictions"), np.zeros((0, 2), dtype=np.int64))
         empty |= dict.fromkeys(("columns", "starts", "tiles"), np.zeros(0, dtype=np.int64))
         empty |= dict.fromkeys(("right", "acceleration", "weight", "limited"), np.zeros(0))
         return Solution(size=0, groups=np.zeros((0, 4), dtype=np.int64), matrix=np.zeros((0, 0)), **empty)
-    count = -(-model.nv // TILE)
+    nonzero, count = pattern_of_rows.nonzero, -(-model.nv // TILE)
     inertia = np.column_stack([np.repeat(np.arange(model.nv), model.M_rownnz), model.M_colind]).astype(np.int64)
     pattern = np.eye(count, dtype=np.bool_)
     pattern[inertia[:, 0] // TILE, inertia[:, 1] // TILE] = True

@@ -78,13 +78,14 @@ class AtRest:
     weight: Vector
 
 
-def at_rest(rows: Rows) -> AtRest:
+def at_rest(rows: Rows, data: mujoco.MjData) -> AtRest:
     """Read the design position of a compiled car.
 
     Args:
         rows: rows of the car, without static forces.
+        data: state of its model in the design position; evaluated in place.
     """
-    data, dampers = mujoco.MjData(rows.model), rows.layout.dampers
+    dampers = rows.layout.dampers
     with installed(rows):
         mujoco.mj_forward(rows.model, data)
     # Remove the constant forces of the dampers and of the springs inside joints.
@@ -113,15 +114,14 @@ def trim(rows: Rows) -> StaticTrim:
     """
     model = rows.model
     model.qpos_spring[:] = model.qpos0
-    design, joint_stiffness = at_rest(rows), joint_springs(model)
-    settled = settle(rows, design, joint_stiffness)
-    for joint in range(model.njnt):
-        dof = model.jnt_dofadr[joint]
-        if joint_stiffness[dof] > 0.0:
-            position = model.jnt_qposadr[joint]
-            model.qpos_spring[position] = model.qpos0[position] - settled.displacement[dof]
-    standing = rows.anew(settled.preload)
     data = mujoco.MjData(model)
+    design, joint_stiffness = at_rest(rows, data), joint_springs(model)
+    settled = settle(rows, design, joint_stiffness)
+    sprung = joint_stiffness[model.jnt_dofadr] > 0.0
+    places, dofs = model.jnt_qposadr[sprung], model.jnt_dofadr[sprung]
+    model.qpos_spring[places] = model.qpos0[places] - settled.displacement[dofs]
+    standing = rows.anew(settled.preload)
+    mujoco.mj_resetData(model, data)
     with installed(standing):
         mujoco.mj_forward(model, data)
     left = data.qfrc_smooth.copy()

@@ -123,6 +123,7 @@ class SparseRows(NamedTuple):
         jacobian: all columns of the rows, as the laws write them; (rows, nv), or (0, nv) where MuJoCo's are dense.
         values: nonzero values, row by row; (nJ,).
         places: index of each value in the flat `jacobian`; (nJ,).
+        own: likewise of MuJoCo's own values, without the columns of the body modes.
         offsets: byte offsets in mjData of the pointers to counts, starts, supernodes, columns and values; (5,).
         addresses: addresses of the arrays of this car in that order; (5,).
         replaced: MuJoCo's own addresses of the present step and its `nJ`; (6,).
@@ -132,6 +133,7 @@ class SparseRows(NamedTuple):
     jacobian: Table
     values: Vector
     places: Index
+    own: Index
     offsets: Index
     addresses: Index
     replaced: Index

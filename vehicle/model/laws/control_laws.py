@@ -18,7 +18,8 @@ The law `fmu` takes its coefficient, within the limits, from a controller in an 
 Once a period the controller reads both velocities and holds its demand until the next reading. The damper receives the
 demand after the delay, and follows with its maximum rate; c v opposes v at every instant.
 
-The functions accept scalars and arrays, for the complete car and for batches of lumped models.
+The functions are for arrays, the batches of lumped models; those of the complete car, in both engines, are `demanded`
+and `act` of `vehicle/core/source/laws.h`.
 
 Source: Karnopp, Crosby, Harwood (1974) for skyhook; Ahmadian (1997) for groundhook and hybrid.
 """
@@ -30,8 +31,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.compiler import jitable
-from vehicle.model.laws.function_address import result_at
 from vehicle.model.parameters.semi_active_damper import AT_ONCE, FMU, SemiActiveDamper
 
 SETTING = np.dtype(
@@ -98,7 +97,6 @@ def at_rest(numbers: npt.NDArray[Any], *shape: int) -> npt.NDArray[np.float64]:
     return np.full((RING + int(numbers["lag"]) + 1, *shape), float(numbers["softest"]))
 
 
-@jitable
 def demanded(numbers: Any, body: Any, wheel: Any) -> Any:
     """Return the coefficient c [N s/m] that a law demands.
 
@@ -106,9 +104,6 @@ def demanded(numbers: Any, body: Any, wheel: Any) -> Any:
         numbers: record from `in_steps`.
         body, wheel: velocities vb, vw of the ends along the damper, from the wheel to the body [m/s].
     """
-    if numbers["controller"] > 0.0:
-        coefficient = result_at(numbers["controller"], body, wheel)
-        return np.minimum(np.maximum(coefficient, numbers["softest"]), numbers["firmest"])
     speed, way = np.abs(body - wheel), np.sign(body - wheel)
     softest, firmest, sky, ground = numbers["softest"], numbers["firmest"], numbers["sky"], numbers["ground"]
     if numbers["on_off"] > 0.0:
@@ -119,7 +114,6 @@ def demanded(numbers: Any, body: Any, wheel: Any) -> Any:
     return np.minimum(np.maximum(near / (speed + (speed == 0.0)), softest), firmest)
 
 
-@jitable
 def act(numbers: Any, step: int, body: Any, wheel: Any, past: Any) -> None:
     """Advance a controlled damper by one time step; `past[PRESENT]` is then its mean coefficient over the step.
 

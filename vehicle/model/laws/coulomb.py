@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle.compiler import jitable
 from vehicle.model.laws.friction import Friction
 
 
@@ -20,7 +19,6 @@ class Coulomb(Friction):
     """
 
     @staticmethod
-    @jitable
     def limit_at(velocity: Any, numbers: Any) -> Any:
         """Return Fd [N]."""
         return numbers["friction_limit"]

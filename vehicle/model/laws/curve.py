@@ -10,12 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.compiler import jitable
 from vehicle.model.laws.law import Numbers
 
 Vector = npt.NDArray[np.float64]
@@ -94,13 +92,3 @@ class Curve:
         """Return the sum of the clamped lines at x = 0; F(0) = shift + this sum."""
         excess, middle, limit = self.clamped().T
         return float(np.sum(np.clip(-excess * middle, -limit, limit)))
-
-
-@jitable
-def curve_force(position: float, edges: Any, slopes: Any, offsets: Any) -> float:
-    """Return F(x) for a scalar; upper edges, slopes and offsets of the segments, the last edge infinite."""
-    segment = 0
-    while position > edges[segment]:
-        segment += 1
-    force: float = slopes[segment] * position + offsets[segment]
-    return force

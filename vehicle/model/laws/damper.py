@@ -11,13 +11,11 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.compiler import jitable
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
@@ -123,23 +121,5 @@ def _friction_laws() -> dict[str, type[Friction]]:
     return laws
 
 
-def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any], Any]:
-    """Return a function of the limit of the law with the index in a record: a chain, for compiled code."""
-    this = laws[0].limit_at
-
-    def last(record: Any, velocity: Any) -> Any:
-        return this(velocity, record)
-
-    if len(laws) == 1:
-        return jitable(last)
-    others = _limit_of(laws[1:], index + 1)
-
-    def limit(record: Any, velocity: Any) -> Any:
-        return this(velocity, record) if record["friction_law"] == index else others(record, velocity)
-
-    return jitable(limit)
-
-
 FRICTION = _friction_laws()
-friction_limit = _limit_of(list(FRICTION.values()))
-"""Function that returns the friction limit [N] of a record at a velocity [m/s]."""
+"""Classes of the friction laws by their names, in the order of `FRICTION_LAWS`."""

@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.compiler import jitable
 from vehicle.model.laws.law import Numbers
 from vehicle.model.parameters.quantity import quantity, validate
 
@@ -92,13 +91,6 @@ class Clamped:
         return np.asarray(np.where(inside, steep * (limit + fall), fall / np.where(inside, 1.0, np.abs(v))))
 
 
-@jitable
-def clamp(force: float, limit: float) -> float:
-    """Return min(L, max(-L, F)) for scalars."""
-    return min(max(force, -limit), limit)
-
-
-@jitable
 def slope_at_rest(limit: Any, smoothing: Any) -> Any:
     """Return c = (2/pi) L eps [N s/m]."""
     return (2.0 / np.pi) * limit * smoothing

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.compiler import jitable
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.friction import Friction
 from vehicle.model.laws.law import Numbers
@@ -39,7 +38,6 @@ class Stribeck(Friction):
             )
 
     @staticmethod
-    @jitable
     def limit_at(velocity: Any, numbers: Any) -> Any:
         """Return Fd + (Fs - Fd) exp(-|v/vs|^delta) [N]."""
         ratio = np.minimum(np.abs(velocity / numbers["stribeck_velocity"]), FASTEST)

@@ -373,7 +373,7 @@ class Car:
             ConfigurationError: the engine or a channel does not exist, a value of the road or `skip` is out of range,
                 the car is unstable, or the time step of MuJoCo is too large.
             DataError: a file cannot be read or holds bad data.
-            MissingPartError: numba is not installed.
+            MissingPartError: there is no compiled core for this platform.
             SimulationError: the run could not be carried through.
         """
         if isinstance(source, Road):

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from vehicle.errors import ConfigurationError
 
-LIBRARIES = ("mujoco", "numpy", "scipy", "numba")
-"""Libraries that affect the values; without numba, "auto" selects another engine."""
+LIBRARIES = ("mujoco", "numpy", "scipy")
+"""Libraries that affect the values."""
 
 
 @cache

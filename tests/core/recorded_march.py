@@ -1,0 +1,100 @@
+"""Marches of real runs, whose records are kept before the core sees them: to be run again by any library."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from vehicle.core.records import packed
+from vehicle.engines.reduced import group_run
+from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.table_layout import VECTOR_BYTES, aligned_table
+from vehicle.runs.car import Car, Road
+from vehicle.signals.excitation.random_road import random_road
+
+Fields = dict[str, Any]
+
+RUBBER = {
+    "front.bushings.arm_rear.friction_force": [300.0] * 3,
+    "front.bushings.arm_rear.friction_stroke": [2e-4] * 3,
+    "front.bushings.tyre.one_sided": True,
+}
+STRIBECK = {"front.damper.friction_law": "stribeck", "front.damper.stribeck_friction": 150.0}
+PRESLIDING = {"front.damper.friction_law": "presliding", "front.damper.presliding_stiffness": 5e5}
+
+
+def controlled(law: str, **values: Any) -> dict[str, Any]:
+    """Return the changes that control the dampers of both axles."""
+    changes = {"law": law, **values}
+    return {f"{axle}.damper.control.{name}": value for axle in ("front", "rear") for name, value in changes.items()}
+
+
+CASES: dict[str, tuple[str, dict[str, Any]]] = {
+    "focus": ("focus", {}),
+    "stribeck": ("focus", STRIBECK),
+    "presliding": ("focus", PRESLIDING),
+    "rubber friction and tyres that lift off": ("focus", RUBBER),
+    "side forces": ("focus", {"front.damper.side_force_coefficient": 0.1}),
+    "focus_road": ("focus_road", {}),
+    "rolling, with rubber friction": ("focus_road", RUBBER),
+    "skyhook": ("focus_road", controlled("skyhook", delay=0.004)),
+    "on-off": ("focus_road", controlled("hybrid_on_off", control_period=0.002)),
+    "sedan": ("sedan", {}),
+    "kinematic_reference": ("kinematic_reference", {}),
+}
+"""Cars and changes: all laws of the reduced car."""
+
+SINGLE = ("focus", "stribeck", "presliding", "rubber friction and tyres that lift off", "side forces", "focus_road")
+"""Cases that run in single precision, too."""
+
+
+def recorded(case: str, *, single: bool = False) -> Fields:
+    """Return the fields of the first block of a run on a rough road, in double or single precision."""
+    name, changes = CASES[case]
+    car, blocks, groups = Car.load(name, changes), list[Fields](), list[tuple[Any, ...]]()
+    real, begin = group_run.packed, group_run.GroupRun.__init__
+    drive: Any = Road("C", speed=80.0, duration=1.2)
+    if name == "focus":
+        drive = random_road(rms=5e-3, seed=3, wheel="fr", duration=1.2)
+
+    def keep(record: str, fields: Fields) -> Any:
+        blocks.append({name: copied(value) for name, value in fields.items()})
+        return real(record, fields)
+
+    def note(self: Any, *given: Any, **more: Any) -> None:
+        groups.append(given)
+        begin(self, *given, **more)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(group_run, "packed", keep)
+        patch.setattr(group_run.GroupRun, "__init__", note)
+        car.run(drive, engine="reduced", skip=0.5)
+        if single:
+            models, _, dampers, loads, signal, *_ = groups[0]
+            many = {"dampers": [*dampers] * 2, "record_rate": car.vehicle.solver.record_rate, "tyre_load": [*loads] * 2}
+            simulate_batch([*models] * 2, signal, **many, channels=["seat_rail_acc_z", "damper_fr_force"])
+    element = np.float32 if single else np.float64
+    return next(fields for fields in blocks if fields["table"].dtype == element)
+
+
+def copied(value: Any) -> Any:
+    """Return a copy of an array, aligned if it is an array of vectors; other values as they are."""
+    if not isinstance(value, np.ndarray):
+        return value
+    if value.ndim == 2 and value.dtype.kind == "f" and value.shape[1] * value.itemsize == VECTOR_BYTES:
+        result = aligned_table(len(value), value.dtype)
+        result[:] = value
+        return result
+    return value.copy()
+
+
+def after(march: Callable[[ctypes.c_void_p], None], fields: Fields) -> Fields:
+    """Return the arrays after the march of a block by a function of a library."""
+    copy = {name: copied(value) for name, value in fields.items()}
+    record = packed("March", copy)
+    march(ctypes.c_void_p(record.address))
+    return {name: value for name, value in copy.items() if isinstance(value, np.ndarray)}
