@@ -74,12 +74,12 @@ def open_server(guard: Guard, port: int) -> Any:
 
 
 class OneLine(logging.Handler):
-    """Prints a failed connection as a line: a malformed message ends its connection, not the bench."""
+    """Reports a failed connection as a line: a malformed message ends its connection, not the bench."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Print the error of a record."""
+        """Write the error of a record to standard error."""
         error = record.exc_info[1] if record.exc_info else None
-        print(f"bench: a connection was closed ({type(error).__name__}: {error})", file=sys.stderr)
+        sys.stderr.write(f"bench: a connection was closed ({type(error).__name__}: {error})\n")
 
 
 def connection_log() -> logging.Logger:
