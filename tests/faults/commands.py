@@ -109,7 +109,7 @@ def commands(inputs: Path) -> list[Written]:
     write_signal_file(second, 4.0)
     mounts = inputs / "mount1.csv", inputs / "mount2.csv"
     for number, mount in enumerate(mounts, 2):
-        rows = [f"{f},0.1,{100 * number + f},{5 + 0.2 * f}" for f in (1, 5, 10, 20, 30)]
+        rows = [f"{f},0.1,{100 * number + f},{5 + 0.2 * f}" for f in range(1, 40, 4)]
         mount.write_text("frequency [Hz],amplitude [mm],stiffness [N/mm],loss_angle [deg]\n" + "\n".join(rows) + "\n")
     for name, source in (("run1", first), ("run2", second)):
         if not (inputs / name).exists():
