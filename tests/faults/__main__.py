@@ -29,6 +29,8 @@ Several files that a command adds to a folder with others (`loads`, `spectra`, `
 in one step: after a kill between their renames, the next command that reads or writes them moves the others too, and is
 run here before the results are judged.
 
+The rows "only writing" write small files in each way that the commands use, without a computation.
+
 `make faults` runs all calls and writes this page; `make test` runs a sample. "Calls" are the system calls of the
 command that the fault can meet, "cases" those that were made to fail.
 """

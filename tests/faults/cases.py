@@ -17,9 +17,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.faults.commands import Written
+from tests.faults.commands import Written, run_words
 from tests.patience import HANG
-from vehicle.__main__ import main
 from vehicle.runs.output.written_files import MARKER, is_own
 
 OPEN, WRITE, FSYNC, RENAME, UNLINK, MMAP, CLOSE, MKDIR, READ = (1 << bit for bit in range(9))
@@ -98,7 +97,7 @@ class Bench:
         self.library = ctypes.CDLL(None)
         self.before.mkdir(parents=True)
         os.chdir(self.before)
-        assert main(list(command.old)) == 0  # in this process: later ones need no imports
+        assert run_words(command.old) == 0  # in this process: later ones need no imports
         self.old = files_of(self.before)
         references = []
         for _ in range(2):
@@ -233,7 +232,7 @@ class Bench:
             if fault is not None:
                 error = -1 if number < 0 else fault.error
                 self.library.faults_arm(os.fsencode(folder), fault.calls, ctypes.c_long(number), error, fault.lasting)
-            code = main(list(words))
+            code = run_words(words)
             self.library.faults_disarm()
             sys.stdout.flush()
             for bit in range(9) if number < 0 else ():

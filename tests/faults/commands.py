@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
@@ -11,6 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.__main__ import main
+from vehicle.commands.command_line import run_command
+from vehicle.runs.output.folder import output_folder, study_folder, whole_files, write_text
+from vehicle.runs.output.written_files import note
 
 SAMPLES, STEP_S = 300, 0.005
 
@@ -28,6 +32,47 @@ class Written:
     name: str
     old: Sequence[str]
     new: Sequence[str]
+
+
+def run_words(words: Sequence[str]) -> int:
+    """Run a command, or with the word "door" only its way of writing, with small files; returns the exit code."""
+    return run_command(partial(_write_only, *words[1:])) if words[0] == "door" else main(list(words))
+
+
+def _write_only(kind: str, content: str) -> None:
+    """Replace results by files with a content, as the commands do; the kind "renames" has no exchange in one step."""
+    if kind == "renames":
+        ctypes.CDLL(None).faults_without_exchange(1)
+    if kind == "file":
+        return write_text(Path("a.csv"), content)
+    if kind == "files":
+        with whole_files([Path(name) for name in ("a.csv", "b.csv", "c.csv")]) as paths:
+            for path in paths:
+                write_text(path, content)
+        return None
+    rows = ("rows.jsonl",) if kind == "study" else ()
+    made = study_folder(Path("a"), force=True, rows=rows) if rows else output_folder(Path("a"), force=True)
+    with made as folder:
+        for name in rows:
+            note(folder / name)
+            (folder / name).write_text(content)
+        write_text(folder / "a.csv", content)
+        write_text(folder / "below" / "b.csv", content)
+    return None
+
+
+DOOR = {
+    "file": "one file",
+    "files": "several files among others",
+    "folder": "a folder",
+    "renames": "a folder by two renames",
+    "study": "a folder with finished rows",
+}
+
+
+def writing_alone(kind: str) -> str:
+    """Return the name of a kind of `DOOR` in the table."""
+    return f"only writing: {DOOR[kind]}"
 
 
 class InProcess(Executor):
@@ -64,7 +109,7 @@ def commands(inputs: Path) -> list[Written]:
     write_signal_file(second, 4.0)
     mounts = inputs / "mount1.csv", inputs / "mount2.csv"
     for number, mount in enumerate(mounts, 2):
-        rows = [f"{f},0.1,{100 * number + f},{5 + 0.2 * f}" for f in (1, 5, 10, 20, 30)]
+        rows = [f"{f},0.1,{100 * number + f},{5 + 0.2 * f}" for f in range(1, 40, 4)]
         mount.write_text("frequency [Hz],amplitude [mm],stiffness [N/mm],loss_angle [deg]\n" + "\n".join(rows) + "\n")
     for name, source in (("run1", first), ("run2", second)):
         if not (inputs / name).exists():
@@ -86,6 +131,7 @@ def commands(inputs: Path) -> list[Written]:
     new = ["new", "a", "--from", "sedan", "--wheelbase", "2.65", "--front-axle-load", "800", "--kerb-mass"]
     formats = {ending: f"shaker --format {ending}" for ending in ("h5", "mat", "rpc", "mf4")}
     return [
+        *(Written(writing_alone(kind), ["door", kind, "old"], ["door", kind, "new"]) for kind in DOOR),
         Written("shaker", *pair(lambda path: [*shaker, str(path)])),
         Written("shaker with figures", *pair(lambda path: [*drawn, str(path)])),
         *(
