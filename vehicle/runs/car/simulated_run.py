@@ -15,7 +15,13 @@ from vehicle.signals.excitation.signal import Signal
 
 
 def simulated_run(
-    car: Any, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None
+    car: Any,
+    signal: Signal,
+    progress: Progress | None,
+    engine: str,
+    channels: Sequence[str] | None,
+    *,
+    stated: bool = True,
 ) -> tuple[Any, Recording, str]:
     """Simulate a car on a signal.
 
@@ -23,6 +29,7 @@ def simulated_run(
         car: the car.
         signal: displacement of the plates.
         progress, engine, channels: as in `Car.run`.
+        stated: state the errors of the reduced engine, whose second order of the car takes a second once.
 
     Returns:
         The simulated car, with its time step if MuJoCo ran; the recording; the reason for the choice of the engine.
@@ -55,6 +62,7 @@ def simulated_run(
             tyre_load=car.static.tyre_load,
             channels=channels,
             loads=car.load_rows if loads else None,
+            forms=car.quadratic_forms if stated else None,
         )
         require_finite(recording)
         if engine == "reduced" or recording.statistics.within_validity:
