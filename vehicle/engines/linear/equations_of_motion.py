@@ -45,9 +45,9 @@ class Equations:
         kinds = {mujoco.mjtJoint.mjJNT_FREE: 3, mujoco.mjtJoint.mjJNT_BALL: 0}
         first = [int(model.jnt_dofadr[k]) + kinds[t] for k, t in enumerate(model.jnt_type.tolist()) if t in kinds]
         self.turning = np.array(first)[:, None] + np.arange(3)
-        places = places_of(model)
-        self.sites = np.array([model.site(f"place/{place}").id for place in places])
-        shapes = [numeric(model, f"shape/place/{place}") for place in places]
+        points = places_of(model)
+        self.sites = np.array([model.site(f"place/{point}").id for point in points])
+        shapes = [numeric(model, f"shape/place/{point}") for point in points]
         self.flexible = [k for k, shape in enumerate(shapes) if shape is not None]
         self.shapes = np.array([np.reshape(shape, (3, -1)) for shape in shapes if shape is not None])
         mujoco.mj_kinematics(model, self.data)
@@ -106,10 +106,10 @@ class Equations:
         rates, rolling, modes = state.rate.copy(), self.rows.layout.rolling, self.rows.layout.modes
         # At t = 0 the laws leave out the heading of rolling wheels.
         rates[rolling.tyres, 1] += rolling.speeds * state.heading[0]
-        places = data.site_xpos[self.sites]
+        points = data.site_xpos[self.sites]
         if self.flexible:
             turn = data.xmat[modes.body].reshape(3, 3)
-            places[self.flexible] += (self.shapes @ data.qpos[modes.positions]) @ turn.T
+            points[self.flexible] += (self.shapes @ data.qpos[modes.positions]) @ turn.T
         deflections = state.residual[self.rows.layout.tyres, 2]
         gaps = data.efc_pos[self.joints]
-        return np.concatenate([force @ self.basis, gaps, rates[self.present], places.ravel(), deflections])
+        return np.concatenate([force @ self.basis, gaps, rates[self.present], points.ravel(), deflections])

@@ -98,7 +98,7 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
         mixed = 0.5 * (pairs - rest - odd[:, others] - odd[:, [k]] - even[:, others] - even[:, [k]])
         forms[k, others] = (mixed / (size[k] * size[others])).T
         forms[others, k] = forms[k, others]
-    places = tuple(f"{place}_acc_{axis}" for place in places_of(car.model) for axis in "xyz")
+    points = tuple(f"{point}_acc_{axis}" for point in places_of(car.model) for axis in "xyz")
     parts = np.vsplit(
         np.vstack(seen) @ state @ np.linalg.pinv(coordinates), np.cumsum([len(part) for part in seen])[:-1]
     )
@@ -107,10 +107,10 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
         equations.basis.shape[1],
         len(equations.joints),
         int(np.count_nonzero(equations.present)),
-        len(places),
+        len(points),
         len(system.inputs),
     )
-    return QuadraticForms(metrics=metrics, projection=projection, forms=forms, sizes=sizes, channels=places)
+    return QuadraticForms(metrics=metrics, projection=projection, forms=forms, sizes=sizes, channels=points)
 
 
 def _seen(model: PoleModel, rows: MotionRows) -> list[Vector]:

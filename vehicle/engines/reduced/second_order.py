@@ -102,7 +102,7 @@ class SecondOrder:
         frequency = np.arange(spectra.shape[1]) / (samples * interval)
         at = np.flatnonzero((frequency > 0.0) & (frequency <= HIGHEST))
         s = (2j * np.pi * frequency[at]).astype(np.complex64)
-        force, gaps, rates, places, tyres = np.split(spectra[:, at], np.cumsum(self.forms.sizes)[:-1])
+        force, gaps, rates, points, tyres = np.split(spectra[:, at], np.cumsum(self.forms.sizes)[:-1])
         gap_rates = s * gaps
         load = -force - _times(self.gap_forces, np.vstack([gaps, gap_rates, s * gap_rates]))
         rates = rates + _times(self.gap_rates, np.vstack([gaps, gap_rates]))
@@ -124,10 +124,10 @@ class SecondOrder:
         mirrored -= (self.friction.conj() @ drag) * back
         modal, turned = np.vsplit(self.outputs, 2)
         moved = _times(modal, xi + mirrored) + 1j * _times(turned, xi - mirrored) + shift
-        first, end = len(places), len(places) + len(tyres)
+        first, end = len(points), len(points) + len(tyres)
         matrices = self.model.matrices
         result = np.zeros((len(self.channels), spectra.shape[1]), dtype=np.complex64)
-        result[:first, at] = s * s * (moved[:first] + places)
+        result[:first, at] = s * s * (moved[:first] + points)
         stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
         result[first:end, at] = -stiffness * (moved[first:end] + tyres)
         result[end:, at] = self.damping[:, None] * s * moved[-count:]
@@ -200,9 +200,9 @@ def rms_errors(
     # Forces without their static part, which the second order leaves as it is.
     static = np.where(forces, sums[0] ** 2 / max(count, 1), 0.0)
     linear, more = sums[1] - static, sums[2] - static
-    found = (linear > 0.0) & (more > 0.0)
-    errors = np.sqrt(linear, where=found, out=np.ones(len(names)))
-    errors /= np.sqrt(more, where=found, out=np.ones(len(names)))
+    moving = (linear > 0.0) & (more > 0.0)
+    errors = np.sqrt(linear, where=moving, out=np.ones(len(names)))
+    errors /= np.sqrt(more, where=moving, out=np.ones(len(names)))
     return dict(zip(names, (errors - 1.0).tolist(), strict=True))
 
 
