@@ -235,6 +235,9 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
     # In principal coordinates of this motion most products are weak.
     covariance = coordinates @ coordinates.T / coordinates.shape[1]
     levels = np.einsum("bij,ij->b", forms.metrics, covariance)
+    if not np.any(levels > 1e-12):
+        # At rest.
+        return np.zeros((forms.forms.shape[2], coordinates.shape[1]), dtype=np.float32)
     metric = np.tensordot(np.where(levels > 1e-12, 1.0 / np.maximum(levels, 1e-30), 0.0), forms.metrics, 1)
     usual, root = np.linalg.eigh(metric)
     usual = np.sqrt(np.maximum(usual, 1e-9 * usual[-1]))
