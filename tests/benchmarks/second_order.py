@@ -5,8 +5,7 @@ python -m tests.benchmarks.second_order [--cars kinematic_reference,focus_road] 
 Even is the part of the difference that keeps its sign with the road, over the RMS of MuJoCo. What remains of it: arc,
 after the arc of the own wheel on the kinematics rig, c s^2/2; fit, after the best linear combination of the products of
 two suspension travels, of their velocities, and of a travel and the second derivative of a travel; left, after the
-second order. Then the difference of the RMS without and with the second order, and the RMS of even over the estimate of
-`vehicle.engines.reduced.finite_rotation`.
+second order. Then the difference of the RMS without and with the second order.
 """
 
 from __future__ import annotations
@@ -20,7 +19,6 @@ import numpy.typing as npt
 from tests.engines.reduced.second_order import Motion, linear_motion, second_order
 from vehicle.commands.road import road_drive
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping
-from vehicle.engines.reduced.finite_rotation import rotation_products
 from vehicle.engines.simulation.recording import Recording
 from vehicle.runs.car import Car
 from vehicle.runs.car.axle import axle_names, axle_statics, car_at_rest
@@ -77,16 +75,8 @@ def compare(car: Car, signal: Signal, skip: float, title: str) -> None:
     evaluated = slice(round(skip / interval), None)
     memoryless = travel_products(car, motion)[: reduced[0].time.size][evaluated]
     bows = arcs(car, motion)
-    angles = {
-        wheel: max(
-            float(np.max(np.linalg.norm(rows[3:] @ motion.displacement[:, : reduced[0].time.size], axis=0)))
-            for part, rows in car.matrices.body_rows.items()
-            if part.endswith(f"_{wheel}") and part not in car.matrices.spinning
-        )
-        for wheel in car.vehicle.wheels
-    }
     still = np.zeros(motion.height.shape[1])
-    heads = ("even", "arc", "fit", "left", "RMS", "RMS 2", "estimate")
+    heads = ("even", "arc", "fit", "left", "RMS", "RMS 2")
     print(f"\n{title}: % of the RMS in MuJoCo\n{'channel':<26}" + "".join(f"{head:>9}" for head in heads))
     for channel in car.vehicle.acceleration_channels:
         if not channel.startswith(("knuckle", "seat")):
@@ -104,11 +94,8 @@ def compare(car: Car, signal: Signal, skip: float, title: str) -> None:
             scale * np.std(linear[0]) - 100.0,
             scale * np.std(odd + second) - 100.0,
         )
-        wheel = channel.split("_")[1]
-        vertical = reduced[0][f"{channel[:-1]}z"][evaluated]
-        estimate = rotation_products(angles[wheel], vertical) if wheel in angles else np.nan
         print(
-            f"{channel:<26}" + "".join(f"{value:9.2f}" for value in (*values, np.std(difference) / estimate)),
+            f"{channel:<26}" + "".join(f"{value:9.2f}" for value in values),
             flush=True,
         )
 

@@ -111,10 +111,3 @@ def test_a_batch_of_rolling_cars_is_the_single_run_at_its_step() -> None:
         assert rms(batch[channel] - present[channel]) < 3e-3 * rms(present[channel]), channel
         assert abs(rms(batch[channel]) / rms(present[channel]) - 1.0) < 2e-5, channel
     assert 1e-2 < rms(present[channels[0]] - static[channels[0]]) / rms(present[channels[0]]) < 0.1
-
-
-def test_a_run_says_which_horizontal_accelerations_lack_products_of_motions() -> None:
-    car = Car.load("kinematic_reference", [f"driving.speed={SPEED}"])
-    smooth, rough = (run_reduced(car, road(car, level, 2.5)).statistics.notices for level in ("A", "C"))
-    assert not smooth
-    assert any("the RMS is too low, by roughly: " in notice and "knuckle_rr_acc_y by" in notice for notice in rough)

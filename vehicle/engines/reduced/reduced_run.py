@@ -9,10 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from vehicle.engines.linear.load_rows import LoadRows, stop_rows
-from vehicle.engines.reduced.finite_rotation import rotation_notices
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, slope_loads
 from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.engines.reduced.quadratic_forms import QuadraticForms
+from vehicle.engines.reduced.second_order import error_sentence, misses_main, rms_errors_of
 from vehicle.engines.reduced.step_factors import car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE
 from vehicle.engines.simulation.recorder import lift_off_notices
@@ -38,6 +39,7 @@ def simulate_reduced(
     loads: LoadRows | None = None,
     present_load: bool = True,
     step: float | None = None,
+    forms: QuadraticForms | None = None,
 ) -> Recording:
     """Simulate a car on its plates with the reduced engine, in double precision.
 
@@ -51,6 +53,7 @@ def simulate_reduced(
         loads: rows of the load channels; needed if `channels` contains load channels.
         present_load: slope forces of rolling tyres by their current load; if False, by their static load and z'.
         step: maximum time step [s]; `LONGEST_STEP` by default.
+        forms: second order of the equations of the car, for the errors of its channels; without it they stay unknown.
 
     Returns:
         The recording, without poses and energy balance.
@@ -66,27 +69,32 @@ def simulate_reduced(
     interval, rolling = 1.0 / record_rate, present_load and model.slope.shape[1] > 0
     loads = loads and loads.only(asked)
     if len(names) > len(asked):
-        more = stops.only(names[len(asked) :])
-        loads = loads + more if loads else more
+        added = stops.only(names[len(asked) :])
+        loads = loads + added if loads else added
     # The force of a load at an instant contains the mean forces of the dampers in both adjacent steps.
     forces = [f"friction_{index}" for index in range(len(dampers))] if loads else []
     forces += [f"law_{index}" for index in range(len(model.laws))] if loads else []
     tyres = {f"tyre_{wheel}_force_z": wheel for wheel in signal.wheels} if loads and rolling else {}
-    table = np.empty((len(names) + len(forces) + len(tyres), 1, samples))
+    present = {*names, *forces, *tyres}
+    wanted = (*wheeled, *(f"law_{index}" for index in range(len(model.laws)))) if forms else ()
+    more = [name for name in wanted if name not in present and not name.startswith("plate_")]
+    table = np.empty((len(names) + len(forces) + len(tyres) + len(more), 1, samples))
     columns = [inputs.index(wheel) for wheel in signal.wheels]
     factors = car_factors([model], interval / every, columns, exact=True, present_load=rolling)
     started = clock.perf_counter()
     group = GroupRun(
         [model], factors, [dampers], [tyre_load], signal, interval, every, DOUBLE, present_load=rolling, loads=loads
     )
-    (validity,) = group.fill(table, [0], [*names, *forces, *tyres])
+    (validity,) = group.fill(table, [0], [*names, *forces, *tyres, *more])
+    time, rows = uniform_time(samples=samples, timestep=interval), [*names, *forces, *tyres, *more]
+    record = dict(zip(rows, table[:, 0], strict=True))
+    errors = rms_errors_of(model, forms, dampers, signal, time, record, asked, tyre_load) if forms else {}
     direct = np.hstack([direct_forces(model, loads), direct_laws(model, loads)]) if loads else np.zeros((0, 0))
     for load, row in zip(loads.names, direct, strict=True) if loads else ():
         for force, history in zip(row, table[len(names) :][: len(forces), 0], strict=True):
             table[names.index(load), 0] += force * history
-    time = uniform_time(samples=samples, timestep=interval)
     if loads and tyres:
-        tyre_forces = dict(zip(tyres.values(), table[len(names) + len(forces) :, 0], strict=True))
+        tyre_forces = dict(zip(tyres.values(), table[len(names) + len(forces) :][: len(tyres), 0], strict=True))
         on_slopes = slope_loads(model, loads, signal, time, tyre_forces, tyre_load)
         for load, history in zip(loads.names, on_slopes, strict=True):
             table[names.index(load), 0] += history
@@ -95,10 +103,11 @@ def simulate_reduced(
     histories = dict(zip(asked, table[: len(asked), 0], strict=True))
     statistics = group.statistics(validity, samples, clock.perf_counter() - started)
     one_sided = [wheel for wheel in inputs if wheel in model.matrices.one_sided]
-    notices = (
-        *lift_off_notices(histories, one_sided, tyre_load, record_rate),
-        *rotation_notices(histories, validity.angles, inputs),
-    )
+    said = error_sentence(errors)
+    if misses_main(errors):
+        statistics = replace(statistics, warnings=(*statistics.warnings, *said), within_validity=False)
+    notices = lift_off_notices(histories, one_sided, tyre_load, record_rate)
+    notices = notices if misses_main(errors) else (*notices, *said)
     return Recording(
         time=time,
         channels=histories,
@@ -106,5 +115,5 @@ def simulate_reduced(
         excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
         pose_time=np.zeros(0),
         poses=np.zeros((0, 0)),
-        statistics=replace(statistics, notices=notices),
+        statistics=replace(statistics, notices=notices, errors=errors),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +43,7 @@ class Statistics:
         energies: energy balance; None for the reduced engine, whose matrices contain no parts.
         notices: messages about the computation.
         within_validity: False for a motion outside the valid range of the engine, which needs another engine.
+        errors: what linear geometry makes of the RMS of each channel, as a share with its sign; empty if unknown.
     """
 
     engine: str
@@ -54,6 +55,7 @@ class Statistics:
     energies: Energies | None
     notices: tuple[str, ...] = ()
     within_validity: bool = True
+    errors: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def realtime_factor(self) -> float:

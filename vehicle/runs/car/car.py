@@ -22,6 +22,7 @@ from vehicle.engines.linear.response import frequency_response as exact_response
 from vehicle.engines.linear.step_error import accurate_step, require_accurate_step
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
+from vehicle.engines.reduced.quadratic_forms import QuadraticForms, quadratic_forms
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress
@@ -265,6 +266,12 @@ class Car:
     def poles(self) -> PoleModel:
         """Modal form of the same matrices, one scalar equation per pole, for the reduced engine."""
         return pole_model(self.matrices)
+
+    @cached_property
+    @one_blas_thread()
+    def quadratic_forms(self) -> QuadraticForms:
+        """Second order of the equations of motion, for the errors of the reduced engine."""
+        return quadratic_forms(self.model, self.poles)
 
     @cached_property
     @one_blas_thread()

@@ -16,7 +16,13 @@ from vehicle.signals.excitation.signal import Signal
 
 
 def simulated_run(
-    car: Any, signal: Signal, progress: Progress | None, engine: str, channels: Sequence[str] | None
+    car: Any,
+    signal: Signal,
+    progress: Progress | None,
+    engine: str,
+    channels: Sequence[str] | None,
+    *,
+    stated: bool = True,
 ) -> tuple[Any, Recording, str]:
     """Simulate a car on a signal.
 
@@ -24,6 +30,7 @@ def simulated_run(
         car: the car.
         signal: displacement of the plates.
         progress, engine, channels: as in `Car.run`.
+        stated: state the errors of the reduced engine, whose second order of the car takes a second once.
 
     Returns:
         The simulated car, with its time step if MuJoCo ran; the recording; the reason for the choice of the engine.
@@ -56,6 +63,7 @@ def simulated_run(
             tyre_load=car.static.tyre_load,
             channels=channels,
             loads=car.load_rows if loads else None,
+            forms=car.quadratic_forms if stated else None,
         )
         require_finite(recording)
         if engine == "reduced" or recording.statistics.within_validity:

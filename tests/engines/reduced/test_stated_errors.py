@@ -1,0 +1,82 @@
+"""Errors that a run of the reduced engine states of its channels, in words and against MuJoCo."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.validation import validated
+from vehicle.engines.reduced.second_order import error_sentence, is_main, misses_main
+from vehicle.runs.car import Car
+from vehicle.runs.car.road import Road
+
+
+def test_channels_are_named_by_their_error_with_its_sign() -> None:
+    errors = {"seat_acc_x": -0.031, "seat_acc_z": 0.019, "engine_acc_y": 0.12}
+    (sentence,) = error_sentence(errors)
+    assert sentence.endswith("by about: engine_acc_y by +12 %, seat_acc_x by -3 %: use the MuJoCo engine")
+    (long,) = error_sentence({f"seat_{k}_acc_x": 0.03 + 0.01 * k for k in range(7)})
+    assert "seat_6_acc_x by +9 %" in long and "and 3 more: use" in long
+    assert error_sentence({"seat_acc_x": -0.019}) == ()
+
+
+def test_main_channels_decide() -> None:
+    main = [
+        "seat_acc_x",
+        "seat_rail_acc_z",
+        "body_front_acc_x",
+        "knuckle_fr_acc_y",
+        "tyre_fl_force_z",
+        "damper_rr_force",
+    ]
+    assert all(misses_main({channel: -0.03}) for channel in main)
+    assert not misses_main({"engine_acc_x": 0.3, "seat_acc_x": 0.01})
+    assert not any(is_main(channel) for channel in ("damper_top_fl_acc_x", "roof_left_rear_acc_x", "engine_acc_z"))
+
+
+@pytest.mark.parametrize(
+    ("name", "road"),
+    [("sedan", Road("half_round:15", speed=20.0)), ("focus_road", Road("cleat:10x50", speed=30.0))],
+    ids=["sedan", "focus_road"],
+)
+def test_stated_errors_against_mujoco(name: str, road: Road) -> None:
+    """Before, seat and body were never named, and no error of either car had the sign "too high"."""
+    car = Car.load(name)
+    step = car.stepped().vehicle.solver.timestep
+    assert step is not None
+    whole = Car.load(name, {"solver.timestep": step / 2.0}).run(road).recording
+    reduced = car.run(road, engine="reduced").recording
+    errors = reduced.statistics.errors
+    found = {
+        channel: float(np.std(reduced[channel]) / np.std(whole[channel])) - 1.0
+        for channel in errors
+        if is_main(channel)
+    }
+    assert max(found.values()) > 0.02 and min(found.values()) < -0.02
+    validated(
+        "Reduced engine",
+        f"{name}: stated errors of the RMS of all channels of seat and body over an obstacle, largest difference",
+        max(abs(errors[channel] - found[channel]) for channel in found if channel.startswith(("seat", "body"))),
+        0.0,
+        source="second derivation: MuJoCo at half its step",
+        abs=0.01,
+    )
+    validated(
+        "Reduced engine",
+        f"{name}: stated errors of the RMS of knuckles, dampers and tyres over an obstacle, largest difference",
+        max(abs(errors[channel] - found[channel]) for channel in found),
+        0.0,
+        source="second derivation: MuJoCo at half its step",
+        abs=0.05,
+    )
+    statistics = reduced.statistics
+    assert not statistics.within_validity and "linear geometry leaves the RMS off" in statistics.warnings[-1]
+
+
+def test_auto_answers_for_the_channels_that_are_asked_for() -> None:
+    car, road = Car.load("sedan"), Road("half_round:15", speed=20.0)
+    vertical = car.run(road, engine="auto", channels=["seat_acc_z"]).recording.statistics
+    assert (vertical.engine, vertical.warnings) == ("reduced", ())
+    assert list(vertical.errors) == ["seat_acc_z"] and abs(vertical.errors["seat_acc_z"]) < 0.02
+    run = car.run(road, engine="auto", channels=["seat_acc_x"])
+    assert run.recording.statistics.engine == "mujoco" and "seat_acc_x by -3 %" in run.engine_reason

@@ -1,0 +1,115 @@
+"""Equations of motion of a car at any position, velocity and acceleration, beyond their linear part.
+
+R(u, u', u'', f_b, l, z, z') = 0 in MuJoCo's velocity coordinates as small displacements u, with rotations as rotation
+vectors, forces f_b of the Maxwell branches and l of the ideal joints. MuJoCo supplies kinematics and inertia, the
+compiled rows the laws; neither its solver nor its integrator takes part.
+"""
+
+from __future__ import annotations
+
+import copy
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.callbacks import compiled_rows
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.row_layout import numeric, places_of
+from vehicle.engines.simulation.rows import Rows
+
+Vector = npt.NDArray[np.float64]
+
+SHORT = 1e-7
+"""Time step of the laws [s], so short that all forces of the rows are explicit."""
+
+
+class Equations:
+    """Equations of motion of a car, evaluated in MuJoCo at any position, velocity and acceleration.
+
+    Args:
+        car: assembled car.
+        basis: free motions of the joints; (n, m).
+    """
+
+    def __init__(self, car: CarModel, basis: Vector) -> None:
+        self.model, self.basis = copy.copy(car.model), basis
+        self.model.opt.timestep = SHORT
+        self.rows = Rows(self.model, car.static.preload)
+        self.data = mujoco.MjData(self.model)
+        self.laws = compiled_rows(self.rows)
+        self.laws.attach(self.data)
+        model, layout = self.model, self.rows.layout
+        self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
+        self.joints, self.present = layout.joints.ravel(), layout.bushings.branch_stiffness > 0.0
+        kinds = {mujoco.mjtJoint.mjJNT_FREE: 3, mujoco.mjtJoint.mjJNT_BALL: 0}
+        first = [int(model.jnt_dofadr[k]) + kinds[t] for k, t in enumerate(model.jnt_type.tolist()) if t in kinds]
+        self.turning = np.array(first)[:, None] + np.arange(3)
+        points = places_of(model)
+        self.sites = np.array([model.site(f"place/{point}").id for point in points])
+        shapes = [numeric(model, f"shape/place/{point}") for point in points]
+        self.flexible = [k for k, shape in enumerate(shapes) if shape is not None]
+        self.shapes = np.array([np.reshape(shape, (3, -1)) for shape in shapes if shape is not None])
+        mujoco.mj_kinematics(model, self.data)
+        mujoco.mj_comPos(model, self.data)
+        self.hubs = np.zeros((len(layout.rolling.hubs), 3, model.nv))
+        for rows, hub in zip(self.hubs, layout.rolling.hubs, strict=True):
+            mujoco.mj_jac(model, self.data, None, rows, np.zeros(3), int(hub))
+
+    def at(self, motions: tuple[Vector, ...]) -> Vector:
+        """Return forces, gaps, branch rates, positions and tyre deflections of motions; (rows, motions).
+
+        Args:
+            motions: u, u', u'', f_b, z, z', l; (..., motions) each. Slopes are level: the present load on them is in
+                the reduced engine already.
+        """
+        u, v, a, branch, height, rate, joints = (part.T.copy() for part in motions)
+        for vector in (v, a):
+            # Angular velocity of the rotation exp(theta) in axes of the body: theta' - theta x theta'/2 + ...
+            vector[:, self.turning] -= 0.5 * np.cross(u[:, self.turning], vector[:, self.turning])
+        turning = v @ self.hubs.reshape(-1, self.model.nv).T
+        return np.array(
+            [
+                self._at(*motion)
+                for motion in zip(
+                    u, v, a, branch, height, rate, joints, turning.reshape(len(u), *self.hubs.shape[:2]), strict=True
+                )
+            ]
+        ).T
+
+    def _at(
+        self,
+        u: Vector,
+        v: Vector,
+        a: Vector,
+        branch: Vector,
+        height: Vector,
+        rate: Vector,
+        joints: Vector,
+        turning: Vector,
+    ) -> Vector:
+        model, data, state = self.model, self.data, self.rows.state
+        data.qpos[:], data.qvel[:], data.time = self.start, v, 0.0
+        mujoco.mj_integratePos(model, data.qpos, u, 1.0)
+        data.mocap_pos[:, 2] = self.level + height
+        state.plate_velocity[:, 2], state.slope_velocity[:], state.last_time[0] = rate, 0.0, -1.0
+        state.turning[:, :3] = turning
+        state.branch_past[:], state.branch_past[self.present] = 0.0, branch
+        state.branch_force[:] = state.branch_past
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fwdVelocity(model, data)
+        self.laws(model, data)
+        force = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, force, a)
+        force -= joints @ data.efc_J.reshape(-1, model.nv)[self.joints]
+        force -= data.qfrc_passive - data.qfrc_bias + data.qfrc_applied
+        rates, rolling, modes = state.rate.copy(), self.rows.layout.rolling, self.rows.layout.modes
+        # At t = 0 the laws leave out the heading of rolling wheels.
+        rates[rolling.tyres, 1] += rolling.speeds * state.heading[0]
+        points = data.site_xpos[self.sites]
+        if self.flexible:
+            turn = data.xmat[modes.body].reshape(3, 3)
+            points[self.flexible] += (self.shapes @ data.qpos[modes.positions]) @ turn.T
+        deflections = state.residual[self.rows.layout.tyres, 2]
+        gaps = data.efc_pos[self.joints]
+        return np.concatenate([force @ self.basis, gaps, rates[self.present], points.ravel(), deflections])

@@ -1,0 +1,183 @@
+"""Linear motion of a car in a finished run of the reduced engine, from the forces and plates of its record.
+
+The inputs of the poles are the plates z and z', the slopes of rolling tyres, the nonlinear forces of dampers and of
+laws over displacement. With the spectrum X of an input, xi = b X / (s - p), and every linear quantity of the car is a
+row over the state S = (Re xi, Im xi, inputs): displacements u, velocities, accelerations, forces of the Maxwell
+branches and of ideal joints. The record is continued by a return to its start, so that it is periodic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.displacement_laws import law_rows
+from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.signals.excitation.signal import Signal
+
+Vector = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex128]
+
+BAND = 90.0
+"""Highest frequency of the linear motion [Hz]: products of two motions have frequencies up to twice this."""
+
+RATE = 3.0 * BAND
+"""Rate at which products are computed [Hz], so that they are true up to `BAND`."""
+
+RETURN, PAUSE = 1.0, 3.0
+"""Time in which inputs return to their start, and until the motion repeats [s]."""
+
+
+class MotionRows(NamedTuple):
+    """Rows of linear quantities over the state (Re xi, Im xi, inputs).
+
+    Attributes:
+        displacement, velocity, acceleration: of the velocity coordinates of MuJoCo, without turns of rolling wheels
+            about their axles in `displacement`; (n, states).
+        branch: forces of the Maxwell branches; (b, states).
+        height, height_rate: plates; (w, states).
+        joints: forces of the ideal joints; (k, states).
+    """
+
+    displacement: Vector
+    velocity: Vector
+    acceleration: Vector
+    branch: Vector
+    height: Vector
+    height_rate: Vector
+    joints: Vector
+
+
+def input_effects(model: PoleModel) -> Complex:
+    """Return the effects of z, z', slopes, damper forces and forces of laws on the poles; (p, inputs)."""
+    return np.hstack([model.height, model.velocity, model.slope, -model.force, -model.scalar_force[:, model.groups :]])
+
+
+def motion_rows(model: PoleModel) -> MotionRows:
+    """Return the rows of linear quantities of a car over its state."""
+    system, matrices = model.matrices.system, model.matrices
+    n, wheels, effects = system.size, len(system.inputs), input_effects(model)
+    count = effects.shape[1]
+
+    def over_state(poles: Complex, inputs: Vector | None = None) -> Vector:
+        direct = np.zeros((len(poles), count)) if inputs is None else inputs
+        return np.hstack([poles.real, -poles.imag, direct])
+
+    displacement, rate = over_state(model.modal), model.modal * model.poles
+    velocity, branch = over_state(rate), over_state(model.branch)
+    acceleration = over_state(rate * model.poles, (rate @ effects).real)
+    forces = np.hstack(
+        [
+            system.input_stiffness,
+            system.input_damping,
+            matrices.slope.reshape(n, -1),
+            -system.slide_rows.T,
+            -law_rows(matrices.laws, n).T,
+        ]
+    )
+    needed = system.mass @ acceleration + system.damping @ velocity + system.stiffness @ displacement
+    needed += system.effects.T @ branch
+    needed[:, -count:] -= forces
+    plates = np.zeros((2 * wheels, displacement.shape[1]))
+    plates[:, -count:][:, : 2 * wheels] = np.eye(2 * wheels)
+    displacement[list(system.cyclic)] = 0.0
+    return MotionRows(
+        displacement=displacement,
+        velocity=velocity,
+        acceleration=acceleration,
+        branch=branch,
+        height=plates[:wheels],
+        height_rate=plates[wheels:],
+        joints=np.linalg.pinv(system.constraints.T) @ needed,
+    )
+
+
+def states(model: PoleModel, spectra: Complex, interval: float, samples: int) -> Vector:
+    """Return the state of the car over a period.
+
+    Args:
+        model: the car.
+        spectra: inputs without z', as `numpy.fft.rfft` of a period; (inputs - w, lines).
+        interval: sampling interval [s].
+        samples: samples of the period.
+
+    Returns:
+        Re xi, Im xi and the inputs; (states, samples).
+    """
+    from scipy import fft
+
+    wheels, lines = len(model.matrices.system.inputs), spectra.shape[1]
+    s = 2j * np.pi * np.arange(lines) / (samples * interval)
+    within = (s.imag > 0.0) & (s.imag <= 2.0 * np.pi * BAND)
+    heights, others = spectra[:wheels] * within, spectra[wheels:] * within
+    inputs, effects = np.vstack([heights, s * heights, others]), input_effects(model)
+    xi, poles = np.zeros((len(model.poles), samples), dtype=complex), model.poles[:, None]
+    at = np.flatnonzero(within)
+    xi[:, at] = (effects @ inputs[:, at]) / (s[at] - poles)
+    xi[:, -at] = (effects @ inputs[:, at].conj()) / (-s[at] - poles)
+    xi = fft.ifft(xi, axis=1, overwrite_x=True)
+    return np.vstack([xi.real, xi.imag, fft.irfft(inputs, samples, axis=1)])
+
+
+def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Complex, int]:
+    """Return the spectra of inputs that return to their start, at each `every`-th sample, and the samples of a period.
+
+    Args:
+        inputs: histories; (inputs, n).
+        interval: sampling interval of the histories [s].
+        every: samples from one to the next of the result.
+    """
+    from scipy import fft
+
+    count, fall = inputs.shape[1], round(RETURN / interval)
+    coarse = -(-(count + round(PAUSE / interval)) // every)
+    period = fft.next_fast_len(coarse, real=True)
+    padded = np.zeros((len(inputs), period * every))
+    padded[:, :count] = inputs - inputs[:, :1]
+    way = 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
+    padded[:, count : count + fall] = padded[:, count - 1 : count] * way
+    return fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
+
+
+def plate_inputs(
+    model: PoleModel, signal: Signal, time: Vector, channels: Mapping[str, Vector], tyre_load: Mapping[str, float]
+) -> tuple[Vector, Vector]:
+    """Return displacements of the plates, and what the slopes under rolling tyres exceed z' by; (w, n), (w or 0, n).
+
+    Args:
+        model: the car.
+        signal: motion of the plates.
+        time: times of the n samples [s].
+        channels: record with the tyre forces: the slope force is that of the present load.
+        tyre_load: static tyre loads by wheel [N].
+    """
+    wheels = model.matrices.system.inputs
+    heights, slopes = np.zeros((2, len(wheels), time.size))
+    motion = signal.plate_motion(time, [wheel for wheel in wheels if wheel in signal.wheels])
+    for row, wheel in enumerate(wheels):
+        if wheel in signal.wheels:
+            heights[row], rate = motion.displacement[wheel], motion.velocity[wheel]
+            if model.slope.size:
+                slope = signal.slope_spline(wheel, 0.0, signal.duration)(time) if signal.slope_velocity else rate
+                share = np.maximum(channels[f"tyre_{wheel}_force_z"], 0.0) / tyre_load[wheel]
+                slopes[row] = share * slope - rate
+    return heights, slopes[: model.slope.shape[1]]
+
+
+def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mapping[str, Vector]) -> Vector:
+    """Return the inputs of the poles in a run, without z': z, slopes, forces of dampers and of laws; (inputs - w, n).
+
+    Args:
+        model: the car.
+        plates: see `plate_inputs`.
+        channels: record with damper forces and velocities, and "law_<index>".
+    """
+    dampers = [
+        channels[f"damper_{wheel}_force"] - viscous * channels[f"damper_{wheel}_velocity"]
+        for wheel, viscous in zip(model.matrices.system.inputs, model.matrices.viscous, strict=False)
+    ]
+    laws = [channels[f"law_{index}"] for index in range(len(model.laws))]
+    return np.vstack([*plates, *dampers, *laws])

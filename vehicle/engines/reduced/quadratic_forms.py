@@ -1,0 +1,135 @@
+"""Quadratic part of the equations of motion of a car over patterns of its linear motion.
+
+The equations in MuJoCo's coordinates, R(u, u', u'', f_b, l, z, z') = 0 with gaps g(u) of the joints, rates r of the
+Maxwell branches, output points y(u) and tyre deflections d(u), are expanded about the design position. Their part of
+second order is a quadratic form of the linear motion w. With w = sum of c_k w_k over P patterns,
+
+    Q(w) = sum over j, k of c_j c_k B_jk,    B_jk = (Q(w_j + w_k) - Q(w_j) - Q(w_k)) / 2,
+
+one evaluation of the equations for each pair. The patterns are the principal components of the motion on plates
+with independent velocities of equal level at all frequencies, as on roads and over edges, and with independent forces
+of dampers and laws. Each pattern is a motion with its forces, in equilibrium.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.equations_of_motion import Equations
+from vehicle.engines.linear.first_order import free_basis
+from vehicle.engines.reduced.linear_motion import RATE, MotionRows, input_effects, motion_rows, states
+from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.row_layout import places_of
+
+Vector = npt.NDArray[np.float64]
+
+PATTERNS = 64
+"""Number of patterns; their rest of the motion is below 1 % in each of the cars of the benchmark."""
+
+PERIOD = 4096
+"""Samples of the motion that gives the patterns."""
+
+FORCE_LEVEL = 1000.0
+"""RMS of forces of dampers and laws over that of the velocities of plates, for the patterns [N s/m]."""
+
+AMPLITUDE = 1e-3
+"""Largest coordinate of a pattern in an evaluation [rad, m]: the third order is a thousandth of the second."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class QuadraticForms:
+    """Second order of the equations over patterns.
+
+    Attributes:
+        metrics: squares of rotations, their rates, inertia, branch and joint forces over c; (5, P, P).
+        projection: coordinates c of the patterns over the state of the linear motion; (P, states).
+        forms: B; (P, P, rows): forces along the free motions, gaps, branch rates, positions of the output points,
+            vertical deflections of the tyres.
+        sizes: numbers of rows of each kind; (5,).
+        channels: names of the positions.
+    """
+
+    metrics: Vector
+    projection: Vector
+    forms: npt.NDArray[np.float32]
+    sizes: tuple[int, ...]
+    channels: tuple[str, ...]
+
+
+def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
+    """Return the second order of the equations of motion of a car over the patterns of its linear motion.
+
+    Args:
+        car: assembled car.
+        model: its pole model.
+    """
+    rows, system = motion_rows(model), model.matrices.system
+    whole, state = np.vstack(rows), _random_states(model)
+    seen = _seen(model, rows)
+    levels = [np.sqrt(np.mean(np.sum((part @ state) ** 2, axis=0))) for part in seen]
+    seen = [part / max(level, 1e-30) for part, level in zip(seen, levels, strict=True)]
+    components, _, _ = np.linalg.svd(np.vstack(seen) @ state, full_matrices=False)
+    projection = components[:, :PATTERNS].T @ np.vstack(seen)
+    coordinates = projection @ state
+    patterns = np.linalg.lstsq(coordinates.T, (whole @ state).T)[0].T
+    bounds = np.cumsum([0, *(len(part) for part in rows)])
+    # Coordinates in which each pattern has its largest size in an evaluation.
+    size = AMPLITUDE / np.maximum(np.max(np.abs(patterns[: bounds[1]]), axis=0), 1e-30)
+    usual = np.sqrt(np.mean(coordinates**2, axis=1))
+    size = np.minimum(size, usual)
+    patterns = patterns * size
+    equations = Equations(car, free_basis(system))
+
+    def at(vectors: Vector) -> Vector:
+        return equations.at(tuple(np.split(vectors, bounds[1:-1])))
+
+    rest, ahead, back = at(0.0 * patterns[:, :1]), at(patterns), at(-patterns)
+    odd, even = 0.5 * (ahead - back), 0.5 * (ahead + back) - rest
+    forms = np.zeros((patterns.shape[1], patterns.shape[1], len(rest)), dtype=np.float32)
+    for k in range(patterns.shape[1]):
+        forms[k, k], others = even[:, k] / size[k] ** 2, slice(k + 1, None)
+        if k + 1 == patterns.shape[1]:
+            break
+        pairs = at(patterns[:, others] + patterns[:, [k]])
+        mixed = 0.5 * (pairs - rest - odd[:, others] - odd[:, [k]] - even[:, others] - even[:, [k]])
+        forms[k, others] = (mixed / (size[k] * size[others])).T
+        forms[others, k] = forms[k, others]
+    points = tuple(f"{point}_acc_{axis}" for point in places_of(car.model) for axis in "xyz")
+    parts = np.vsplit(
+        np.vstack(seen) @ state @ np.linalg.pinv(coordinates), np.cumsum([len(part) for part in seen])[:-1]
+    )
+    metrics = np.array([part.T @ part for part in parts])
+    sizes = (
+        equations.basis.shape[1],
+        len(equations.joints),
+        int(np.count_nonzero(equations.present)),
+        len(points),
+        len(system.inputs),
+    )
+    return QuadraticForms(metrics=metrics, projection=projection, forms=forms, sizes=sizes, channels=points)
+
+
+def _seen(model: PoleModel, rows: MotionRows) -> list[Vector]:
+    """Return what must be right in a pattern, over the state: rotations, their rates, inertia and joint forces."""
+    turns = np.vstack(
+        [body[3:] for name, body in model.matrices.body_rows.items() if name not in model.matrices.spinning]
+    )
+    inertia = np.sqrt(np.diag(model.matrices.system.mass))[:, None] * rows.acceleration
+    return [turns @ rows.displacement, turns @ rows.velocity, inertia, rows.branch, rows.joints]
+
+
+def _random_states(model: PoleModel) -> Vector:
+    """Return states of the motion that gives the patterns; (states, samples)."""
+    from scipy import fft
+
+    random = np.random.Generator(np.random.PCG64(0))
+    wheels, count = len(model.matrices.system.inputs), input_effects(model).shape[1]
+    frequency = np.arange(PERIOD // 2 + 1) * RATE / PERIOD
+    noise = fft.rfft(random.standard_normal((count - wheels, PERIOD)), axis=1)
+    noise[:wheels] /= 2.0 * np.pi * np.maximum(frequency, frequency[1])
+    noise[wheels + model.slope.shape[1] :] *= FORCE_LEVEL / (1.0 + frequency / 20.0)
+    return states(model, noise, 1.0 / RATE, PERIOD)

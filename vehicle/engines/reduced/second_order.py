@@ -1,0 +1,275 @@
+"""What the linear geometry of the reduced engine leaves out of a run: the second order of the equations of motion.
+
+With the linear motion u1 of a finished run, the next term of the equations of motion is the linear car under forces
+that are products of two motions (`quadratic_forms`):
+
+    M u2'' + C u2' + K u2 + H' f_b2 - Jc' l2 = -R_2(u1),    Jc u2 = -g_2(u1),
+    f_b2' = K2 (e u2' + g u2 + r_2(u1)) - f_b2/tau,    y_2 = L u2 + y_2(u1).
+
+The dampers respond as viscous ones with the same energy. The error of a channel is that of its RMS without the second
+order, RMS(y_1)/RMS(y_1 + y_2) - 1: the products need not be independent of y_1, so it has either sign. Source: regular
+perturbation, Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 2. Against MuJoCo: `docs/theory/reduced-engine.md`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.first_order import free_basis
+from vehicle.engines.reduced.equivalent_damping import equivalent_damping
+from vehicle.engines.reduced.linear_motion import (
+    BAND,
+    RATE,
+    periodic_spectra,
+    plate_inputs,
+    run_inputs,
+    states,
+)
+from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.engines.reduced.quadratic_forms import QuadraticForms
+from vehicle.engines.reduced.validity import REMEDY
+from vehicle.model.parameters.force_elements import Damper
+from vehicle.signals.excitation.signal import Signal
+
+Vector = npt.NDArray[np.float64]
+Complex = npt.NDArray[np.complex64]
+
+NAMED_ERROR = 0.02
+"""Error of an RMS from which on it is named."""
+
+NAMED = 4
+"""Maximum number of channels in a notice."""
+
+WINDOW = 30.0
+"""Length of the parts of a record that are evaluated one after another [s]."""
+
+WEAK = 1e-3
+"""Products of two patterns whose shares of the motion have a smaller geometric mean are left out."""
+
+HIGHEST = 1.45 * BAND
+"""Highest frequency of the second order [Hz]."""
+
+
+class SecondOrder:
+    """Response of a car to the products of its linear motion.
+
+    Args:
+        model: pole model of the car.
+        forms: second order of its equations.
+        damping: damping constants of viscous dampers with the same energy [N s/m]; (d,).
+    """
+
+    def __init__(self, model: PoleModel, forms: QuadraticForms, damping: Vector) -> None:
+        self.model, self.forms, self.damping = model, forms, damping
+        matrices, system = model.matrices, model.matrices.system
+        basis = free_basis(system)
+        effects = _force_effects(model, basis)
+        self.effects = np.vstack([effects.real, effects.imag]).astype(np.float32)
+        fit = -np.linalg.pinv(system.constraints)
+        drifts = np.zeros_like(system.branch_rows) if system.branch_drifts is None else system.branch_drifts
+        inertia, drag, spring = (basis.T @ part @ fit for part in (system.mass, system.damping, system.stiffness))
+        # Rows over gaps, their rates and second derivatives.
+        self.gap_forces = np.hstack([spring, drag, inertia]).astype(np.float32)
+        self.gap_rates = np.hstack([drifts @ fit, system.branch_rows @ fit]).astype(np.float32)
+        rows = np.array([system.outputs[channel][: system.size] for channel in forms.channels])
+        rows = np.vstack([rows, matrices.tyre_rows, system.slide_rows])
+        modal = rows @ model.modal
+        self.outputs = (0.5 * np.vstack([modal.real, modal.imag])).astype(np.float32)
+        self.sliding = (0.5 * system.slide_rows @ model.modal).astype(np.complex64)
+        self.shifts = (rows @ fit).astype(np.float32)
+        self.friction = model.force.astype(np.complex64)
+        wheels = system.inputs
+        self.channels = (
+            *forms.channels,
+            *(f"tyre_{wheel}_force_z" for wheel in wheels),
+            *(f"damper_{wheel}_force" for wheel in wheels[: len(damping)]),
+        )
+
+    def response(self, coordinates: Vector, interval: float) -> Vector:
+        """Return the second order of all channels; (channels, samples).
+
+        Args:
+            coordinates: coordinates c of the patterns over a period; (P, samples).
+            interval: sampling interval [s].
+        """
+        from scipy import fft
+
+        samples = coordinates.shape[1]
+        spectra = fft.rfft(_products(self.forms, coordinates), axis=1)
+        frequency = np.arange(spectra.shape[1]) / (samples * interval)
+        at = np.flatnonzero((frequency > 0.0) & (frequency <= HIGHEST))
+        s = (2j * np.pi * frequency[at]).astype(np.complex64)
+        force, gaps, rates, points, tyres = np.split(spectra[:, at], np.cumsum(self.forms.sizes)[:-1])
+        gap_rates = s * gaps
+        load = -force - _times(self.gap_forces, np.vstack([gaps, gap_rates, s * gap_rates]))
+        rates = rates + _times(self.gap_rates, np.vstack([gaps, gap_rates]))
+        # xi and the conjugate of its spectrum at -s.
+        poles, at_s = self.model.poles[:, None], 2j * np.pi * frequency[at]
+        ahead, back = ((1.0 / (at_s - pole)).astype(np.complex64) for pole in (poles, poles.conj()))
+        real, imaginary = np.vsplit(_times(self.effects, np.vstack([load, rates])), 2)
+        xi, mirrored = (real + 1j * imaginary) * ahead, (real - 1j * imaginary) * back
+        # The excess of the dampers over the viscous constants of the poles.
+        count, excess = len(self.damping), (self.damping - self.model.matrices.viscous)[:, None]
+        shift, slide = _times(self.shifts, gaps), self.sliding
+        pairs = (slide[:, None] * self.friction.T[:count]).reshape(count**2, -1)
+        mobility = s * (pairs @ ahead + pairs.conj() @ back).reshape(count, count, -1)
+        velocity = s * (slide @ xi + slide.conj() @ mirrored + shift[-count:])
+        coupling = np.eye(count) + np.moveaxis(mobility * excess, -1, 0)
+        velocity = np.linalg.solve(coupling, velocity.T[:, :, None])[:, :, 0].T
+        drag = (excess * velocity).astype(np.complex64)
+        xi -= (self.friction @ drag) * ahead
+        mirrored -= (self.friction.conj() @ drag) * back
+        modal, turned = np.vsplit(self.outputs, 2)
+        moved = _times(modal, xi + mirrored) + 1j * _times(turned, xi - mirrored) + shift
+        first, end = len(points), len(points) + len(tyres)
+        matrices = self.model.matrices
+        result = np.zeros((len(self.channels), spectra.shape[1]), dtype=np.complex64)
+        result[:first, at] = s * s * (moved[:first] + points)
+        stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
+        result[first:end, at] = -stiffness * (moved[first:end] + tyres)
+        result[end:, at] = self.damping[:, None] * s * moved[-count:]
+        return np.asarray(fft.irfft(result, samples, axis=1))
+
+
+def rms_errors_of(
+    model: PoleModel,
+    forms: QuadraticForms,
+    dampers: Sequence[Damper],
+    signal: Signal,
+    time: Vector,
+    record: Mapping[str, Vector],
+    names: Sequence[str],
+    tyre_load: Mapping[str, float],
+) -> dict[str, float]:
+    """Return the error RMS(y_1)/RMS(y_1 + y_2) - 1 of the channels of a run that have a second order.
+
+    Args:
+        model, forms: the car.
+        dampers: laws of its dampers.
+        signal: motion of the plates.
+        time: times of the n samples [s].
+        record: all channels of dampers and tyres, "law_<index>" of the laws, and the channels; (n,) each.
+        names: names of the channels.
+        tyre_load: static tyre loads by wheel [N].
+    """
+    damping = np.array(
+        [
+            equivalent_damping(law, record[f"damper_{wheel}_velocity"], record[f"damper_{wheel}_force"])
+            for law, wheel in zip(dampers, model.matrices.system.inputs, strict=False)
+        ]
+    )
+
+    def inputs(part: slice) -> Vector:
+        here = {name: values[part] for name, values in record.items()}
+        return run_inputs(model, plate_inputs(model, signal, time[part], here, tyre_load), here)
+
+    channels = {name: record[name] for name in names}
+    return rms_errors(SecondOrder(model, forms, damping), inputs, channels, time)
+
+
+def rms_errors(
+    second: SecondOrder, inputs: Callable[[slice], Vector], channels: Mapping[str, Vector], time: Vector
+) -> dict[str, float]:
+    """Return the error RMS(y_1)/RMS(y_1 + y_2) - 1 of each recorded channel that has a second order.
+
+    Args:
+        second: response of the car.
+        inputs: function of a part of the record that returns `linear_motion.run_inputs`.
+        channels: record of the run; (n,) each.
+        time: its times [s]; (n,).
+    """
+    interval = float(time[1] - time[0])
+    every = max(int(1.0 / (interval * RATE)), 1)
+    names = [name for name in second.channels if name in channels]
+    rows = [second.channels.index(name) for name in names]
+    length = round(WINDOW / (interval * every)) * every
+    sums, count = np.zeros((3, len(names))), 0
+    for first in range(0, time.size, length):
+        part = slice(first, min(first + length, time.size))
+        spectra, samples = periodic_spectra(inputs(part), interval, every)
+        state = states(second.model, spectra, interval * every, samples)
+        linear = np.array([channels[name][part][::every] for name in names])
+        more = second.response(second.forms.projection @ state, interval * every)[rows, : linear.shape[1]]
+        more += linear
+        sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
+        count += linear.shape[1]
+    forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
+    # Forces without their static part, which the second order leaves as it is.
+    static = np.where(forces, sums[0] ** 2 / max(count, 1), 0.0)
+    linear, more = sums[1] - static, sums[2] - static
+    moving = (linear > 0.0) & (more > 0.0)
+    errors = np.sqrt(linear, where=moving, out=np.ones(len(names)))
+    errors /= np.sqrt(more, where=moving, out=np.ones(len(names)))
+    return dict(zip(names, (errors - 1.0).tolist(), strict=True))
+
+
+def error_sentence(errors: Mapping[str, float]) -> tuple[str, ...]:
+    """Return a sentence on the channels whose RMS is off by more than `NAMED_ERROR`; none without such channels.
+
+    Args:
+        errors: relative error of the RMS by channel.
+    """
+    off = sorted((name for name in errors if abs(errors[name]) > NAMED_ERROR), key=lambda name: -abs(errors[name]))
+    if not off:
+        return ()
+    texts = [f"{name} by {100.0 * errors[name]:+.0f} %" for name in off[:NAMED]]
+    more = f" and {len(off) - NAMED} more" if len(off) > NAMED else ""
+    return (f"linear geometry leaves the RMS off, by about: {', '.join(texts)}{more}{REMEDY}",)
+
+
+def misses_main(errors: Mapping[str, float]) -> bool:
+    """Return True if the RMS of a main channel is off by more than `NAMED_ERROR`."""
+    return any(is_main(name) and abs(error) > NAMED_ERROR for name, error in errors.items())
+
+
+def is_main(channel: str) -> bool:
+    """Return True for accelerations of seat, body and knuckles, and forces of dampers and tyres."""
+    return channel.startswith(("seat", "body", "knuckle", "tyre_", "damper_")) and not channel.startswith("damper_top")
+
+
+def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.float32]:
+    """Return the sum of c_j c_k B_jk at each sample, without weak products; (rows, samples)."""
+    # In principal coordinates of this motion most products are weak.
+    covariance = coordinates @ coordinates.T / coordinates.shape[1]
+    levels = np.einsum("bij,ij->b", forms.metrics, covariance)
+    if not np.any(levels > 1e-12):
+        # At rest.
+        return np.zeros((forms.forms.shape[2], coordinates.shape[1]), dtype=np.float32)
+    metric = np.tensordot(np.where(levels > 1e-12, 1.0 / np.maximum(levels, 1e-30), 0.0), forms.metrics, 1)
+    usual, root = np.linalg.eigh(metric)
+    usual = np.sqrt(np.maximum(usual, 1e-9 * usual[-1]))
+    root, back = (root * usual) @ root.T, (root / usual) @ root.T
+    shares, turn = np.linalg.eigh(root @ covariance @ root)
+    shares = np.sqrt(np.maximum(shares, 0.0) / np.sum(shares))
+    turn, coordinates = back @ turn, turn.T @ root @ coordinates
+    first, other = np.triu_indices(len(usual))
+    strong = shares[first] * shares[other] > WEAK
+    first, other = first[strong], other[strong]
+    count, rows = len(usual), forms.forms.shape[2]
+    turned = turn.T.astype(np.float32) @ forms.forms.reshape(count, -1)
+    turned = np.matmul(turn.T.astype(np.float32), turned.reshape(count, count, rows))[first, other]
+    turned[first != other] *= 2.0
+    turned_coordinates = coordinates.astype(np.float32)
+    return np.asarray(turned.T @ (turned_coordinates[first] * turned_coordinates[other]))
+
+
+def _times(rows: npt.NDArray[np.float32], spectra: Complex) -> Complex:
+    """Return the product of a real and a complex matrix."""
+    flat = np.ascontiguousarray(spectra, dtype=np.complex64)
+    return np.asarray((rows @ flat.view(np.float32)).view(np.complex64))
+
+
+def _force_effects(model: PoleModel, basis: Vector) -> npt.NDArray[np.complex128]:
+    """Return the effects of forces along the free motions and of rates of the branches on the poles; (p, m + b)."""
+    system, poles = model.matrices.system, model.poles
+    free, placed = basis.shape[1], basis.shape[1] - len(system.cyclic)
+    halves = np.where(np.arange(len(poles)) < model.pairs, 2.0, 1.0)
+    vectors = np.vstack([basis[:, :placed].T @ model.modal, basis.T @ (model.modal * poles), model.branch]) / halves
+    vectors = np.hstack([vectors, vectors[:, : model.pairs].conj()])
+    inputs = np.zeros((len(vectors), free + len(model.branch)))
+    inputs[placed : placed + free, :free] = np.linalg.inv(basis.T @ system.mass @ basis)
+    inputs[placed + free :, free:] = np.diag(system.branch_stiffness)
+    return np.asarray(np.linalg.solve(vectors, inputs)[: len(poles)])
