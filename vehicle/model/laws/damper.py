@@ -9,15 +9,18 @@ the remainder.
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import importlib
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from vehicle.compiler import jitable
+from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
@@ -138,6 +141,23 @@ def _limit_of(laws: list[type[Friction]], index: int = 0) -> Callable[[Any, Any]
         return this(velocity, record) if record["friction_law"] == index else others(record, velocity)
 
     return jitable(limit)
+
+
+@cache
+def require_friction_laws() -> None:
+    """Check that the core has the friction laws of `FRICTION_LAWS` in their order.
+
+    Raises:
+        ConfigurationError: it has others.
+    """
+    function = core().core_friction_laws
+    function.restype = ctypes.c_char_p
+    compiled = tuple(function().decode().split())
+    if compiled != FRICTION_LAWS:
+        raise ConfigurationError(
+            f"friction laws: FRICTION_LAWS has {', '.join(FRICTION_LAWS)}, but laws.h of the core "
+            f"{', '.join(compiled)}; give EACH_FRICTION_LAW in vehicle/core/source/laws.h the same names in this order"
+        )
 
 
 FRICTION = _friction_laws()
