@@ -10,7 +10,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core docs setup mjcf benchmark clean
+.PHONY: shaker test check core core-sanitize docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -30,6 +30,9 @@ check: setup
 
 core: setup
 	$(BIN)/python tools/core.py
+
+core-sanitize: setup
+	$(BIN)/python tools/core_sanitized.py
 
 docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
