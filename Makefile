@@ -11,7 +11,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core faults docs setup mjcf benchmark clean
+.PHONY: shaker test check core core-sanitize faults docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -31,6 +31,9 @@ check: setup
 
 core: setup
 	$(BIN)/python tools/core.py
+
+core-sanitize: setup
+	$(BIN)/python tools/core_sanitized.py
 
 docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html

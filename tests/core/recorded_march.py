@@ -56,7 +56,7 @@ def recorded(case: str, *, single: bool = False) -> Fields:
     """Return the fields of the first block of a run on a rough road, in double or single precision."""
     name, changes = CASES[case]
     car, blocks, groups = Car.load(name, changes), list[Fields](), list[tuple[Any, ...]]()
-    real, begin = group_run.packed, group_run.GroupRun.__init__
+    real, begin = packed, group_run.GroupRun.__init__
     drive: Any = Road("C", speed=80.0, duration=1.2)
     if name == "focus":
         drive = random_road(rms=5e-3, seed=3, wheel="fr", duration=1.2)
@@ -75,8 +75,14 @@ def recorded(case: str, *, single: bool = False) -> Fields:
         car.run(drive, engine="reduced", skip=0.5)
         if single:
             models, _, dampers, loads, signal, *_ = groups[0]
-            many = {"dampers": [*dampers] * 2, "record_rate": car.vehicle.solver.record_rate, "tyre_load": [*loads] * 2}
-            simulate_batch([*models] * 2, signal, **many, channels=["seat_rail_acc_z", "damper_fr_force"])
+            simulate_batch(
+                [*models] * 2,
+                signal,
+                dampers=[*dampers] * 2,
+                record_rate=car.vehicle.solver.record_rate,
+                tyre_load=[*loads] * 2,
+                channels=["seat_rail_acc_z", "damper_fr_force"],
+            )
     element = np.float32 if single else np.float64
     return next(fields for fields in blocks if fields["table"].dtype == element)
 

@@ -1,5 +1,6 @@
 """The library of the core: shipped for this platform, or compiled from its sources with the C compiler at hand.
 
+The environment variable VEHICLE_CORE names another library, as one with checks of memory (`tools/core_sanitized.py`).
 A library belongs to the sources whose digest it returns as its stamp. Where no shipped one does, as beside changed
 sources, it is compiled once into a private cache folder (`cache_folder`), from which the next process loads it.
 """
@@ -40,9 +41,10 @@ def core() -> ctypes.CDLL:
     Raises:
         MissingPartError: no shipped library fits and there is no C compiler, or it fails.
     """
-    stamp = digest()
-    shipped = BINARIES / platform_name() / f"core.{_suffix()}"
-    library = _loaded(shipped, stamp) if shipped.is_file() else None
+    stamp, chosen = digest(), os.environ.get("VEHICLE_CORE")
+    library = _loaded(Path(chosen) if chosen else BINARIES / platform_name() / f"core.{_suffix()}", stamp)
+    if library is None and chosen:
+        raise MissingPartError(f"VEHICLE_CORE: {chosen} cannot be loaded, or belongs to other sources; build it again")
     if library is None:
         library = _loaded(_compiled(stamp), stamp)
     if library is None:

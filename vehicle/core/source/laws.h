@@ -5,8 +5,6 @@
 #include "layout.h"
 #include "mathematics.h"
 
-enum { COULOMB, STRIBECK, PRESLIDING }; /* the order of FRICTION_LAWS */
-
 /* min(L, max(-L, F)). */
 static inline double clamp(double force, double limit) { return smaller(larger(force, -limit), limit); }
 
@@ -15,16 +13,34 @@ static inline double slope_at_rest(double limit, double smoothing) {
   return 0.6366197723675814 * limit * smoothing;
 }
 
-/* Weight exp(-|v/vs|^delta) of Stribeck friction; a ratio of 1e15 is sliding. */
-static inline double stribeck_weight(double velocity, double scale, double exponent) {
-  return exponential(-power(smaller(absolute(velocity / scale), 1e15), exponent));
+/* Friction laws by name, in the order of FRICTION_LAWS: each has a function NAME_limit, the limit L(v) [N]. */
+#define EACH_FRICTION_LAW(F) F(coulomb) F(stribeck) F(presliding)
+
+static inline double coulomb_limit(const DamperLaw *law, double velocity) {
+  (void)velocity;
+  return law->friction_limit;
 }
 
-/* Friction limit L(v) of a damper [N]; Stribeck: Fd + (Fs - Fd) exp(-|v/vs|^delta). */
-static inline double friction_limit(const DamperLaw *law, double velocity) {
-  if (law->friction_law != STRIBECK) return law->friction_limit;
-  double weight = stribeck_weight(velocity, law->stribeck_velocity, law->stribeck_exponent);
+/* Jenkins elements yield below the limit, see scalar_elements.h. */
+static inline double presliding_limit(const DamperLaw *law, double velocity) { return coulomb_limit(law, velocity); }
+
+/* Fd + (Fs - Fd) exp(-|v/vs|^delta); a ratio of 1e15 is sliding. */
+static inline double stribeck_limit(const DamperLaw *law, double velocity) {
+  double ratio = smaller(absolute(velocity / law->stribeck_velocity), 1e15);
+  double weight = exponential(-power(ratio, law->stribeck_exponent));
   return law->friction_limit + (law->static_limit - law->friction_limit) * weight;
+}
+
+#define NUMBER_OF_LAW(name) LAW_##name,
+enum { EACH_FRICTION_LAW(NUMBER_OF_LAW) };
+
+/* Friction limit L(v) of a damper [N] by its law. */
+static inline double friction_limit(const DamperLaw *law, double velocity) {
+  switch ((int)law->friction_law) {
+#define LIMIT_OF_LAW(name) case LAW_##name: return name##_limit(law, velocity);
+    EACH_FRICTION_LAW(LIMIT_OF_LAW)
+  }
+  return law->friction_limit;
 }
 
 /* Piecewise linear F(x) = s x + b: upper edges (the last infinite), slopes and offsets of the segments. */

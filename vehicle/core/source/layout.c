@@ -18,6 +18,12 @@ EXPORT int64_t core_layout(int64_t *numbers, int64_t room) {
   return count;
 }
 
+/* Names of the friction laws in their order, each followed by a space. */
+EXPORT const char *core_friction_laws(void) {
+#define NAME_OF_LAW(name) #name " "
+  return EACH_FRICTION_LAW(NAME_OF_LAW);
+}
+
 /* Laws and mathematics at one state, for tests and for Python. */
 EXPORT double core_friction_limit(const DamperLaw *law, double velocity) { return friction_limit(law, velocity); }
 EXPORT double core_demanded(const Setting *law, double body, double wheel) { return demanded(law, body, wheel); }

@@ -43,21 +43,17 @@ static void control(const March *job) {
   }
 }
 
-/* Friction limits of a damper of each car at its velocity: friction_limit of laws.h, the weights of all cars at once. */
+/* Friction limits of a damper of each car at its velocity; those of eight Stribeck laws are computed at once. */
 static V limits_at(V velocity, const DamperLaw *law, int64_t lanes) {
-  double weight[LANES], ratio[LANES], scale[LANES], exponent[LANES];
+  double speed[LANES], value[LANES];
   V limit = {0};
-  if (lanes < LANES) {
-    limit[0] = (REAL)friction_limit(law, (double)velocity[0]);
-    return limit;
-  }
-  for (int i = 0; i < LANES; i++)
-    ratio[i] = (double)velocity[i], scale[i] = law[i].stribeck_velocity, exponent[i] = law[i].stribeck_exponent;
-  for (int i = 0; i < LANES; i++) weight[i] = stribeck_weight(ratio[i], scale[i], exponent[i]);
-  for (int i = 0; i < LANES; i++) {
-    double excess = law[i].friction_law == STRIBECK ? law[i].static_limit - law[i].friction_limit : 0.0;
-    limit[i] = (REAL)(law[i].friction_limit + excess * weight[i]);
-  }
+  int stribeck = lanes == LANES;
+  for (int64_t i = 0; i < lanes; i++) speed[i] = (double)velocity[i], stribeck &= law[i].friction_law == LAW_stribeck;
+  if (stribeck)
+    for (int i = 0; i < LANES; i++) value[i] = stribeck_limit(law + i, speed[i]);
+  else
+    for (int64_t i = 0; i < lanes; i++) value[i] = friction_limit(law + i, speed[i]);
+  for (int64_t i = 0; i < lanes; i++) limit[i] = (REAL)value[i];
   return limit;
 }
 

@@ -2,7 +2,7 @@
 
 R(u, u', u'', f_b, l, z, z') = 0 in MuJoCo's velocity coordinates as small displacements u, with rotations as rotation
 vectors, forces f_b of the Maxwell branches and l of the ideal joints. MuJoCo supplies kinematics and inertia, the
-compiled rows the laws; neither its solver nor its integrator takes part.
+core the laws; neither its solver nor its integrator takes part.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.callbacks import compiled_rows
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.row_layout import numeric, places_of
 from vehicle.engines.simulation.rows import Rows
@@ -37,8 +36,6 @@ class Equations:
         self.model.opt.timestep = SHORT
         self.rows = Rows(self.model, car.static.preload)
         self.data = mujoco.MjData(self.model)
-        self.laws = compiled_rows(self.rows)
-        self.laws.attach(self.data)
         model, layout = self.model, self.rows.layout
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
         self.joints, self.present = layout.joints.ravel(), layout.bushings.branch_stiffness > 0.0
@@ -98,7 +95,7 @@ class Equations:
         state.branch_force[:] = state.branch_past
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
-        self.laws(model, data)
+        self.rows(model, data)
         force = np.zeros(model.nv)
         mujoco.mj_mulM(model, data, force, a)
         force -= joints @ data.efc_J.reshape(-1, model.nv)[self.joints]

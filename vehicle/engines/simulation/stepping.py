@@ -23,6 +23,7 @@ from vehicle.engines.simulation.run_model import run_model
 from vehicle.engines.simulation.sampling import Loop, Plates
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.laws.controller_fmu import controllers
+from vehicle.model.laws.damper import require_friction_laws
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
@@ -55,11 +56,13 @@ def simulate(
         Recording, sampled at `solver.record_rate`.
 
     Raises:
-        ConfigurationError: the recording rate is not an integer fraction of the step rate.
+        ConfigurationError: the recording rate is not an integer fraction of the step rate, or the core lacks a friction
+            law.
         MissingPartError: there is no core for this platform, or the installed MuJoCo does not match its declarations.
         SimulationError: the state is not finite, MuJoCo warned, or the energy balance does not close; the
             message contains time and joint.
     """
+    require_friction_laws()
     every = record_every(car)
     model, space = run_model(car)
     data = mujoco.MjData(model)

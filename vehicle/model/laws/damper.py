@@ -9,13 +9,16 @@ the remainder.
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import importlib
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
@@ -119,6 +122,23 @@ def _friction_laws() -> dict[str, type[Friction]]:
                 f"{', '.join(RECORD.names or ())}; add them to RECORD of vehicle/model/laws/damper.py, and to `pack`"
             )
     return laws
+
+
+@cache
+def require_friction_laws() -> None:
+    """Check that the core has the friction laws of `FRICTION_LAWS` in their order.
+
+    Raises:
+        ConfigurationError: it has others.
+    """
+    function = core().core_friction_laws
+    function.restype = ctypes.c_char_p
+    compiled = tuple(function().decode().split())
+    if compiled != FRICTION_LAWS:
+        raise ConfigurationError(
+            f"friction laws: FRICTION_LAWS has {', '.join(FRICTION_LAWS)}, but laws.h of the core "
+            f"{', '.join(compiled)}; give EACH_FRICTION_LAW in vehicle/core/source/laws.h the same names in this order"
+        )
 
 
 FRICTION = _friction_laws()
