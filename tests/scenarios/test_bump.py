@@ -51,8 +51,8 @@ def test_first_slips_and_what_is_not_judged(results):
     assert rows[LINEAR]["within"] is True and rows[LINEAR]["place"] == "section 3.5"
     assert rows["bump 7.5 mm, first slip against Fd"]["status"] == "predicted"
     assert rows[FIRST_SLIP]["within"] is True and rows[FIRST_SLIP]["place"] == "figure 3.12"
-    # Two seeds: the probability is that of Student's t with one degree of freedom.
-    assert rows[FIRST_SLIP]["ours"].endswith("(2 values)") and 0.05 < rows[FIRST_SLIP]["probability"] < 1.0
+    # Two seeds: the probability is that of Student's t with one degree of freedom; 1 if both slip at one sample.
+    assert rows[FIRST_SLIP]["ours"].endswith("(2 values)") and 0.05 < rows[FIRST_SLIP]["probability"] <= 1.0
     slip, end = (content[key]["125 N"] for key in ("first_slip_s", "first_saturated_s"))
     assert slip > end
     ends = sum(2 * len(panels) for panels in PANELS.values())
