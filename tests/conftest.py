@@ -24,8 +24,13 @@ def pytest_runtest_call(item):
     return result
 
 
-ADVISED = ("signals/records", "signals/excitation", "commands", "runs/comparison")
-"""Folders of tests whose record files are those of users: `inspect` advises a command that accepts each of them."""
+ADVISED = (
+    *("signals/records", "signals/excitation", "commands", "runs/comparison"),
+    *("studies/mounts", "studies/replication", "studies/tuning"),
+    *("system/test_bad_inputs", "system/test_lost_files", "system/test_no_traceback", "system/test_road_run"),
+)
+"""Folders and modules of tests whose record files are those of users: `inspect` advises a command that accepts each of
+them."""
 
 _SEEN: set[tuple[str, int, bytes]] = set()
 

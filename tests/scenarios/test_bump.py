@@ -45,17 +45,18 @@ LINEAR = "one nonlinear against two linear models, seat rail over both bumps"
 def test_first_slips_and_what_is_not_judged(results):
     content = json.loads((results / "results.json").read_text(encoding="utf-8"))
     rows = {row["name"]: row for row in content["rows"]}
-    assert set(rows) == {FIRST_SLIP, NO_SLIP, LINEAR, "bump 7.5 mm, first slip against Fd"}
+    assert set(rows) == {FIRST_SLIP, LINEAR, "bump 7.5 mm, first slip against Fd"}
+    assert NO_SLIP in content["not_judged"]  # every seed must hold, and two are few
     # A damper that never moves is far off where ours slips, a damper without friction where ours sticks.
     assert rows[LINEAR]["within"] is True and rows[LINEAR]["place"] == "section 3.5"
     assert rows["bump 7.5 mm, first slip against Fd"]["status"] == "predicted"
     assert rows[FIRST_SLIP]["within"] is True and rows[FIRST_SLIP]["place"] == "figure 3.12"
-    # Two seeds: the probability is that of Student's t with one degree of freedom.
-    assert rows[FIRST_SLIP]["ours"].endswith("(2 values)") and 0.05 < rows[FIRST_SLIP]["probability"] < 1.0
+    # Two seeds: the probability is that of Student's t with one degree of freedom; 1 if both slip at one sample.
+    assert rows[FIRST_SLIP]["ours"].endswith("(2 values)") and 0.05 < rows[FIRST_SLIP]["probability"] <= 1.0
     slip, end = (content[key]["125 N"] for key in ("first_slip_s", "first_saturated_s"))
     assert slip > end
     ends = sum(2 * len(panels) for panels in PANELS.values())
-    assert len(content["not_judged"]) == ends + 5
+    assert len(content["not_judged"]) == ends + 6
     assert len(content["extremes_over_seeds"]["bump_1p5_seat_rail_x_highest"]) == 2
     # The literal reading is twice as high, so it slips sooner; the thesis has a later slip.
     literal = re.search(r"\(literal\): first slip (5\.\d+) s", (results / "results.md").read_text(encoding="utf-8"))

@@ -127,6 +127,9 @@ def measurement_options(parser: Parser) -> None:
         help="input of the FRFs of --levels: a plate, or a measured channel, as knuckle_fl_acc_z; the plate of the "
         "shaker wheel by default",
     )
+    files.add_argument(
+        "--any-level", action="store_true", help="accept levels and accelerations of the plates beyond a shaker"
+    )
     mapping_options(files)
     record_options(files, "", channel=False)
     delay_option(files, "; groups without it are fitted")
@@ -176,7 +179,7 @@ def measured_targets(options: argparse.Namespace, car: Car) -> list[MeasuredTarg
     """
     from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels, measured_responses
 
-    choice = measured_choice(options)
+    choice = replace(measured_choice(options), any_level=options.any_level)
     road_choice = replace(
         choice,
         channels={role: name for role, name in choice.channels.items() if role in (*ROAD_ROLES, "time")},

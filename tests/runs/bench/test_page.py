@@ -84,7 +84,7 @@ class Bench:
         """Move the slider and wait for the numbers of this value."""
         self.send(client, value)
         self.wait_for(lambda: self.page.state.present[0].overrides == (f"{FRICTION}={float(value)!r}",))
-        self.wait_for(lambda: f"{FRICTION}={float(value)!r}" in self.page._table.content)
+        self.wait_for(lambda: f"**B** front damper Coulomb friction {value:g} N" in self.page._table.content)
 
 
 @pytest.fixture(scope="module")

@@ -64,9 +64,9 @@ def test_the_front_ends_where_a_sweep_has_its_minima(road, searched):
         best[name] = float(fine[np.argmin(np.polynomial.Polynomial.fit(damping, values, 4)(fine))])
     front = rows_of(searched / "front.csv")
     dampings = [float(row[DAMPING]) for row in front]
-    # The curves are flat at their minima, and 40 cars are few: 4 % of damping is 0.1 % of comfort.
-    assert dampings[0] == pytest.approx(best["unweighted"], rel=0.04)
-    assert dampings[-1] == pytest.approx(best["tyre_load"], rel=0.04)
+    # The curves are flat at their minima, and 40 cars are few: 6 % of damping is 0.2 % of comfort.
+    assert dampings[0] == pytest.approx(best["unweighted"], rel=0.06)
+    assert dampings[-1] == pytest.approx(best["tyre_load"], rel=0.06)
     assert dampings == sorted(dampings) and best["unweighted"] < 0.9 * best["tyre_load"]
     minimum = min(result.values["unweighted"] for result in results)
     assert float(front[0][COMFORT]) <= minimum * 1.0001

@@ -71,7 +71,7 @@ def test_linearised_dampers_lie_between_the_stuck_and_the_sliding_car(car):
         driven = [float(name == wheel) for name in wheels]
         between = frequency_response(first_order(more), lines, CHANNELS, "acceleration", driven=driven)
         for damping, expected, tolerance in (
-            (still, car.matrix_frf(CHANNELS, lines, wheel=wheel), 5e-3),
+            (still, car.matrix_frf(CHANNELS, lines, wheel=wheel), 6e-3),
             (middle, between, 1e-8),
             (car.matrices.viscous, car.matrix_frf(CHANNELS, lines, damper="sliding", wheel=wheel), 1e-8),
         ):

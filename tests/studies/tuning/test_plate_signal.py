@@ -102,3 +102,16 @@ def test_a_head_above_named_columns_is_no_obstacle(run, tmp_path):
     file.write_text("\n".join(["Rig 4", "time [s]\tstroke_fl [mm]", *rows]) + "\n")
     with pytest.raises(DataError, match="unknown column 'Rig 4'"):
         read_signal(file)
+
+
+def test_plates_beyond_a_shaker_are_accepted_on_request(tmp_path):
+    file, time = tmp_path / "rough.csv", np.arange(8000) / 1000.0
+    plate = 0.2 * np.sin(2.0 * np.pi * time)
+    np.savetxt(file, np.column_stack([time, plate, np.cos(time)]), delimiter=",", comments="",
+               header="time [s],plate_fl_displacement [m],knuckle_fl_acc_z [m/s2]")  # fmt: skip
+    car = Car.load("focus")
+    with pytest.raises(DataError, match="plate fl is displaced by"):
+        measured_histories(car, file)
+    target = measured_histories(car, file, choice=Choice(any_level=True))
+    assert target.signal is not None
+    assert any(text.startswith("accepted on request: ") for text in target.signal.notices)

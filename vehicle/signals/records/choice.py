@@ -37,6 +37,7 @@ class Choice:
         resample: new sampling rate [Hz]; resampling comes before trend removal and integration.
         delays: channel of the model, pattern or group, as "accelerations", to delay in the file, which is taken out
             [s]; see `vehicle.signals.records.delays`.
+        any_level: accept levels and accelerations of plates beyond a shaker, in a fit.
     """
 
     channels: Mapping[str, str] = field(default_factory=dict)
@@ -49,6 +50,7 @@ class Choice:
     databases: tuple[Path, ...] = ()
     resample: float | None = None
     delays: Mapping[str, float] = field(default_factory=dict)
+    any_level: bool = False
 
     def __post_init__(self) -> None:
         for name, value in (("--rate", self.rate), ("--highpass", self.highpass), ("--resample", self.resample)):

@@ -74,7 +74,12 @@ def plate_signal(
         return source
     if source is not None:
         try:
-            signal = read_signal(_input_file(source), wheel=car.vehicle.shaker_wheel, choice=chosen)
+            signal = read_signal(
+                _input_file(source),
+                wheel=car.vehicle.shaker_wheel,
+                choice=chosen,
+                accept_implausible=asked.any_level,
+            )
         except ForeignTableError:
             channels = read_record(_input_file(source)).channels
             named = {role: name for role, name in suggested_channels(channels).items() if PLATE_CHANNEL.fullmatch(role)}
@@ -96,7 +101,8 @@ def plate_signal(
     units |= {role: unit for role, unit in asked.units.items() if role in ("", "time")}
     roles = {wheel: asked.channels.get(name, name) for wheel, name in names.items()}
     roles |= {role: name for role, name in asked.channels.items() if role == "time"}
-    return _turned(read_signal(path, choice=replace(asked, channels=roles, units=units)), inverted)
+    choice = replace(asked, channels=roles, units=units)
+    return _turned(read_signal(path, choice=choice, accept_implausible=asked.any_level), inverted)
 
 
 def _turned(signal: Signal, inverted: Collection[str]) -> Signal:
