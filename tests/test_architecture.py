@@ -25,7 +25,7 @@ WINGS = {
     "engines": ("simulation", "linear", "reduced", "lumped"),
     "drawing": ("rendering", "notebook"),
     "runs": ("car", "fmu", "trial", "comparison", "output", "report", "bench"),
-    "studies": ("design", "mounts", "replication", "sweeps", "tuning", "optimisation"),
+    "studies": ("design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
 """Wings, and the rooms of each, lowest first: imports go to lower wings, and to earlier rooms of the same wing."""
@@ -67,11 +67,13 @@ ROOMS: dict[str, set[str]] = {
     "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
     | {"report", "threads"},
     "mounts": {"records", "parameters"},
+    "dampers": {"records"},
     "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
     "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
     | {"simulation", "trial", "version"},
-    "commands": {"analysis", "assembly", "bench", "car", "comparison", "design", "excitation", "flexbody", "fmu"}
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "dampers", "design", "excitation", "flexbody"}
+    | {"fmu"}
     | {"linear", "mounts", "optimisation", "output", "parameters", "records", "rendering", "replication", "report"}
     | {"simulation"}
     | {"sweeps", "threads", "tuning", "version"},
@@ -84,6 +86,7 @@ ROOMS: dict[str, set[str]] = {
     "__init__": {
         "car",
         "comparison",
+        "dampers",
         "excitation",
         "fmu",
         "mounts",

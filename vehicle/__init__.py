@@ -74,6 +74,8 @@ if TYPE_CHECKING:
     from vehicle.signals.records.reader import read as read
     from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
+    from vehicle.studies.dampers.fitted_damper import FittedDamper as FittedDamper
+    from vehicle.studies.dampers.fitted_damper import fit_damper as fit_damper
     from vehicle.studies.mounts.mount_fit import MountFit as MountFit
     from vehicle.studies.mounts.mount_fit import fit_mount as fit_mount
     from vehicle.studies.optimisation.car_search import optimise as optimise
@@ -97,6 +99,7 @@ _MODULES = {
     "Comparison": "vehicle.runs.comparison.comparison",
     "ConfigurationError": "vehicle.errors",
     "DataError": "vehicle.errors",
+    "FittedDamper": "vehicle.studies.dampers.fitted_damper",
     "FoundCars": "vehicle.studies.optimisation.search_result",
     "FoundDrive": "vehicle.studies.replication.drive_search",
     "MissingPartError": "vehicle.errors",
@@ -113,6 +116,7 @@ _MODULES = {
     "compare": "vehicle.runs.comparison.compared_run",
     "compare_modes": "vehicle.runs.comparison.mode_comparison",
     "evaluate_comfort": "vehicle.signals.records.record_comfort",
+    "fit_damper": "vehicle.studies.dampers.fitted_damper",
     "fit_mount": "vehicle.studies.mounts.mount_fit",
     "load_run": "vehicle.runs.output.saved_run",
     "measured_histories": "vehicle.studies.tuning.measured_targets",

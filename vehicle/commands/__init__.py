@@ -19,6 +19,7 @@ COMMANDS = (
     "optimise",
     "tune",
     "fit-mount",
+    "fit-damper",
     "new",
     "fmu",
     "bench",

@@ -207,14 +207,15 @@ def drives_on_road(options: argparse.Namespace) -> bool:
 
 
 def record_options(
-    parser: argparse._ActionsContainer, roles: str, *, channel: bool = True, rate: bool = True, unit: bool = True
-) -> None:
+    parser: argparse._ActionsContainer, roles: str, *, channel: bool = True, rate: bool = True, unit: bool = True,
+    highpass: bool = True,
+) -> None:  # fmt: skip
     """Add the options that choose channels, units and times in a measurement file.
 
     Args:
         parser: of the command, or the group of the options that act on the file.
         roles: purpose of a channel in words with an example, for the help.
-        channel, rate, unit: False leaves out the option of this name.
+        channel, rate, unit, highpass: False leaves out the option of this name.
     """
     if channel:
         parser.add_argument(
@@ -240,12 +241,13 @@ def record_options(
         help="bring the record to this sampling rate first, with anti-alias filter: for jittered times",
     )
     parser.add_argument("--detrend", action="store_true", help="subtract the straight line of least squares")
-    parser.add_argument(
-        "--highpass",
-        type=float,
-        metavar="HZ",
-        help="corner of a high-pass without phase shift [Hz]; with it velocities and accelerations are integrated",
-    )
+    if highpass:
+        parser.add_argument(
+            "--highpass",
+            type=float,
+            metavar="HZ",
+            help="corner of a high-pass without phase shift [Hz]; with it velocities and accelerations are integrated",
+        )
 
 
 def unit_option(parser: argparse._ActionsContainer) -> None:
@@ -303,7 +305,7 @@ def record_choice(options: argparse.Namespace, role: str, known: tuple[str, ...]
         first=options.first,
         last=options.last,
         detrend=options.detrend,
-        highpass=options.highpass,
+        highpass=getattr(options, "highpass", None),
         databases=tuple(options.databases),
         resample=options.resample,
     )

@@ -1,0 +1,95 @@
+"""Records of a test machine: channels, units, conditions, velocity, signs, run-up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.records.choice import Choice
+from vehicle.studies.dampers.damper_test import by_conditions, read_test
+
+HEAD = "time [s],displacement [mm],velocity [mm/s],force [kN],I [A]"
+
+
+def write(path, head=HEAD, late=0.0, sign=1.0, columns=(0, 1, 2, 3, 4)):
+    """Record of a viscous damper, 1500 N s/m: sine of 2 Hz with run-up and run-down, 500 Hz."""
+    t = np.arange(2001) / 500.0
+    envelope = np.clip(np.minimum(t, 4.0 - t) / 0.5, 0.0, 1.0)
+
+    def displacement(at):
+        return 10.0 * np.clip(np.minimum(at, 4.0 - at) / 0.5, 0.0, 1.0) * np.sin(4.0 * np.pi * at)
+
+    v = (displacement(t + 1e-6) - displacement(t - 1e-6)) / 2e-6
+    shown = (displacement(t - late + 1e-6) - displacement(t - late - 1e-6)) / 2e-6
+    table = np.column_stack([t, displacement(t), shown, sign * 1.5e-3 * v, 0.5 + 0.0 * envelope])[:, columns]
+    np.savetxt(path, table, delimiter=",", header=head, comments="", fmt="%.9g")
+    return path
+
+
+def test_channels_are_found_and_converted(tmp_path):
+    test = read_test(write(tmp_path / "a.csv"))
+    assert test.sine and test.cycle == pytest.approx(0.5, rel=0.01)
+    assert np.sum(test.force * test.velocity) / np.sum(test.velocity**2) == pytest.approx(1500.0, rel=1e-3)
+    assert np.ptp(test.displacement) == pytest.approx(0.02, rel=1e-3)
+    inside = test.time[test.settled]
+    assert 0.35 < inside[0] < 0.75 and 3.25 < inside[-1] < 3.65 and not test.settled[0]
+
+
+def test_a_file_without_a_header_needs_roles_and_units(tmp_path):
+    path = write(tmp_path / "12mm0x5Hz1x5A.txt", head="", columns=(0, 1, 3))
+    with pytest.raises(DataError, match="no channels may be the displacement; set --channel displacement=NAME"):
+        read_test(path)
+    channels = {"time": "1", "displacement": "2", "force": "3"}
+    choice = Choice(channels=channels, units={"time": "s", "displacement": "mm", "force": "kN"})
+    test = read_test(path, choice, pattern="*Hz{current}A")
+    assert test.conditions == {"current": 1.5}
+    assert any("Savitzky-Golay filter of 5 samples: no delay, within 1 % up to" in text for text in test.notices)
+    reference = read_test(write(tmp_path / "a.csv"))
+    error = (test.velocity - reference.velocity)[test.settled]
+    assert np.max(np.abs(error)) < 1e-3 * np.max(reference.velocity)
+
+
+def test_the_frequency_of_the_notice_has_that_error(tmp_path):
+    test = read_test(
+        write(tmp_path / "a.csv", columns=(0, 1, 3, 4), head="time [s],displacement [mm],force [kN],I [A]")
+    )
+    (text,) = (text for text in test.notices if "Savitzky" in text)
+    frequency = float(text.split("up to ")[1].split(" Hz")[0])
+    t = np.arange(2000) / 500.0
+    w = 2.0 * np.pi * frequency
+    weights = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0 * 500.0  # cubic over five samples, closed form
+    derivative = np.convolve(np.sin(w * t), weights[::-1], mode="valid")
+    gain = np.sqrt(2.0 * np.mean(derivative**2)) / w
+    assert abs(gain - 1.0) == pytest.approx(0.01, abs=0.003)
+
+
+def test_a_velocity_that_lags_is_replaced(tmp_path):
+    test = read_test(write(tmp_path / "a.csv", late=0.003))
+    assert any("which is used; it is 3 ms late" in text for text in test.notices)
+    reference = read_test(write(tmp_path / "b.csv"))
+    assert not any("derivative" in text for text in reference.notices)
+    assert np.max(np.abs(test.velocity - reference.velocity)[test.settled]) < 1e-3 * np.max(reference.velocity)
+
+
+def test_signs(tmp_path):
+    plain = read_test(write(tmp_path / "a.csv"))
+    opposite = read_test(write(tmp_path / "b.csv", sign=-1.0))
+    assert any("sign inverted" in text for text in opposite.notices)
+    np.testing.assert_allclose(opposite.force, plain.force)
+    turned = read_test(tmp_path / "a.csv", compression=True)
+    np.testing.assert_allclose(turned.displacement, -plain.displacement)
+    np.testing.assert_allclose(turned.force, -plain.force)
+
+
+def test_conditions(tmp_path):
+    path = write(tmp_path / "a.csv")
+    typed = read_test(path, conditions={"temperature": "20", "current": "channel:I"})
+    assert typed.conditions == {"temperature": 20.0, "current": 0.5}
+    other = read_test(path, conditions={"temperature": "5", "current": "0.5"})
+    assert [dict(key)["temperature"] for key in by_conditions([typed, other, typed])] == [5.0, 20.0]
+    assert [len(group) for group in by_conditions([typed, other, typed]).values()] == [1, 2]
+    for wrong, said in (({"conditions": {"current": "high"}}, "must be a number, or channel:NAME"),
+                        ({"pattern": "*Hz{current}A"}, "does not match a; set the name of the file")):  # fmt: skip
+        with pytest.raises(ConfigurationError, match=said):
+            read_test(path, **wrong)

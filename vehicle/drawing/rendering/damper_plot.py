@@ -1,0 +1,55 @@
+"""Picture of a fitted damper: force over velocity and over displacement, measured and fitted, for each test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.drawing.rendering.figure import COLOURS, saved_figure
+
+Vector = npt.NDArray[np.float64]
+
+MOST_POINTS = 6000
+"""Maximum number of points of a line; more are not visible in a picture of this size."""
+
+
+class DamperLoop(NamedTuple):
+    """Measured and fitted force of one test.
+
+    Attributes:
+        label: name and errors of the test.
+        displacement, velocity: motion [m], [m/s]; (n,).
+        measured, fitted: forces [N]; (n,).
+    """
+
+    label: str
+    displacement: Vector
+    velocity: Vector
+    measured: Vector
+    fitted: Vector
+
+
+def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str, caption: str) -> None:
+    """Write the picture of a fitted damper, a row for each test.
+
+    Args:
+        path: PNG file.
+        loops: measured and fitted forces of all tests.
+        title: title above the picture.
+        caption: caption below the picture.
+    """
+    with saved_figure(path, (9.0, 1.0 + 3.0 * len(loops)), title, caption) as figure:
+        grid = figure.subplots(len(loops), 2, squeeze=False, sharey="row")
+        for (left, right), loop in zip(grid, loops, strict=True):
+            thin = slice(None, None, 1 + loop.measured.size // MOST_POINTS)
+            for axis, motion in ((left, loop.velocity), (right, loop.displacement)):
+                for number, (force, name) in enumerate(((loop.measured, "measured"), (loop.fitted, "fitted"))):
+                    axis.plot(1e3 * motion[thin], force[thin], color=COLOURS[number], linewidth=0.9, label=name)
+            left.set(ylabel="force [N]", title=loop.label)
+        grid[-1, 0].set(xlabel="velocity [mm/s]")
+        grid[-1, 1].set(xlabel="displacement [mm]")
+        grid[0, 0].legend(loc="upper left")

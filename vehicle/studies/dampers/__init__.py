@@ -1,0 +1,1 @@
+"""Laws of dampers fitted to records of a test machine."""

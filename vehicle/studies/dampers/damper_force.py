@@ -1,0 +1,287 @@
+"""Force of a damper law under a measured motion, with its derivatives: `vehicle.studies.dampers.damper_law`.
+
+Without a series stiffness the force is a function of velocity and displacement; the force of a Jenkins element follows
+from its displacement after the last slip. With a series stiffness K the deflection s is solved for at each sample,
+
+    K s = F_c(v - s') + sum of clamp(t_i + k_i du, l_i) + k_g (x - s) + F_0,   s' = a_0 s + a_1 s_1 + a_2 s_2,
+
+with the backward difference of second order for steps h, h_1 (r = h/h_1): a_0 = (1 + 2 r)/((1 + r) h),
+a_1 = -(1 + r)/h, a_2 = r^2/((1 + r) h). It is stable for any K. The right side falls with s, so the solution is unique.
+The derivatives of s over the parameters solve the linearised equations of all samples at once (a band matrix).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from vehicle.studies.dampers.damper_law import EXPONENT, STEP, DamperLaw, DamperValues, values_of
+
+Vector = npt.NDArray[np.float64]
+
+CLOSED = 1e-10
+"""Residual of a sample over the sum of its forces."""
+
+ITERATIONS = 60
+"""Maximum number of iterations of a sample: Newton's method, with bisection where it leaves the bracket."""
+
+
+FASTEST_GROWTH = 2.0
+"""Maximum ratio of two successive steps for the difference of second order, which is stable up to 2.4."""
+
+
+class Motion(NamedTuple):
+    """Motion of a damper.
+
+    Attributes:
+        time, displacement, velocity: [s], [m], [m/s]; (n,).
+        first_force: force at the first sample [N].
+        parts: steps of the solution of a series stiffness from one sample to the next, on the cubic through
+            displacements and velocities.
+    """
+
+    time: Vector
+    displacement: Vector
+    velocity: Vector
+    first_force: float
+    parts: int = 1
+
+    def refined(self) -> Motion:
+        """Return the motion with its parts as samples."""
+        if self.parts == 1:
+            return self
+        samples = np.arange((self.time.size - 1) * self.parts + 1) / self.parts
+        time = np.interp(samples, np.arange(self.time.size), self.time)
+        cubic = scipy.interpolate.CubicHermiteSpline(self.time, self.displacement, self.velocity)
+        return Motion(time, cubic(time), cubic.derivative()(time), self.first_force)
+
+
+def force_and_slopes(law: DamperLaw, parameters: Vector, motion: Motion) -> tuple[Vector, Vector]:
+    """Return the force [N], (n,), and its derivatives over the parameters, (n, p).
+
+    Args:
+        law: parts of the law.
+        parameters: in the order of `law.parameters`, SI units; velocities are widths of segments; (p,).
+        motion: sampled motion.
+    """
+    values = values_of(law, parameters)
+    if not law.series:
+        return _rigid(law, values, motion)
+    fine = motion.refined()
+    deflection, inner, sticking = _march(values, fine)
+    columns = _slopes(law, values, fine, deflection, inner, sticking)
+    return values.series * deflection[:: motion.parts], columns[:: motion.parts]
+
+
+def _curve(values: DamperValues) -> tuple[list[float], list[float], list[float]]:
+    """Return breakpoints, slopes and offsets of the segments of F_c with Coulomb friction, from bump to rebound."""
+    step = values.friction[0] / STEP
+    knots: list[float] = []
+    forces: list[float] = []
+    ends = []
+    for sign, slopes, widths in zip((1.0, -1.0), values.slopes.tolist(), values.widths.tolist(), strict=True):
+        at = force = 0.0
+        points = []
+        for slope, width in zip(slopes, widths, strict=False):
+            at, force = at + width, force + slope * width
+            points.append((sign * at, sign * (force + step * min(at, STEP))))
+        if step:
+            inside = sum(c * max(min(STEP - a, w), 0.0) for c, a, w in zip(
+                slopes, [0.0, *itertools.accumulate(widths)], [*widths, np.inf], strict=True))  # fmt: skip
+            points = sorted([*points, (sign * STEP, sign * (inside + step * STEP))], key=lambda each: abs(each[0]))
+        ends.append(slopes[-1] + (step if not points else 0.0))
+        knots = [*knots, *(v for v, _ in points)] if sign > 0.0 else [*(v for v, _ in points[::-1]), 0.0, *knots]
+        forces = [*forces, *(f for _, f in points)] if sign > 0.0 else [*(f for _, f in points[::-1]), 0.0, *forces]
+    inner = [(after - before) / (right - left) for (left, right), (before, after) in zip(
+        itertools.pairwise(knots), itertools.pairwise(forces), strict=True)]  # fmt: skip
+    slopes = [ends[1], *inner, ends[0]]
+    anchors = [0, *range(len(knots))]
+    return knots, slopes, [forces[i] - c * knots[i] for i, c in zip(anchors, slopes, strict=True)]
+
+
+def _difference(time: Vector) -> Vector:
+    """Return a_0, a_1 and a_2 of the backward difference at each sample [1/s]; (3, n), zeros at the first."""
+    steps = np.diff(time, prepend=time[0] - 1.0)
+    ratio = steps / np.concatenate([[np.inf, np.inf], steps[1:-1]])
+    ratio[ratio > FASTEST_GROWTH] = 0.0
+    ratio[0] = 0.0
+    weights = np.stack([(1.0 + 2.0 * ratio) / (1.0 + ratio), -(1.0 + ratio), ratio**2 / (1.0 + ratio)]) / steps
+    weights[:, 0] = 0.0
+    return np.asarray(weights)
+
+
+def _march(values: DamperValues, motion: Motion) -> tuple[Vector, Vector, npt.NDArray[np.bool_]]:
+    """Return deflection s [m], inner velocity w [m/s], (n,), and True where a Jenkins element sticks, (m, n)."""
+    knots, slopes, offsets = _curve(values)
+    edges = [*knots, np.inf]
+    spring, gas, offset = values.series, values.gas_stiffness, values.offset
+    rates, near, far = _difference(motion.time).tolist()
+    elements = list(zip(values.stiffness.tolist(), values.limit.tolist(), strict=True))
+    forces = [0.0] * len(elements)
+    previous = before = motion.first_force / spring
+    last = float(motion.displacement[0])
+    deflection, inner, sticking = [previous], [float(motion.velocity[0])], [[True] * len(elements)]
+    segment = int(np.searchsorted(knots, inner[0]))
+    s = previous
+    for at, (x, v) in enumerate(zip(motion.displacement.tolist()[1:], motion.velocity.tolist()[1:], strict=True), 1):
+        rate, back = rates[at], -near[at] * previous - far[at] * before
+        low, high, anchor = -np.inf, np.inf, x - last + previous
+        for _ in range(ITERATIONS):
+            w = v - rate * s + back
+            while w > edges[segment]:
+                segment += 1
+            while segment and w <= edges[segment - 1]:
+                segment -= 1
+            slope = slopes[segment]
+            curve = slope * w + offsets[segment]
+            size = abs(curve) + abs(offset)
+            error, total = spring * s - curve - gas * (x - s) - offset, spring + rate * slope + gas
+            for (k, limit), t in zip(elements, forces, strict=True):
+                size += limit
+                t += k * (anchor - s)
+                if t > limit:
+                    error -= limit
+                elif t < -limit:
+                    error += limit
+                else:
+                    error -= t
+                    total += k
+            if abs(error) <= CLOSED * size:
+                break
+            low, high = (low, min(high, s)) if error > 0.0 else (max(low, s), high)
+            s -= error / total
+            if not low < s < high:
+                s = 0.5 * (low + high)
+        change = anchor - s
+        states = [t + k * change for (k, _), t in zip(elements, forces, strict=True)]
+        sticking.append([-limit <= t <= limit for (_, limit), t in zip(elements, states, strict=True)])
+        forces = [min(max(t, -limit), limit) for (_, limit), t in zip(elements, states, strict=True)]
+        deflection.append(s)
+        inner.append(v - rate * s + back)
+        before, previous, last = previous, s, x
+    return np.array(deflection), np.array(inner), np.array(sticking).reshape(len(sticking), len(elements)).T
+
+
+def _curve_columns(law: DamperLaw, values: DamperValues, velocity: Vector) -> tuple[Vector, Vector]:
+    """Return dF_c/dv, (n,), and the derivatives of F_c over the parameters of the curve, (n, c)."""
+    size, slope, columns = np.abs(velocity), np.zeros(velocity.size), []
+    for number, (slopes, widths) in enumerate(zip(values.slopes, values.widths, strict=True)):
+        on_side = velocity > 0.0 if number == 0 else velocity <= 0.0
+        ends = np.cumsum(widths)
+        starts = np.concatenate([[0.0], ends])
+        segment = np.searchsorted(ends, size)
+        sign = np.where(on_side, np.sign(velocity), 0.0)
+        slope = np.where(on_side, slopes[segment], slope)
+        covered = [np.clip(size - start, 0.0, width) for start, width in zip(starts, [*widths, np.inf], strict=True)]
+        beyond = [(size > end) * (slopes[j] - slopes[j + 1]) for j, end in enumerate(ends)]
+        shifted = list(np.cumsum(beyond[::-1], axis=0)[::-1]) if beyond else []
+        columns.append(np.column_stack([sign * column for column in [*covered, *shifted]]))
+    step = np.abs(velocity) < STEP
+    curve = np.concatenate(columns, axis=1) if law.own_sides else columns[0] + columns[1]
+    if law.friction == "coulomb":
+        slope = slope + step * values.friction[0] / STEP
+        curve = np.column_stack([curve, np.clip(velocity / STEP, -1.0, 1.0)])
+    return slope, curve
+
+
+def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector, Vector]:
+    """Return force and derivatives without a series stiffness."""
+    x, v = motion.displacement, motion.velocity
+    _, curve = _curve_columns(law, values, v)
+    knots, slopes, offsets = _curve(values)
+    if law.friction == "stribeck":
+        knots, slopes, offsets = _curve(_without_friction(values))
+    segment = np.searchsorted(knots, v)
+    force = np.array(slopes)[segment] * v + np.array(offsets)[segment] + values.gas_stiffness * x + values.offset
+    columns = [-np.ones((x.size, 1)), curve]
+    if law.friction == "stribeck":
+        sliding, rest, critical = values.friction
+        ratio = (np.abs(v) / critical) ** EXPONENT
+        weight, sign = np.exp(-ratio), np.clip(v / STEP, -1.0, 1.0)
+        force = force + sign * (sliding + (rest - sliding) * weight)
+        fall = (rest - sliding) * weight * EXPONENT * ratio / critical
+        columns.append(np.column_stack([sign * (1.0 - weight), sign * weight, sign * fall]))
+    for k, limit in zip(values.stiffness, values.limit, strict=True):
+        path = _slider_force(x, float(k), float(limit))
+        slips = np.maximum.accumulate(np.where(np.abs(path) >= limit, np.arange(x.size), -1))
+        begun = slips >= 0
+        start = np.where(begun, x[np.maximum(slips, 0)], x[0])
+        strained = np.where(begun, np.sign(path[np.maximum(slips, 0)]), 0.0) + (x - start) * k / limit
+        columns.append(np.column_stack([strained, -(x - start) * k**2 / limit]))
+        force = force + path
+    columns += [x[:, None]] if law.gas_stiffness else []
+    return force, np.concatenate(columns, axis=1)
+
+
+def _slider_force(x: Vector, stiffness: float, limit: float) -> Vector:
+    """Return the force of a Jenkins element [N] over displacements [m], from rest at the first; (n,)."""
+
+    def next_force(force: float, dx: float) -> float:
+        return min(max(force + stiffness * dx, -limit), limit)
+
+    return np.array(list(itertools.accumulate(np.diff(x).tolist(), next_force, initial=0.0)))
+
+
+def _without_friction(values: DamperValues) -> DamperValues:
+    """Return the values without Coulomb friction."""
+    return dataclasses.replace(values, friction=(0.0, 0.0, 1.0))
+
+
+def _slopes(
+    law: DamperLaw, values: DamperValues, motion: Motion, s: Vector, w: Vector, sticking: npt.NDArray[np.bool_]
+) -> Vector:
+    """Return the derivatives of K s over the parameters, (n, p), from the linearised equations.
+
+    Unknown in the order s, t_1 ... t_m of each sample; row of s: (K + k_g) ds - dt_1 ... - c dw = explicit derivatives
+    of the right side - s dK, with dw = -(a_0 ds + a_1 ds_1 + a_2 ds_2); rows of t_i: dt_i + k_i ds - dt_i1 - k_i ds_1 =
+    du dk_i where it sticks, dt_i = +-dl_i where it slips; k_i is the limit l_i over the stroke.
+    """
+    n, m = s.size, len(values.stiffness)
+    rates, near, far = _difference(motion.time)
+    names = list(law.parameters)
+    u = motion.displacement - s
+    du = np.diff(u, prepend=u[0])
+    slope, curve = _curve_columns(law, values, w)
+    size = m + 1
+    right = np.zeros((n, size, len(names)))
+    right[:, 0, 0] = -1.0
+    right[:, 0, 1 : 1 + curve.shape[1]] = curve
+    right[:, 0, names.index("series_stiffness")] = -s
+    if law.gas_stiffness:
+        right[:, 0, names.index("gas_stiffness")] = u
+    lower, upper = 2 * size, m
+    band = np.zeros((lower + upper + 1, n, size))
+
+    def entry(row: int, column: int, lag: int, value: npt.ArrayLike) -> None:
+        """Set the entries of all samples in a row of the equations, for an unknown `lag` samples earlier."""
+        at = row - column + lag * size
+        band[upper + at, : n - lag, column] = np.broadcast_to(value, n)[lag:]
+
+    entry(0, 0, 0, values.series + values.gas_stiffness + slope * rates)
+    entry(0, 0, 1, slope * near)
+    entry(0, 0, 2, slope * far)
+    for i, (k, stuck) in enumerate(zip(values.stiffness, sticking, strict=True)):
+        entry(0, i + 1, 0, -1.0)
+        entry(i + 1, i + 1, 0, 1.0)
+        entry(i + 1, 0, 0, np.where(stuck, k, 0.0))
+        entry(i + 1, i + 1, 1, np.where(stuck, -1.0, 0.0))
+        entry(i + 1, 0, 1, np.where(stuck, -k, 0.0))
+        at, limit = names.index(f"slider_limit_{i + 1}"), values.limit[i]
+        right[:, i + 1, at] = np.where(stuck, du * k / limit, np.sign(du))
+        right[:, i + 1, at + 1] = np.where(stuck, -du * k**2 / limit, 0.0)
+    # First sample: s is the measured force over K, t is zero.
+    band[upper - np.arange(1, size), 0, np.arange(1, size)] = 0.0
+    band[upper, 0, 0] = values.series
+    band[upper + np.arange(1, size), 0, 0] = 0.0
+    right[0] = 0.0
+    right[0, 0, names.index("series_stiffness")] = -s[0]
+    solution = scipy.linalg.solve_banded((lower, upper), band.reshape(lower + upper + 1, -1),
+                                         right.reshape(n * size, -1), check_finite=False)  # fmt: skip
+    columns = values.series * solution.reshape(n, size, -1)[:, 0]
+    columns[:, names.index("series_stiffness")] += s
+    return np.asarray(columns)

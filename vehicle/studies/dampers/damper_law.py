@@ -1,0 +1,170 @@
+"""Laws of a damper for a fit: the parts of a law, its parameters, and the order in which parts are added.
+
+In extension positive, with the displacement x, the deflection s of a series stiffness K and the velocity w = x' - s' of
+the damper itself,
+
+    F = K s = F_c(w) + friction + k_g (x - s) + F_0.
+
+F_c has straight segments: slope c_j up to the velocity v_j, alike or separate on both sides. The friction is Coulomb
+friction, a step of F_c within `STEP`; Stribeck friction; or presliding, Jenkins elements over x - s. F_0 is minus the
+gas force, k_g the stiffness of the gas. All are laws of the vehicle file (`vehicle.studies.dampers.damper_lines`).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+MAX_BENDS, MAX_ELEMENTS = 3, 4
+"""Maximum numbers of breakpoints on each side of a curve, and of Jenkins elements."""
+
+SMOOTHING = 1e4
+"""Smoothing eps [s/m] of Coulomb and Stribeck friction in a fit and in its lines."""
+
+STEP = np.pi / (2.0 * SMOOTHING)
+"""Velocity [m/s] at which Coulomb friction reaches its limit: 0.16 mm/s."""
+
+EXPONENT = 2.0
+"""Exponent delta of Stribeck friction; tests determine it hardly beside the velocity vs."""
+
+LINEAR = ("gas_force", "gas_stiffness")
+"""Parameters that may be zero or negative, fitted without logarithm."""
+
+SIDES = ("rebound", "bump")
+"""Sides of a curve: extension, then compression."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DamperLaw:
+    """Parts of a law.
+
+    Attributes:
+        bends: breakpoints of the curve on each side.
+        own_sides: bump and rebound have their own slopes and breakpoints.
+        friction: "", "coulomb", "stribeck" or "presliding".
+        elements: Jenkins elements of presliding.
+        series: a stiffness in series with the damper.
+        gas_stiffness: a stiffness parallel to the damper.
+    """
+
+    bends: int = 0
+    own_sides: bool = False
+    friction: str = ""
+    elements: int = 0
+    series: bool = False
+    gas_stiffness: bool = False
+
+    @property
+    def sides(self) -> tuple[str, ...]:
+        """Prefixes of the parameters of the curve."""
+        return tuple(f"{side}_" for side in SIDES) if self.own_sides else ("",)
+
+    @property
+    def parameters(self) -> dict[str, str]:
+        """Names of the parameters and their units, in the order of all arrays."""
+        names = {"gas_force": "N"}
+        for side in self.sides:
+            names |= {f"{side}damping_{j + 1}": "N s/m" for j in range(self.bends + 1)}
+            names |= {f"{side}velocity_{j + 1}": "m/s" for j in range(self.bends)}
+        if self.friction in ("coulomb", "stribeck"):
+            names["friction"] = "N"
+        if self.friction == "stribeck":
+            names |= {"friction_at_rest": "N", "stribeck_velocity": "m/s"}
+        for i in range(self.elements):
+            names |= {f"slider_limit_{i + 1}": "N", f"slider_stroke_{i + 1}": "m"}
+        names |= {"gas_stiffness": "N/m"} if self.gas_stiffness else {}
+        return names | ({"series_stiffness": "N/m"} if self.series else {})
+
+    @property
+    def title(self) -> str:
+        """Parts of the law in words."""
+        curve = "linear damping" if not self.bends else f"damping curve with {self.bends} bend{'s'[: self.bends > 1]}"
+        parts = [curve + (", bump and rebound of their own" if self.own_sides else "")]
+        elements = f"presliding friction ({self.elements} element{'s'[: self.elements > 1]})"
+        parts += [elements] if self.elements else [f"{self.friction.title()} friction"] if self.friction else []
+        parts += ["gas stiffness"] if self.gas_stiffness else []
+        return " + ".join(parts + (["series stiffness"] if self.series else []))
+
+    def larger(self) -> Iterator[DamperLaw]:
+        """Yield the laws with one more part; a series stiffness excludes Stribeck friction, whose force falls.
+
+        A slider is close to Coulomb friction behind a series stiffness, with as many parameters: that law is tried too.
+        """
+        change = dataclasses.replace
+        if self.bends < MAX_BENDS:
+            yield change(self, bends=self.bends + 1)
+        if not self.own_sides:
+            yield change(self, own_sides=True)
+        if not self.series and self.friction != "stribeck":
+            yield change(self, series=True)
+        if not self.gas_stiffness:
+            yield change(self, gas_stiffness=True)
+        if not self.friction:
+            yield change(self, friction="coulomb")
+        if not self.series and self.friction == "coulomb":
+            yield change(self, friction="stribeck")
+        if self.elements == 1 and not self.series:
+            yield change(self, friction="coulomb", elements=0, series=True)
+        if self.friction != "stribeck" and self.elements < MAX_ELEMENTS:
+            yield change(self, friction="presliding", elements=self.elements + 1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class DamperValues:
+    """Parameters of a law as numbers of its parts.
+
+    Attributes:
+        slopes: c_j of rebound and bump, from rest outwards [N s/m]; (2, k + 1).
+        widths: widths of the inner segments [m/s]; (2, k).
+        stiffness, limit: Jenkins elements [N/m], [N]; (m,).
+        friction: Coulomb or Stribeck friction, its limit at rest [N], and vs [m/s].
+        offset: F_0 [N].
+        gas_stiffness: k_g [N/m].
+        series: K [N/m]; infinite without.
+    """
+
+    slopes: Vector
+    widths: Vector
+    stiffness: Vector
+    limit: Vector
+    friction: tuple[float, float, float]
+    offset: float
+    gas_stiffness: float
+    series: float
+
+
+def values_of(law: DamperLaw, parameters: Vector) -> DamperValues:
+    """Return the numbers of a law for parameters in the order of `law.parameters`; velocities are widths."""
+    number = dict(zip(law.parameters, parameters.tolist(), strict=True))
+    sides = law.sides * (2 if len(law.sides) == 1 else 1)
+    slopes = [[number[f"{side}damping_{j + 1}"] for j in range(law.bends + 1)] for side in sides]
+    widths = [[number[f"{side}velocity_{j + 1}"] for j in range(law.bends)] for side in sides]
+    limit = np.array([number[f"slider_limit_{i + 1}"] for i in range(law.elements)])
+    stroke = np.array([number[f"slider_stroke_{i + 1}"] for i in range(law.elements)])
+    sliding = number.get("friction", 0.0)
+    return DamperValues(
+        slopes=np.array(slopes),
+        widths=np.array(widths).reshape(2, law.bends),
+        stiffness=limit / stroke,
+        limit=limit,
+        friction=(sliding, number.get("friction_at_rest", sliding), number.get("stribeck_velocity", 1.0)),
+        offset=-number["gas_force"],
+        gas_stiffness=number.get("gas_stiffness", 0.0),
+        series=number.get("series_stiffness", np.inf),
+    )
+
+
+def plain_parameters(law: DamperLaw, parameters: Vector) -> Vector:
+    """Return the parameters with velocities of breakpoints in place of the widths of their segments; (p,)."""
+    plain = parameters.copy()
+    names = list(law.parameters)
+    for side in law.sides:
+        at = [names.index(f"{side}velocity_{j + 1}") for j in range(law.bends)]
+        plain[at] = np.cumsum(plain[at])
+    return plain

@@ -1,0 +1,116 @@
+"""Laws of a damper fitted to its tests, one for each set of conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import ConfigurationError
+from vehicle.signals.records.choice import Choice
+from vehicle.studies.dampers.damper_fit import DamperFit, choose_law, kind_of, limits_of
+from vehicle.studies.dampers.damper_law import LINEAR, values_of
+from vehicle.studies.dampers.damper_test import DamperTest, by_conditions, read_test
+
+SLOW = 0.01
+"""Maximum velocity [m/s] of a test that shows friction near rest."""
+
+AT_LIMIT = 1.02
+"""Ratio to a limit of its range within which a parameter counts as being there."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FittedDamper:
+    """Tests of equal conditions with their law.
+
+    Attributes:
+        conditions: name of a condition to its value; may be empty.
+        tests: the tests.
+        fit: the chosen law.
+        compared: all laws that were compared, by their errors on tests left out.
+    """
+
+    conditions: Mapping[str, float]
+    tests: Sequence[DamperTest]
+    fit: DamperFit
+    compared: Sequence[DamperFit]
+
+    @property
+    def name(self) -> str:
+        """Conditions in words for file names, as "_current_1"; empty without conditions."""
+        return "".join(f"_{name}_{value:g}" for name, value in self.conditions.items())
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Highest velocities of the slowest and of the fastest test [m/s]."""
+        speeds = [float(np.max(np.abs(test.velocity))) for test in self.tests]
+        return min(speeds), max(speeds)
+
+    def curve_damping(self) -> float:
+        """Return the damping constant with the work of the curve F_c in these tests, sum F_c v / sum v^2 [N s/m]."""
+        values = values_of(self.fit.law, self.fit.parameters)
+        v = np.concatenate([test.velocity[test.settled] for test in self.tests])
+        force = np.zeros(v.size)
+        for side, slopes, widths in zip((v > 0.0, v <= 0.0), values.slopes, values.widths, strict=True):
+            ends = np.concatenate([[0.0], np.cumsum(widths)])
+            for start, width, slope in zip(ends, [*widths, np.inf], slopes, strict=True):
+                force += side * np.sign(v) * slope * np.clip(np.abs(v) - start, 0.0, width)
+        return float(np.sum(force * v) / np.sum(v**2))
+
+    def left_open(self) -> list[str]:
+        """Return what the tests do not determine, one sentence each."""
+        slowest, fastest = self.speeds
+        law, fit = self.fit.law, self.fit
+        sentences = []
+        if slowest > SLOW:
+            sentences.append(
+                f"no test below {1e3 * SLOW:.0f} mm/s: friction at rest is not determined; the slowest test reaches "
+                f"{1e3 * slowest:.3g} mm/s"
+            )
+        sentences.append(f"no test above {fastest:.3g} m/s: beyond, the curve is extended with its last slope")
+        if len(self.tests) == 1:
+            sentences.append("one test: whether the law holds for other strokes and frequencies is not determined")
+        low, high = limits_of(law)
+        for name, value, lowest, highest, determined in zip(
+            law.parameters, fit.parameters, low, high, fit.determined, strict=True
+        ):
+            if name not in LINEAR and not lowest * AT_LIMIT < value < highest / AT_LIMIT:
+                kind = kind_of(name).replace("_", " ")
+                sentences.append(f"{name} is at the limit of its range: the tests give no {kind} of their own")
+            elif not determined and name not in LINEAR:
+                sentences.append(f"{name} has a standard error above half of its value")
+        return sentences
+
+
+def fit_damper(
+    files: Sequence[str | PathLike[str]], choice: Choice | None = None, *, compression: bool = False,
+    conditions: Mapping[str, str] | None = None, pattern: str = "",
+) -> list[FittedDamper]:  # fmt: skip
+    """Fit the law of a damper to records of a test machine: one law for each set of conditions.
+
+    Args:
+        files: measurement files of any format, with displacement, force, and velocity if measured.
+        choice: channels, units and excerpt; see `vehicle.studies.dampers.damper_test.read_test`.
+        compression: the files are positive in compression.
+        conditions: name of a condition to a number, or to "channel:NAME".
+        pattern: pattern of the file names with conditions in braces, as "*Hz{current}A".
+
+    Returns:
+        Fits sorted by their conditions; `fits[0].fit.values` are the parameters in the order of `fit.law.parameters`.
+
+    Raises:
+        ConfigurationError: no file, a file twice or missing, or wrong conditions.
+        DataError: bad data in a file.
+    """
+    paths = [Path(file) for file in files]
+    if not paths or len(set(paths)) < len(paths):
+        raise ConfigurationError(f"{len(paths)} files of tests: name one or more, each once")
+    tests = [read_test(path, choice, compression=compression, conditions=conditions, pattern=pattern) for path in paths]
+    fitted = []
+    for group in by_conditions(tests).values():
+        fit, compared = choose_law(group)
+        fitted.append(FittedDamper(conditions=group[0].conditions, tests=group, fit=fit, compared=compared))
+    return fitted
