@@ -39,7 +39,8 @@ def test_every_channel_against_mujoco(level):
         f"RMS of {'vertical' if large else 'all'} channels over that of MuJoCo, presliding friction, class {level}",
         np.array([ratios[name] for name in kept]), 1.0, abs=5e-3, source="second derivation: MuJoCo",
     )  # fmt: skip
-    assert bool(reduced.recording.statistics.warnings) == large
+    # On B one channel is named, the rear left knuckle along y: by -2.7 %, where it is off by -1.7 %.
+    assert bool(reduced.recording.statistics.warnings) == (level != "A")
     # On class D a linear tyre pulls where MuJoCo's does too, by 1.4 kN: both are outside their validity.
     # On class D a linear tyre pulls by 1.4 kN, which is outside the range of both engines.
     validated(
