@@ -24,7 +24,7 @@ from vehicle.core.build import SOURCES, compile_core  # noqa: E402
 from vehicle.core.library import COMPILERS, platform_name  # noqa: E402
 
 CHECKS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"]
-TESTS = ["tests/core", "tests/engines/reduced/test_time_step.py"]
+TESTS = ["tests/core", "tests/engines/reduced/test_time_step.py", "tests/engines/simulation/test_sparse_rows.py"]
 
 
 def main() -> int:
