@@ -92,7 +92,7 @@ ROOMS: dict[str, set[str]] = {
         "replication",
     }
     | {"report", "sweeps", "tuning"},
-    "__main__": {"commands", "version"},
+    "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""

@@ -1,10 +1,10 @@
-"""Run the tests of the core with checks of every access to memory and of undefined operations.
+"""March the cars of `tests/core/recorded_march.py` with checks of every access to memory and of undefined operations.
 
-    python tools/core_sanitized.py [TEST FILES]
+    python tools/core_sanitized.py
 
-The core is compiled with -fsanitize=address,undefined of the C compiler at hand, and loaded in the place of the shipped
-one; memory of numpy is checked too, because AddressSanitizer replaces malloc. By default: the marches of real runs with
-all laws, single and double precision, in both variants of the processor.
+The core is compiled with -fsanitize=address,undefined of the C compiler at hand. The records of the marches come from
+real runs with all laws, single and double precision; a process of numpy and this core marches them again, in both
+variants of the processor. Memory of numpy is checked too, because AddressSanitizer replaces malloc.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ from vehicle.core.build import SOURCES, compile_core  # noqa: E402
 from vehicle.core.library import COMPILERS, platform_name  # noqa: E402
 
 CHECKS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"]
-TESTS = ["tests/core", "tests/engines/reduced/test_time_step.py", "tests/engines/simulation/test_sparse_rows.py"]
 
 
 def main() -> int:
-    """Build the core with checks, and run the tests with it; return the exit status."""
+    """Build the core with checks, and march with it; return the exit status."""
     compiler = next(name for name in ("gcc", *COMPILERS) if shutil.which(name))
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place) / "source"
+        folder, marches = Path(place) / "source", str(Path(place) / "marches")
         shutil.copytree(SOURCES, folder)
         library = folder / "core.so"
         compile_core(
             [compiler], platform_name().split("-")[0], library, ["-fPIC", *CHECKS], ["-shared", "-lm", *CHECKS]
         )
+        subprocess.run([sys.executable, "-m", "tests.core.recorded_march", marches], cwd=ROOT, check=True)
         runtime = subprocess.run([compiler, "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
         environment = {
             **os.environ,
@@ -44,8 +44,8 @@ def main() -> int:
             "ASAN_OPTIONS": "detect_leaks=0",
             "VEHICLE_CORE": str(library),
         }
-        tests = sys.argv[1:] or TESTS
-        return subprocess.run([sys.executable, "-m", "pytest", "-n", "0", *tests], cwd=ROOT, env=environment).returncode
+        command = [sys.executable, "-m", "tests.core.march_again", marches]
+        return subprocess.run(command, cwd=ROOT, env=environment).returncode
 
 
 if __name__ == "__main__":

@@ -37,9 +37,10 @@ def _print(typed: Sequence[str]) -> None:
         ConfigurationError: the first word is no command and no option.
     """
     if typed[:1] == ["--version"]:
+        from vehicle.core.library import variant
         from vehicle.version import package_version
 
-        print(package_version())
+        print(f"{package_version()}, core {variant()}")
         return
     if typed[:1] == ["--schema"]:
         from vehicle.commands.schema_text import schema_text

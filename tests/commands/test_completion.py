@@ -11,6 +11,7 @@ import pytest
 from tests.patience import HANG
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS
+from vehicle.core.library import variant
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -86,7 +87,8 @@ def test_the_version_is_that_of_the_project(words, capsys):
         assert end.value.code == 0
     else:
         assert main(["--version"]) == 0
-    assert capsys.readouterr().out == f"{project['name']} {project['version']}\n"
+    core = "" if words else f", core {variant()}"
+    assert capsys.readouterr().out == f"{project['name']} {project['version']}{core}\n"
 
 
 def test_an_installed_package_has_the_version_of_its_metadata(monkeypatch):

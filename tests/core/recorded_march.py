@@ -1,22 +1,24 @@
-"""Marches of real runs, whose records are kept before the core sees them: to be run again by any library."""
+"""Marches of real runs, whose records are kept before the core sees them: to be run again by any library.
+
+`python -m tests.core.recorded_march FILE` writes those of all cases to a file for `march_again`.
+"""
 
 from __future__ import annotations
 
-import ctypes
-from collections.abc import Callable
+import pickle
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.core.march_again import Fields, copied
 from vehicle.core.records import packed
 from vehicle.engines.reduced import group_run
 from vehicle.engines.reduced.batch_simulation import simulate_batch
-from vehicle.engines.reduced.table_layout import VECTOR_BYTES, aligned_table
 from vehicle.runs.car import Car, Road
 from vehicle.signals.excitation.random_road import random_road
-
-Fields = dict[str, Any]
 
 RUBBER = {
     "front.bushings.arm_rear.friction_force": [300.0] * 3,
@@ -50,6 +52,9 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 
 SINGLE = ("focus", "stribeck", "presliding", "rubber friction and tyres that lift off", "side forces", "focus_road")
 """Cases that run in single precision, too."""
+
+ALL = [*((case, False) for case in CASES), *((case, True) for case in SINGLE)]
+"""Case, and True for single precision."""
 
 
 def recorded(case: str, *, single: bool = False) -> Fields:
@@ -87,20 +92,6 @@ def recorded(case: str, *, single: bool = False) -> Fields:
     return next(fields for fields in blocks if fields["table"].dtype == element)
 
 
-def copied(value: Any) -> Any:
-    """Return a copy of an array, aligned if it is an array of vectors; other values as they are."""
-    if not isinstance(value, np.ndarray):
-        return value
-    if value.ndim == 2 and value.dtype.kind == "f" and value.shape[1] * value.itemsize == VECTOR_BYTES:
-        result = aligned_table(len(value), value.dtype)
-        result[:] = value
-        return result
-    return value.copy()
-
-
-def after(march: Callable[[ctypes.c_void_p], None], fields: Fields) -> Fields:
-    """Return the arrays after the march of a block by a function of a library."""
-    copy = {name: copied(value) for name, value in fields.items()}
-    record = packed("March", copy)
-    march(ctypes.c_void_p(record.address))
-    return {name: value for name, value in copy.items() if isinstance(value, np.ndarray)}
+if __name__ == "__main__":
+    marches = [(recorded(case, single=single), single) for case, single in ALL]
+    Path(sys.argv[1]).write_bytes(pickle.dumps(marches))

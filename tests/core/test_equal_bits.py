@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.core.recorded_march import CASES, SINGLE, Fields, after, copied, recorded
+from tests.core.march_again import Fields, after, copied
+from tests.core.recorded_march import ALL, recorded
 from tests.patience import HANG
 from vehicle.core.library import BINARIES, core
 from vehicle.core.records import packed
 
-ALL = [*((case, False) for case in CASES), *((case, True) for case in SINGLE)]
 MODULE = BINARIES / "wasm32-wasi" / "core.wasm"
 START = 1 << 24
 """Address of the image in WebAssembly: beyond the module's own memory."""

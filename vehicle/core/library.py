@@ -55,6 +55,15 @@ def core() -> ctypes.CDLL:
     return library
 
 
+def variant() -> str:
+    """Return the variant of the core that runs on this processor: vector instructions, as AVX2, and the platform."""
+    try:
+        number = int(core().core_variant())
+    except MissingPartError:
+        return "missing"
+    return {3: "AVX2, ", 2: "SSE2, "}.get(number, "") + platform_name()
+
+
 def platform_name() -> str:
     """Return processor and operating system, as x86_64-linux."""
     machine = platform.machine().lower()

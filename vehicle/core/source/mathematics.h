@@ -13,7 +13,7 @@ static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 static inline double root(double x) { return __builtin_sqrt(x); }
 
-typedef union { double x; int64_t bits; } Bits;
+typedef union { double x; uint64_t bits; } Bits;
 static const double LN2 = 6.93147180369123816490e-01, LN2_REST = 1.90821492927058770002e-10; /* 32 bits, and the rest */
 static const double TO_WHOLE = 6755399441055744.0; /* 1.5 2^52: x + this has the nearest integer in its last bits */
 
@@ -24,18 +24,18 @@ static inline double exponential(double x) {
   double k = shifted.x - TO_WHOLE, high = x - k * LN2, low = k * LN2_REST, r = high - low, z = r * r;
   double c = r - z * (1.66666666666666019037e-01 + z * (-2.77777777770155933842e-03 + z * (6.61375632143793436117e-05 +
              z * (-1.65339022054652515390e-06 + z * 4.13813679705723846039e-08))));
-  power.bits = (shifted.bits << 52) + (1023LL << 52);
+  power.bits = (shifted.bits + 1023) << 52;
   return (1.0 - ((low - (r * c) / (2.0 - c)) - high)) * power.x;
 }
 
 /* ln(x) for a normal x > 0. */
 static inline double logarithm(double x) {
   Bits m = {x}, exponent;
-  int64_t above = m.bits - 0x3fe6a09e00000000; /* distance from sqrt(1/2): m is in [sqrt(1/2), sqrt(2)) */
-  exponent.bits = ((above >> 52) & 0xfff) ^ 0x800; /* exponent + 2048 mod 4096, from its sign */
+  uint64_t above = m.bits - 0x3fe6a09e00000000; /* distance from sqrt(1/2): m is in [sqrt(1/2), sqrt(2)) */
+  exponent.bits = (above >> 52) ^ 0x800; /* exponent + 2048, because the upper 12 bits are its two's complement */
   exponent.bits |= 0x4330000000000000; /* 2^52 + it */
   double k = exponent.x - 4503599627372544.0;
-  m.bits -= above & (int64_t)0xfff0000000000000;
+  m.bits -= above & 0xfff0000000000000;
   double f = m.x - 1.0, s = f / (2.0 + f), z = s * s, w = z * z, half = 0.5 * f * f;
   double r = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01)) +
              z * (6.666666666666735130e-01 + w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 +
