@@ -19,7 +19,7 @@ OBSERVED = ("seat_rail_acc_z", "damper_rl_force", "damper_fr_coefficient")
 SKY = 3000.0
 
 
-@ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
+@ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)  # type: ignore[untyped-decorator]
 def skyhook(memory: int | None, body: float, wheel: float) -> float:
     """Coefficient c_sky vb / (vb - vw) without limits, which the damper sets; counts its calls in its memory."""
     calls = ctypes.c_int64.from_address(memory or 0)
