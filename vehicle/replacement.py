@@ -1,6 +1,6 @@
 """Replace files and folders in one step: written under another name, synchronised with the disk, then renamed.
 
-Whatever ends the process, the old content is complete under its name until the new content is. A loss of power is no
+Whatever ends the process, the old content keeps its name until the new content is complete. A loss of power is no
 different: a name is moved to new content only after this content is on the disk.
 """
 
@@ -85,7 +85,7 @@ def exchange(first: Path, second: Path) -> bool:
 
 @contextmanager
 def being_made(folder: Path) -> Iterator[None]:
-    """Declare a hidden folder that takes its final name when it is complete: files in it are written directly."""
+    """Declare a hidden folder, renamed when it is complete: files in it are written directly."""
     _being_made.add(folder.absolute())
     try:
         yield

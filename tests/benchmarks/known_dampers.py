@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import sys
 import time
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -27,7 +28,7 @@ CORNER = 0.04
 
 STEP = np.pi / 2.0 / SMOOTHING
 
-KNOWN: dict[int, dict] = {
+KNOWN: dict[int, dict[str, Any]] = {
     1: {"curve": [(1800, None)], "coulomb": 60.0},
     2: {"curve": [(6000, 0.06), (1100, None)], "coulomb": 45.0, "gas_force": 200.0},
     3: {"rebound": [(7000, 0.05), (1500, None)], "bump": [(3000, 0.08), (700, None)], "gas_force": 150.0},
@@ -99,7 +100,8 @@ def curve_of(known):
             points.append((sign * at, sign * force))
     v, f = np.array(sorted(points)).T
     extra = np.sort(np.append(v, [-STEP, STEP]))
-    return Curve.through(extra, np.interp(extra, v, f) + known.get("coulomb", 0.0) * np.clip(extra / STEP, -1.0, 1.0))
+    force = np.interp(extra, v, f) + known.get("coulomb", 0.0) * np.clip(extra / STEP, -1.0, 1.0)
+    return Curve.through(extra.tolist(), force.tolist())
 
 
 def force_of(known, x, velocity):

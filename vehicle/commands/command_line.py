@@ -165,11 +165,11 @@ def parse_and_run(parser: Parser, job: Callable[[argparse.Namespace], None], arg
     return run_command(work, debug="--debug" in typed)
 
 
-def _put_in_order(words: Sequence[str]) -> None:
+def _put_in_order(arguments: Sequence[str]) -> None:
     """Bring to an end what a killed command left at the files and folders of a command line, with a notice."""
     from vehicle.runs.output.work_folder import put_in_order
 
-    for text in dict.fromkeys(part for word in words for part in (word, word.partition("=")[2])):
+    for text in dict.fromkeys(part for word in arguments for part in (word, word.partition("=")[2])):
         if text and not text.startswith("-"):
             put_in_order(Path(text))
             if Path(text).parent != Path():

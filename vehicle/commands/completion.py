@@ -74,7 +74,7 @@ def completion_script(shell: str) -> str:
 
 
 def _rows(name: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:
-    """Yield the words that may follow a command, and each of its options that takes a value.
+    """Yield the words allowed after a command, and its options with a value.
 
     Values that contain a blank are left out.
 

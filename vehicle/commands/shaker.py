@@ -72,7 +72,7 @@ def parser() -> Parser:
         "--trust",
         action="store_true",
         help="run the native code of the controller, or of those in the vehicle file; its SHA-256 goes into the "
-        "vehicle file of the run, where it stands for the option",
+        "vehicle file of the run, where it replaces the option",
     )
     engine_option(parser, "mujoco")
     skip_option(parser)

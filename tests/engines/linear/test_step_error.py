@@ -106,7 +106,7 @@ def test_the_part_that_makes_every_step_too_long_is_named():
     with pytest.raises(ConfigurationError) as caught:
         car.stepped()
     assert re.match(
-        r"no time step from 0\.001 s down to 1\.6e-05 s answers this car: .* \(\d+ Hz: \w+ moves, held by "
+        r"no time step from 0\.001 s down to 1\.6e-05 s suits this car: .* \(\d+ Hz: \w+ moves, held by "
         r"front\.damper\.stop\); correct that parameter",
         str(caught.value),
     ), str(caught.value)

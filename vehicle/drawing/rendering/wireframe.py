@@ -207,7 +207,7 @@ def _wheel(pen: _Pen, wheel: PlacedWheel) -> None:
 
 
 def _stand(pen: _Pen, top: Vector, floor: float) -> None:
-    """Draw what holds the body where it has no wheels: four legs from a point at rest to the floor."""
+    """Draw the support of a body without wheels: four legs from a point at rest to the floor."""
     feet = [(top[0] + PLATE * x, top[1] + PLATE * y, floor) for x, y in CORNERS]
     base, head = [pen.point(foot, "world") for foot in feet], pen.point(top, "world")
     pen.join(list(zip(base, [*base[1:], base[0]], strict=True)), "ground")

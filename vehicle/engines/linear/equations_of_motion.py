@@ -64,12 +64,12 @@ class Equations:
         for vector in (v, a):
             # Angular velocity of the rotation exp(theta) in axes of the body: theta' - theta x theta'/2 + ...
             vector[:, self.turning] -= 0.5 * np.cross(u[:, self.turning], vector[:, self.turning])
-        turning = v @ self.hubs.reshape(-1, self.model.nv).T
+        omega = v @ self.hubs.reshape(-1, self.model.nv).T
         return np.array(
             [
                 self._at(*motion)
                 for motion in zip(
-                    u, v, a, branch, height, rate, joints, turning.reshape(len(u), *self.hubs.shape[:2]), strict=True
+                    u, v, a, branch, height, rate, joints, omega.reshape(len(u), *self.hubs.shape[:2]), strict=True
                 )
             ]
         ).T
@@ -83,14 +83,14 @@ class Equations:
         height: Vector,
         rate: Vector,
         joints: Vector,
-        turning: Vector,
+        omega: Vector,
     ) -> Vector:
         model, data, state = self.model, self.data, self.rows.state
         data.qpos[:], data.qvel[:], data.time = self.start, v, 0.0
         mujoco.mj_integratePos(model, data.qpos, u, 1.0)
         data.mocap_pos[:, 2] = self.level + height
         state.plate_velocity[:, 2], state.slope_velocity[:], state.last_time[0] = rate, 0.0, -1.0
-        state.turning[:, :3] = turning
+        state.turning[:, :3] = omega
         state.branch_past[:], state.branch_past[self.present] = 0.0, branch
         state.branch_force[:] = state.branch_past
         mujoco.mj_fwdPosition(model, data)

@@ -193,7 +193,7 @@ def stop_rows(matrices: CarMatrices, dampers: Sequence[Damper]) -> LoadRows:
         names.append(f"damper_{wheel}_stop_force")
         static.append(force)
         displacement.append((above - below) / (2.0 * DIFFERENCE_STEP) * matrices.system.slide_rows[index])
-        law.append([float(one.element[:2] == (STOP, index)) for one in matrices.laws])
+        law.append([float(element_law.element[:2] == (STOP, index)) for element_law in matrices.laws])
     size = matrices.system.size
     rows = displacement_rows(matrices, np.reshape(displacement, (len(names), size)))
     by_law = np.reshape(law, (len(names), len(matrices.laws)))

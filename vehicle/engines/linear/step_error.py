@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.digits import number
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.car_modes import require_stable
 from vehicle.engines.linear.displacement_laws import law_rows
@@ -67,7 +68,7 @@ SMALLEST_STEP = 1e-5
 
 
 LEFT = 0.5
-"""What is left of an element that is softened to see its effect [-]."""
+"""Factor on an element that is softened to see its effect [-]."""
 
 TRIED = 8
 """Number of the most strained parameters whose effect is tried."""
@@ -110,7 +111,7 @@ def accurate_step(car: CarModel, matrices: CarMatrices) -> float:
     while (violation := check.worst(step)) is not None:
         if 0.5 * step < SMALLEST_STEP:
             raise ConfigurationError(
-                f"no time step from {first:g} s down to {step:.2g} s answers this car: {step:.2g} s, "
+                f"no time step from {first:g} s down to {number(step, 2)} s suits this car: {number(step, 2)} s, "
                 f"{check.cause(violation, step)}; correct that parameter, or the mass of the part; the reduced engine "
                 "does not need this step"
             )
@@ -178,8 +179,8 @@ class _StepCheck:
     def cause(self, violation: StepError, step: float) -> str:
         """Return message, frequency, moving part and responsible parameter of a violation at a step [s].
 
-        The parameter is the one of the most strained that, softened to `LEFT`, reduces the violation most: its effect
-        decides, not its share in the motion.
+        Of the most strained parameters, it is the parameter that, softened to `LEFT`, reduces the violation most: the
+        effect of a parameter decides, not its share in the motion.
         """
         return (
             f"{violation.message} ({abs(violation.pole) / (2.0 * np.pi):.0f} Hz: "
@@ -207,7 +208,7 @@ class _StepCheck:
         constraints = element.constraints[element.constraints >= 0].tolist()
         try:
             worst = _StepCheck(self.car, replace(self.matrices, system=softer), constraints).worst(step)
-        except ConfigurationError:  # without this element the car does not stand
+        except ConfigurationError:  # without this element the car has no equilibrium
             return np.inf
         return 0.0 if worst is None else worst.severity
 
@@ -298,7 +299,7 @@ class _StepCheck:
         weight = -1.0 / (faded[:, None] + faded.conj())
         exact_norm = _norm(exact, weight)
         stepped_norm = _norm(stepped, step / (1.0 - shrunk[:, None] * shrunk.conj()))
-        # What friction does not move, by symmetry or for lack of dampers, is round-off, which has no relative error.
+        # A row that friction does not move, by symmetry or for lack of dampers, is round-off without a relative error.
         moved = exact_norm > ROUND_OFF * np.max(exact_norm, initial=0.0)
         error = np.divide(stepped_norm, exact_norm, out=np.ones_like(exact_norm), where=moved) - 1.0
         worst = int(np.argmax(np.abs(error)))

@@ -36,7 +36,7 @@ def moving_part(matrices: CarMatrices, shape: Complex) -> str:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Strained:
-    """Elements of one parameter that a motion strains.
+    """Elements with a common parameter, strained by a motion.
 
     Attributes:
         path: path of the parameter.
@@ -56,7 +56,7 @@ class Strained:
     branches: npt.NDArray[np.int64]
 
     def __add__(self, other: Strained) -> Strained:
-        """Return the elements of both, of one parameter."""
+        """Return the union of two groups of elements with the same parameter."""
         names = ("rows", "stiffness", "damping", "constraints", "branches")
         joined = {name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in names}
         return Strained(path=self.path, work=max(self.work, other.work), **joined)
@@ -77,7 +77,7 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
     e, b, dampers = rows.layout, rows.layout.bushings, rows.layout.dampers
     jacobian = data.efc_J.reshape(e.row_count, car.model.nv)
     speed, unit = abs(pole), np.eye(car.model.nv)
-    found: dict[str, Strained] = {}
+    elements: dict[str, Strained] = {}
 
     def add(
         path: str,
@@ -98,7 +98,7 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
             constraints=constraint * each.astype(np.int64),
             branches=branch * each.astype(np.int64),
         )
-        found[path] = found[path] + element if path in found else element
+        elements[path] = elements[path] + element if path in elements else element
 
     branches = np.where(b.branch_stiffness.ravel() > 0.0, np.cumsum(b.branch_stiffness.ravel() > 0.0) - 1, -1)
     friction = np.zeros_like(b.stiffness)
@@ -140,7 +140,7 @@ def strained_elements(car: CarModel, pole: complex, shape: Complex) -> list[Stra
     for joint_spring in composition.joint_springs:
         dof = int(car.model.joint(joint_spring.joint).dofadr[0])
         add(f"{joint_spring.path}.{joint_spring.parameter}", unit[dof], float(inside[dof]), 0.0)
-    return sorted(found.values(), key=lambda element: -element.work)
+    return sorted(elements.values(), key=lambda element: -element.work)
 
 
 def parameter_text(car: CarModel, path: str) -> str:

@@ -112,8 +112,8 @@ def states(model: PoleModel, spectra: Complex, interval: float, samples: int) ->
     wheels, lines = len(model.matrices.system.inputs), spectra.shape[1]
     s = 2j * np.pi * np.arange(lines) / (samples * interval)
     within = (s.imag > 0.0) & (s.imag <= 2.0 * np.pi * BAND)
-    heights, others = spectra[:wheels] * within, spectra[wheels:] * within
-    inputs, effects = np.vstack([heights, s * heights, others]), input_effects(model)
+    plate_displacement, others = spectra[:wheels] * within, spectra[wheels:] * within
+    inputs, effects = np.vstack([plate_displacement, s * plate_displacement, others]), input_effects(model)
     xi, poles = np.zeros((len(model.poles), samples), dtype=complex), model.poles[:, None]
     at = np.flatnonzero(within)
     xi[:, at] = (effects @ inputs[:, at]) / (s[at] - poles)
@@ -155,16 +155,16 @@ def plate_inputs(
         tyre_load: static tyre loads by wheel [N].
     """
     wheels = model.matrices.system.inputs
-    heights, slopes = np.zeros((2, len(wheels), time.size))
+    plate_displacement, slopes = np.zeros((2, len(wheels), time.size))
     motion = signal.plate_motion(time, [wheel for wheel in wheels if wheel in signal.wheels])
     for row, wheel in enumerate(wheels):
         if wheel in signal.wheels:
-            heights[row], rate = motion.displacement[wheel], motion.velocity[wheel]
+            plate_displacement[row], rate = motion.displacement[wheel], motion.velocity[wheel]
             if model.slope.size:
                 slope = signal.slope_spline(wheel, 0.0, signal.duration)(time) if signal.slope_velocity else rate
                 share = np.maximum(channels[f"tyre_{wheel}_force_z"], 0.0) / tyre_load[wheel]
                 slopes[row] = share * slope - rate
-    return heights, slopes[: model.slope.shape[1]]
+    return plate_displacement, slopes[: model.slope.shape[1]]
 
 
 def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mapping[str, Vector]) -> Vector:

@@ -87,15 +87,15 @@ def quadratic_forms(car: CarModel, model: PoleModel) -> QuadraticForms:
     def at(vectors: Vector) -> Vector:
         return equations.at(tuple(np.split(vectors, bounds[1:-1])))
 
-    rest, ahead, back = at(0.0 * patterns[:, :1]), at(patterns), at(-patterns)
-    odd, even = 0.5 * (ahead - back), 0.5 * (ahead + back) - rest
-    forms = np.zeros((patterns.shape[1], patterns.shape[1], len(rest)), dtype=np.float32)
+    at_rest, ahead, back = at(0.0 * patterns[:, :1]), at(patterns), at(-patterns)
+    odd, even = 0.5 * (ahead - back), 0.5 * (ahead + back) - at_rest
+    forms = np.zeros((patterns.shape[1], patterns.shape[1], len(at_rest)), dtype=np.float32)
     for k in range(patterns.shape[1]):
         forms[k, k], others = even[:, k] / size[k] ** 2, slice(k + 1, None)
         if k + 1 == patterns.shape[1]:
             break
         pairs = at(patterns[:, others] + patterns[:, [k]])
-        mixed = 0.5 * (pairs - rest - odd[:, others] - odd[:, [k]] - even[:, others] - even[:, [k]])
+        mixed = 0.5 * (pairs - at_rest - odd[:, others] - odd[:, [k]] - even[:, others] - even[:, [k]])
         forms[k, others] = (mixed / (size[k] * size[others])).T
         forms[others, k] = forms[k, others]
     points = tuple(f"{point}_acc_{axis}" for point in places_of(car.model) for axis in "xyz")

@@ -1,4 +1,4 @@
-"""What the linear geometry of the reduced engine leaves out of a run: the second order of the equations of motion.
+"""Errors of a run by the linear geometry of the reduced engine: the second order of the equations of motion.
 
 With the linear motion u1 of a finished run, the next term of the equations of motion is the linear car under forces
 that are products of two motions (`quadratic_forms`):
@@ -6,7 +6,7 @@ that are products of two motions (`quadratic_forms`):
     M u2'' + C u2' + K u2 + H' f_b2 - Jc' l2 = -R_2(u1),    Jc u2 = -g_2(u1),
     f_b2' = K2 (e u2' + g u2 + r_2(u1)) - f_b2/tau,    y_2 = L u2 + y_2(u1).
 
-The dampers respond as viscous ones with the same energy. The error of a channel is that of its RMS without the second
+The dampers respond like viscous dampers of equal energy. The error of a channel is that of its RMS without the second
 order, RMS(y_1)/RMS(y_1 + y_2) - 1: the products need not be independent of y_1, so it has either sign. Source: regular
 perturbation, Nayfeh and Mook, Nonlinear Oscillations, 1979, chapter 2. Against MuJoCo: `docs/theory/reduced-engine.md`.
 """
@@ -163,8 +163,8 @@ def rms_errors_of(
     )
 
     def inputs(part: slice) -> Vector:
-        here = {name: values[part] for name, values in record.items()}
-        return run_inputs(model, plate_inputs(model, signal, time[part], here, tyre_load), here)
+        block = {name: values[part] for name, values in record.items()}
+        return run_inputs(model, plate_inputs(model, signal, time[part], block, tyre_load), block)
 
     channels = {name: record[name] for name in names}
     return rms_errors(SecondOrder(model, forms, damping), inputs, channels, time)
@@ -207,7 +207,7 @@ def rms_errors(
 
 
 def error_sentence(errors: Mapping[str, float]) -> tuple[str, ...]:
-    """Return a sentence on the channels whose RMS is off by more than `NAMED_ERROR`; none without such channels.
+    """Return a warning about the channels whose RMS is off by more than `NAMED_ERROR`; empty if all are closer.
 
     Args:
         errors: relative error of the RMS by channel.

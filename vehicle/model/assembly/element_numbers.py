@@ -1,8 +1,7 @@
 """Numbers of the elements of a car in its model, by name: laws, springs on joints, masses.
 
 The model keeps those of laws in custom fields of these names, and `vehicle.engines.simulation.row_layout` reads them.
-A car that differs from another one in such numbers alone needs no model of its own: see
-`vehicle.engines.linear.variant_matrices`.
+Cars that differ only in these numbers share a model: see `vehicle.engines.linear.variant_matrices`.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
         digest: SHA-256 of the file that may run, in hexadecimal digits.
 
     Raises:
-        ConfigurationError: the file is missing, or its digest is missing or another one.
+        ConfigurationError: the file is missing, or its digest is missing or different.
         DataError: the file is too large, no FMU for co-simulation, its variables have other names, or it has no
             library for this platform.
         MissingPartError: FMPy is not installed.
@@ -111,16 +111,16 @@ def read_controller(path: Path, digest: str | None) -> ControllerFile:
     if path.stat().st_size > LARGEST:
         raise DataError(f"controller {path}: {path.stat().st_size / 1e6:.4g} MB, must be at most {LARGEST / 1e6:g} MB")
     content = path.read_bytes()
-    found = hashlib.sha256(content).hexdigest()
+    actual_digest = hashlib.sha256(content).hexdigest()
     if digest is None:
         raise ConfigurationError(
             f"controller {path}: an FMU is native code, which runs with all your rights; if you trust its source, add "
-            f'fmu_sha256 = "{found}" to its table control, or give --trust to shaker'
+            f'fmu_sha256 = "{actual_digest}" to its table control, or give --trust to shaker'
         )
-    if digest.lower() != found:
+    if digest.lower() != actual_digest:
         raise ConfigurationError(
-            f"controller {path}: its SHA-256 is {found}, in the vehicle file fmu_sha256 is {digest}: the file has "
-            "changed; if you trust the new one, set its digest"
+            f"controller {path}: its SHA-256 is {actual_digest}, in the vehicle file fmu_sha256 is {digest}: the file "
+            "has changed; if you trust the new one, set its digest"
         )
     try:
         require_archive("its archive", io.BytesIO(content), limit=LARGEST)

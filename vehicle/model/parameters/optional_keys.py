@@ -75,7 +75,7 @@ def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
         yield "curve"
     for entry in dataclasses.fields(parameters):
         needed = entry.default is dataclasses.MISSING and entry.default_factory is dataclasses.MISSING
-        inner = next((kind for kind in TABLES if kind in typing.get_args(hints[entry.name])), None)
+        inner = next((table_type for table_type in TABLES if table_type in typing.get_args(hints[entry.name])), None)
         if inner is not None:
             yield entry.name
             keys = _keys(inner, everything=everything or inner is ForceTable)

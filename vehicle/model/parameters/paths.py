@@ -79,7 +79,7 @@ def paths(table: Mapping[str, Any], prefix: str = "") -> list[str]:
 def nearest(path: str, known: Iterable[str]) -> str:
     """Return the path that starts with the given path, otherwise the path with the most similar spelling."""
     # A short path is compared with the ends of all paths; of equal ends the first path counts.
-    ends = {".".join(one.split(".")[-(path.count(".") + 1) :]): one for one in reversed(list(known))}
+    ends = {".".join(candidate.split(".")[-(path.count(".") + 1) :]): candidate for candidate in reversed(list(known))}
     begun = min((end for end in ends if end.startswith(path)), key=len, default=None)
     if begun is not None:
         return ends[begun]

@@ -92,7 +92,7 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
     has_law = not e.ideal or i.has("bushings", e.name)
     law = i.get(_law_kind(i, e), side, "bushings", e.name) if has_law else None
     rolling = _rolling(i, side) if e.carrier == "plate" else None
-    own = i.numbers.get(LEFT, {}).get("bushings", {}).get(e.name, {})
+    left_values = i.numbers.get(LEFT, {}).get("bushings", {}).get(e.name, {})
     return PlacedConnection(
         name=i.label(e.name, side),
         moving=i.part(e.moving, side),
@@ -108,7 +108,7 @@ def _connection(i: Instance, e: topology.Connection, side: str | None) -> Placed
         tables=i.table_paths(side, "bushings", e.name) if has_law else (),
         lowest_stiffness=e.least,
         reason=e.why,
-        mirrored=side == LEFT and "table_y" not in own,
+        mirrored=side == LEFT and "table_y" not in left_values,
     )
 
 

@@ -233,11 +233,11 @@ class Page:
     def _changed(self, car: Car) -> str:
         """Return what differs from the car of the start, in words."""
         changes = [text.partition("=") for text in car.overrides[len(self.state.car.overrides) :]]
-        words = []
+        texts = []
         for path, _, value in changes:
             unit, scale = _unit(self.state.setting(path))
-            words.append(f"{parameter_words(path)} {number(float(value) / scale, 5)} {unit}".rstrip())
-        return ", ".join(words) or "unchanged"
+            texts.append(f"{parameter_words(path)} {number(float(value) / scale, 5)} {unit}".rstrip())
+        return ", ".join(texts) or "unchanged"
 
     def _add_plots(self) -> list[tuple[Any, Callable[..., Any]]]:
         """Add the plots; return each with the function of its curves."""

@@ -88,9 +88,6 @@ class Car:
             path: TOML file, or the name of a shipped car; that of Bommer 2006 by default.
             overrides: path to value, as {"damper.coulomb_friction": 93.75}; or texts "damper.coulomb_friction=93.75".
 
-        Returns:
-            The car.
-
         Raises:
             ConfigurationError: the file, a name or a value is wrong.
         """
@@ -390,9 +387,8 @@ class Car:
             car = self.with_(drive.overrides) if drive.overrides else self
             run = car.run(replace(signal, source=drive.name), progress, engine=engine, channels=channels)
             return replace(run, skip=start, road=drive.summary(signal))
-        signal = (
-            source if isinstance(source, Signal) else read_signal(find_input(source), wheel=self.vehicle.shaker_wheel)
-        )
+        wheel = self.vehicle.shaker_wheel
+        signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)
         start = evaluation_start({signal.source: signal.duration}, skip, 0.0)
         car, recording, reason = simulated_run(self, signal, progress, engine, channels)
         return Run(car=car, signal=signal, recording=recording, engine_reason=reason, skip=start)

@@ -72,11 +72,11 @@ def simulated_run(
             return car, recording, reason
         reason = "; ".join(recording.statistics.warnings)
     stepped = car.stepped()
-    given, taken = car.vehicle.solver.timestep, stepped.vehicle.solver.step
+    wanted_step, used_step = car.vehicle.solver.timestep, stepped.vehicle.solver.step
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
     require_finite(recording)
-    if given is not None and taken < given:
-        said = f"time step {taken:g} s: that of the vehicle file, {given:g} s, is too long for this car"
+    if wanted_step is not None and used_step < wanted_step:
+        said = f"time step {used_step:g} s: that of the vehicle file, {wanted_step:g} s, is too long for this car"
         statistics = recording.statistics
         recording = replace(recording, statistics=replace(statistics, notices=(*statistics.notices, said)))
     if channels is not None:

@@ -64,7 +64,7 @@ class UsualFigure:
         return f"{self.low:.4g} to {self.high:.4g}" if math.isfinite(self.low) else "-"
 
     def __str__(self) -> str:
-        """Return a sentence about the value and its range."""
+        """Return a text about the value and its range."""
         axle = f"{self.axle}: " if self.axle else ""
         return f"{axle}{self.name} {self.value:z.{self.decimals}f}, usual are {self.range_text} ({self.source})"
 

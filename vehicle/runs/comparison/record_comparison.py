@@ -118,7 +118,7 @@ def _compared(
 
 
 def unlike_copies(records: Sequence[RecordComparison]) -> list[str]:
-    """Return a sentence for each pair of equal measured channels whose simulated channels differ.
+    """Return a notice for each pair of equal measured channels whose simulated channels differ.
 
     Args:
         records: see `compare_records`.

@@ -38,7 +38,7 @@ def seat_values(run: Run) -> SeatSummary | None:
 
 
 def comfort_notices(run: Run) -> list[str]:
-    """Return a sentence for each axis of the seat rail with a nonstationary level, and one for a missing seat."""
+    """Return a notice for each axis of the seat rail with a nonstationary level, and for a missing seat."""
     bare = [NO_SEAT] if _recorded(run, SEAT) and not run.car.vehicle.seated else []
     # An obstacle is a single event.
     if not _recorded(run, RAIL) or "obstacle" in (run.road or {}):

@@ -1,11 +1,11 @@
-"""Hidden folder beside the results, in which a command makes new ones; they take their names when all are complete.
+"""Hidden folder next to the results, where a command writes new results, named finally when all are complete.
 
 A file in this folder is the journal: it is named UNFINISHED, and renamed to COMPLETE when all results are on the disk.
-The next command that reads or writes there brings what a killed command left to an end, with `put_in_order`:
+The next command that reads or writes there finishes or removes the results of a killed command, with `put_in_order`:
 
 - unfinished: the new results are removed, or kept for --resume;
 - complete, in the hidden folder: the new results are put in place;
-- complete, in the folder of the results: they are in place, and those of before are removed.
+- complete, in the folder of the results: they are in place, and the old results are removed.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def old_of(goal: Path) -> Path:
 
 
 def unfinished(goal: Path) -> str:
-    """Return the file of finished rows of a killed command that --resume continues; empty if there is none."""
+    """Return the file of finished rows of a killed command that --resume continues, or an empty text."""
     rows = _journal(work_of(goal), UNFINISHED)[1]
     return rows if rows and (work_of(goal) / rows).is_file() else ""
 
@@ -101,17 +101,17 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
         work = _begin(goal, FILES)
         with being_made(work), claimed(work):
             yield (new := [work / path.relative_to(goal.parent) for path in goals])
-        for path, made in zip(goals, new, strict=True):
-            if made.exists():
+        for path, hidden in zip(goals, new, strict=True):
+            if hidden.exists():
                 refuse_foreign_file(path)
-                note(path, digest_of(made))
+                note(path, digest_of(hidden))
         _complete(work)
         _put_in_place(goal)
 
 
 @contextmanager
-def _failures_undone(goal: Path, kind: str) -> Iterator[None]:
-    """Undo after an error, and convert an OSError to an OutputError that says what is there."""
+def _failures_undone(goal: Path, result_type: str) -> Iterator[None]:
+    """Undo after an error, and convert an OSError to an OutputError that describes the results that exist."""
     work = work_of(goal)
     try:
         yield
@@ -125,12 +125,12 @@ def _failures_undone(goal: Path, kind: str) -> Iterator[None]:
         if in_place:
             return
         name = Path(os.fsdecode(error.filename or b"")).name if not isinstance(error.filename, int) else ""
-        where = goal if not name or name[0] == "." else goal / name if kind == FOLDER else goal.with_name(name)
+        where = goal if not name or name[0] == "." else goal / name if result_type == FOLDER else goal.with_name(name)
         raise OutputError(f"{where}: cannot be written: {error.strerror or error}; {_outcome(goal)}") from None
 
 
 def put_in_order(path: Path) -> None:
-    """Bring to an end what a killed command left at a folder or a file, and print a sentence about it.
+    """Finish or remove the results of a killed command at a folder or a file, and print a notice.
 
     Args:
         path: folder or file that a command reads or writes.
@@ -208,7 +208,7 @@ def _put_in_order(goal: Path, remains: Sequence[str]) -> list[str]:
     return said
 
 
-def _begin(goal: Path, kind: str, rows: Sequence[str] = (), *, resume: bool = False) -> Path:
+def _begin(goal: Path, result_type: str, rows: Sequence[str] = (), *, resume: bool = False) -> Path:
     """Make the hidden folder; with `resume`, with the rows of a killed command or of the goal."""
     work = work_of(goal)
     if resume and unfinished(goal):
@@ -224,7 +224,7 @@ def _begin(goal: Path, kind: str, rows: Sequence[str] = (), *, resume: bool = Fa
         _remove(work)
     work.mkdir(parents=True)
     journal = work / f"{UNFINISHED}-new"
-    journal.write_text(f"{kind}\n{rows[0] if rows else ''}\n", encoding="utf-8")
+    journal.write_text(f"{result_type}\n{rows[0] if rows else ''}\n", encoding="utf-8")
     journal.rename(work / UNFINISHED)
     mark(work)
     for name in rows if resume else ():
@@ -235,12 +235,12 @@ def _begin(goal: Path, kind: str, rows: Sequence[str] = (), *, resume: bool = Fa
 
 
 def _journal(work: Path, state: str) -> tuple[str, str]:
-    """Return the lines of a journal in this state, empty if there is none."""
+    """Return the lines of a journal in this state; empty without a journal."""
     try:
-        kind, rows = (work / state).read_text(encoding="utf-8").splitlines()
+        result_type, rows = (work / state).read_text(encoding="utf-8").splitlines()
     except (FileNotFoundError, NotADirectoryError):
         return "", ""
-    return kind, rows
+    return result_type, rows
 
 
 def _is_own_work(work: Path) -> bool:
@@ -273,8 +273,8 @@ def _complete(work: Path) -> None:
 def _put_in_place(goal: Path) -> None:
     """Give complete results their names; the parts of this that have been done are not repeated."""
     work, old = work_of(goal), old_of(goal)
-    kind, _ = _journal(work, COMPLETE)
-    if kind == FILES:
+    result_type, _ = _journal(work, COMPLETE)
+    if result_type == FILES:
         for path in sorted(work.rglob("*")):
             if path.is_file() and path.parent / path.name not in (work / MARKER, work / COMPLETE):
                 final = goal.parent / path.relative_to(work)
@@ -288,7 +288,7 @@ def _put_in_place(goal: Path) -> None:
         except OSError:
             say(f"{goal}: is complete; the empty folder {work.name} is left, which the next command there removes")
         return
-    if kind:
+    if result_type:
         if not goal.exists():
             work.rename(goal)
         elif not exchange(work, goal):
@@ -306,7 +306,7 @@ def _put_in_place(goal: Path) -> None:
 
 
 def _retire(replaced: Path, goal: Path) -> None:
-    """Remove the results that new ones have replaced; move files of the user among them to the new ones."""
+    """Remove replaced results; move files of the user among them to the new results."""
     for name in foreign(replaced):
         if not os.path.lexists(goal / name):
             (goal / name).parent.mkdir(parents=True, exist_ok=True)
@@ -343,8 +343,8 @@ def _outcome(goal: Path) -> str:
         return "the next command there puts the results of before back"
     there = "the results of before are unchanged" if goal.exists() else "nothing is left behind"
     if work.exists():
-        rest = "the finished rows" if unfinished(goal) else "an unfinished folder, which the next command removes"
-        return f"{there.replace('nothing is left behind', 'no results are there')}; left is {rest}"
+        remainder = "the finished rows" if unfinished(goal) else "an unfinished folder, which the next command removes"
+        return f"{there.replace('nothing is left behind', 'no results are there')}; left is {remainder}"
     return there
 
 

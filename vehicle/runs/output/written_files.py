@@ -228,9 +228,9 @@ def refuse_foreign_file(path: Path, option: str = "--output") -> None:
 def discard(folder: Path) -> None:
     """Remove the files of the program, and folders that become empty."""
     listed, files = written(folder), _files(folder)
-    own = {name for name in files if name in listed and _unchanged(folder / name, listed[name])}
-    own |= {name for name in files - own if _is_left_over(folder, name)}
-    for name in sorted(own, key=lambda name: (name.startswith(".vehicle-"), name)):  # the list is the last
+    removable = {name for name in files if name in listed and _unchanged(folder / name, listed[name])}
+    removable |= {name for name in files - removable if _is_left_over(folder, name)}
+    for name in sorted(removable, key=lambda name: (name.startswith(".vehicle-"), name)):  # the list is the last
         (folder / name).unlink(missing_ok=True)
     inner = [path for path in folder.rglob("*") if path.is_dir() and not path.is_symlink()]
     for emptied in [*sorted(inner, key=lambda path: -len(path.parts)), folder]:

@@ -111,12 +111,12 @@ def _input_words(run: FinishedRun) -> str:
 
 
 def _is_within(band: MainBand) -> str:
-    """Return direction and frequencies of a band as the end of a sentence."""
+    """Return direction and frequencies of a band as text."""
     return f"is {DIRECTIONS[band.axis]} between {number(band.low, 2)} and {number(band.high, 2)} Hz"
 
 
 def _damper_words(run: FinishedRun) -> str:
-    """Return the end of a sentence on the dampers; empty without dampers."""
+    """Return the text on the slip of the dampers; empty without dampers."""
     shares = slip_shares(run.summary)
     if not shares:
         return ""
@@ -128,7 +128,7 @@ def _damper_words(run: FinishedRun) -> str:
 
 
 def _path_words(run: FinishedRun, band: MainBand, mode: Mode) -> list[str]:
-    """Return what carries a mode into the body as a part of a sentence; empty if no path carries most of it."""
+    """Return the main path of a mode into the body as text; empty if no path carries most of it."""
     path = main_path(paths(run, band.axis, mode))
     return [f"carried into the body by {path}"] if path else []
 
@@ -193,7 +193,7 @@ def _what_changed(first: FinishedRun, run: FinishedRun) -> str:
 
 
 def _without_followers(first: FinishedRun, run: FinishedRun, changed: Sequence[Changed]) -> list[Changed]:
-    """Return the changed parameters that one of the runs sets; all if they set none, or have other vehicle files.
+    """Return the changed parameters set in either run; all if they set none, or have other vehicle files.
 
     Others follow them, as the inertia of the body follows its mass.
     """

@@ -120,7 +120,7 @@ def paths(run: FinishedRun, axis: str, mode: Mode) -> dict[str, float]:
 
 
 def main_path(shares: Mapping[str, float]) -> str:
-    """Return the path that carries most of a mode in words, with its share; empty if none does.
+    """Return the path that carries most of a mode in words, with its share; empty without a main path.
 
     Both sides of an axle are named together if each of them carries `OTHER_SIDE` of their sum. None is named if it
     carries less than `MAIN` of the sum, or if the others oppose it by more: large paths that cancel explain nothing.

@@ -15,7 +15,7 @@ LEAST = 0.1
 
 
 def body_modes(run: FinishedRun, state: str) -> list[str]:
-    """Return a sentence for each of the highest resonances at the seat rail; empty for a rigid body.
+    """Return a text for each of the highest resonances at the seat rail; empty for a rigid body.
 
     Args:
         run: the run, with FRFs to one plate.

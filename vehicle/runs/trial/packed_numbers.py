@@ -2,7 +2,7 @@
 
 The file of a car consists of words of 8 bytes. A run of words is stored with its most significant bytes alone, rounded:
 4 bytes of a double have a relative error of at most 2^-21, 3 bytes of 2^-13, 2 bytes of 2^-5. The bytes of equal
-significance stand together, so that signs and exponents compress.
+significance are stored together, so that signs and exponents compress.
 """
 
 from __future__ import annotations

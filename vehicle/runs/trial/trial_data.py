@@ -1,8 +1,8 @@
 """Numbers of a car and its plates for the script of a page, which runs the car with the module of the FMU runtime.
 
 The module is the C runtime of `vehicle.runs.fmu` as WebAssembly, the numbers of the car are those of its FMU. Friction
-limits, Stribeck parameters and level are exact; a factor on the damper curve acts as a force beside the fixed poles.
-Stiffnesses and speeds are sets of poles of their own.
+limits, Stribeck parameters and level are exact; a factor on the damper curve acts as a force in addition to the fixed
+poles. Each stiffness and each speed has a separate set of poles.
 """
 
 from __future__ import annotations

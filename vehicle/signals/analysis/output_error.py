@@ -196,9 +196,9 @@ class _Windows:
         inside = np.abs(offset) <= 1.0
         self.size = 2 * halves + 1
         self.offset = np.where(inside, offset, 0.0)
-        one, x = inside[:, None].astype(np.float64), self.offset[:, None]
-        self.tail = _transposed(np.concatenate([inputs, one], axis=1))
-        self.basis, triangle = np.linalg.qr(_transposed(np.concatenate([inputs, inputs * x, one], axis=1)))
+        constant, x = inside[:, None].astype(np.float64), self.offset[:, None]
+        self.tail = _transposed(np.concatenate([inputs, constant], axis=1))
+        self.basis, triangle = np.linalg.qr(_transposed(np.concatenate([inputs, inputs * x, constant], axis=1)))
         self.inverse = np.linalg.inv(triangle)
         self.weights = self.inverse[:, :input_count]
         self.covariance = self.weights @ _adjoint(self.weights)

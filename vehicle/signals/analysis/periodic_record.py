@@ -114,14 +114,14 @@ def whole_record_responses(
     inputs, outputs = checked_signals("excitations", excitations), checked_rows("responses", responses)
     evaluated, notice = inputs.shape[1], ""
     if len(inputs) == 1 and all(row.size == inputs.shape[1] for row in outputs):
-        given = (rounding or (0.0,))[0]
+        first_rounding = (rounding or (0.0,))[0]
         periodic = _periodic_response(
             checked_time_step(time_step),
             inputs[0],
             outputs,
             band,
             checked_names("response", names, len(outputs)),
-            given,
+            first_rounding,
         )
         if isinstance(periodic, FrequencyResponse):
             return (periodic,)

@@ -116,8 +116,8 @@ def right_sides(
         p + 1 arrays, shape (G, s, k).
     """
     none = np.swapaxes(smooth.conj(), 1, 2) @ residual.swapaxes(0, 1)  # (s, p + 1, k)
-    middle, most = len(residual) // 2, int(halves[-1])
-    lines = slice(middle - most, middle + most + 1)
+    middle, widest = len(residual) // 2, int(halves[-1])
+    lines = slice(middle - widest, middle + widest + 1)
     right = []
     for i in range(none.shape[1]):
         columns = residual[lines].copy()

@@ -148,13 +148,13 @@ def _at_next_values(below: Vector, margin: float) -> int:
     """
     count = 0
     for _ in range(NEXT_VALUES):
-        rest = below[below > margin]
-        if not rest.size:
+        beyond = below[below > margin]
+        if not beyond.size:
             break
-        nearest = float(np.min(rest))
-        here = (rest >= nearest) & (rest <= nearest + margin)
-        count += int(np.count_nonzero(here))
-        below = rest[~here]
+        nearest = float(np.min(beyond))
+        at_value = (beyond >= nearest) & (beyond <= nearest + margin)
+        count += int(np.count_nonzero(at_value))
+        below = beyond[~at_value]
     return count
 
 

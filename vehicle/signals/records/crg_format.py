@@ -249,10 +249,10 @@ def _table(path: Path, data: bytes, number_format: str, columns: int, rows: int 
     for start in range(0, len(lines), per_row):
         row = "".join(line.ljust(LINE)[: per_line * width] for line in lines[start : start + per_row])
         cells.append([row[n * width : (n + 1) * width].strip() for n in range(columns)])
-        found = sum(map(bool, cells[-1])) + bool(row[columns * width :].strip())
-        if found != columns:
+        cell_count = sum(map(bool, cells[-1])) + bool(row[columns * width :].strip())
+        if cell_count != columns:
             raise DataError(
-                f"{path}: row {len(cells)} of the numbers has {'more' if found > columns else 'fewer'} than the "
+                f"{path}: row {len(cells)} of the numbers has {'more' if cell_count > columns else 'fewer'} than the "
                 f"{columns} numbers of its header; the file is damaged; export it again"
             )
     try:

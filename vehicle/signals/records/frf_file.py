@@ -1,4 +1,4 @@
-"""Write FRFs as the table `frf.csv`, and read such tables; errors name line and column."""
+"""Write FRFs as the table `frf.csv`, and read it; errors name line and column."""
 
 from __future__ import annotations
 

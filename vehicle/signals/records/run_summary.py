@@ -226,7 +226,7 @@ def _fault(value: object, expected: Any, path: str) -> str:
         return next((f for key in hints if key in value and (f := _fault(value[key], hints[key], f"{path}{key}."))), "")
     kinds = get_args(expected)
     if isinstance(expected, UnionType):
-        faults = [_fault(value, kind, path) for kind in kinds]
+        faults = [_fault(value, expected_type, path) for expected_type in kinds]
         return "" if "" in faults else faults[0]
     if get_origin(expected) in (dict, list):
         if not isinstance(value, get_origin(expected)):

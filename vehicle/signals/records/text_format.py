@@ -217,17 +217,17 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
             if abs(number) <= LARGEST:
                 values[index, column] = number
                 continue
-            place = f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r}"
+            where = f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r}"
             if np.isfinite(number) and wanted.missing != "mark":
-                raise DataError(f"{place} holds {cell!r}; allowed are numbers up to {LARGEST:g}; repair the cell")
+                raise DataError(f"{where} holds {cell!r}; allowed are numbers up to {LARGEST:g}; repair the cell")
             if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or not np.isnan(number)):
-                raise DataError(f"{place} holds {cell!r}; allowed is a number with a decimal point, such as -1.25e-4")
+                raise DataError(f"{where} holds {cell!r}; allowed is a number with a decimal point, such as -1.25e-4")
             if column == key:
                 stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"
-                raise DataError(f"{place} holds {cell!r}; a {stamp} is never interpolated; repair or remove the row")
+                raise DataError(f"{where} holds {cell!r}; a {stamp} is never interpolated; repair or remove the row")
             if wanted.missing == "empty":
                 if cell:
-                    raise DataError(f"{place} holds {cell!r}; allowed are finite numbers, or an empty cell where the "
+                    raise DataError(f"{where} holds {cell!r}; allowed are finite numbers, or an empty cell where the "
                                     "value is undefined")  # fmt: skip
                 continue
             if wanted.missing == "mark":
@@ -235,9 +235,9 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
                     values[index, column] = -np.inf if cell.startswith("-") else np.inf
                 continue
             if not cell and index > 0 and _ends_here(rows[index:], column, header):
-                raise _different_length(place)
+                raise _different_length(where)
             if wanted.missing == "refuse":
-                raise DataError(f"{place} holds {cell!r}; allowed are finite numbers; {wanted.remedy}")
+                raise DataError(f"{where} holds {cell!r}; allowed are finite numbers; {wanted.remedy}")
     return values
 
 
@@ -248,24 +248,24 @@ def _ends_here(rows: list[str], column: int, header: Header) -> bool:
 
 def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header) -> DataError:
     width, cells = len(header.cells), _split(rows[index], header.delimiter)
-    place = f"{header.path}:{numbers[index]}:{min(len(cells), width) + (len(cells) > width)}"
+    where = f"{header.path}:{numbers[index]}:{min(len(cells), width) + (len(cells) > width)}"
     if len(cells) < width and index > 0 and _ends_here(rows[index:], width - 1, header):
         if index < len(rows) - 1:
             return _different_length(f"{header.path}:{numbers[index]}:{width}: column {header.cells[-1]!r}")
         return DataError(
-            f"{place}: the last row has {len(cells)} cells, the header {width}; the file is truncated; remove the row"
+            f"{where}: the last row has {len(cells)} cells, the header {width}; the file is truncated; remove the row"
         )
     hint = "one cell per column"
     if len(cells) < width and any(sign in rows[index] for sign in (";", "\t")):
         hint = f"separate the cells by {header.delimiter!r} as in the header"
     elif len(cells) > width and header.delimiter == ",":
         hint = "with decimal commas the columns must be separated by ';', in the header too; 1,5 is ambiguous"
-    return DataError(f"{place}: row has {len(cells)} cells, the header {width}; {hint}")
+    return DataError(f"{where}: row has {len(cells)} cells, the header {width}; {hint}")
 
 
-def _different_length(place: str) -> DataError:
+def _different_length(where: str) -> DataError:
     return DataError(
-        f"{place} ends before the other columns: columns of different length, must be equal; export all columns over "
+        f"{where} ends before the other columns: columns of different length, must be equal; export all columns over "
         "the same time"
     )
 

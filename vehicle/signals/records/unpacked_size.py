@@ -20,13 +20,13 @@ MOST_ENTRIES = 10_000
 
 
 def require_unpacked(
-    place: object, size: float, packed: float, *, limit: float | None = None, freely: float | None = None,
+    label: object, size: float, packed: float, *, limit: float | None = None, freely: float | None = None,
     densest: float = DENSEST,
 ) -> None:  # fmt: skip
     """Refuse data that would fill the memory, or that are far denser than measurements.
 
     Args:
-        place: file, for the message.
+        label: file, for the message.
         size: size of the unpacked data, as their headers state it [byte].
         packed: size in the file [byte].
         limit: maximum size [byte]; `MEMORY_LIMIT` by default.
@@ -39,18 +39,18 @@ def require_unpacked(
     limit, freely = MEMORY_LIMIT if limit is None else limit, FREELY if freely is None else freely
     if size > limit:
         raise DataError(
-            f"{place}: its data need {size / 1024**3:.3g} GiB unpacked, must be at most {limit / 1024**3:.3g} GiB; cut "
+            f"{label}: its data need {size / 1024**3:.3g} GiB unpacked, must be at most {limit / 1024**3:.3g} GiB; cut "
             "the record into parts"
         )
     if size > freely and size > densest * packed:
         raise DataError(
-            f"{place}: {size / 1e6:.3g} MB are compressed to {packed / 1e6:.3g} MB, {size / max(packed, 1.0):.0f} to "
+            f"{label}: {size / 1e6:.3g} MB are compressed to {packed / 1e6:.3g} MB, {size / max(packed, 1.0):.0f} to "
             f"1, must be at most {densest:g} to 1: almost constant, unlike data of a sensor; record again"
         )
 
 
 def require_archive(
-    place: object,
+    label: object,
     file: BinaryIO,
     *,
     limit: float | None = None,
@@ -62,7 +62,7 @@ def require_archive(
     The sizes are those of its directory, beyond which Python's `zipfile` does not unpack.
 
     Args:
-        place: file, for messages.
+        label: file, for messages.
         file: the archive.
         limit, freely, densest: see `require_unpacked`.
 
@@ -73,11 +73,11 @@ def require_archive(
         with zipfile.ZipFile(file) as archive:
             entries = archive.infolist()
     except (zipfile.BadZipFile, OSError, NotImplementedError, ValueError) as error:
-        raise DataError(f"{place}: cannot be read as a ZIP archive ({error}); write it again") from None
+        raise DataError(f"{label}: cannot be read as a ZIP archive ({error}); write it again") from None
     if len(entries) > MOST_ENTRIES:
         raise DataError(
-            f"{place}: found {len(entries)} files in the archive, must be at most {MOST_ENTRIES}; write it again"
+            f"{label}: found {len(entries)} files in the archive, must be at most {MOST_ENTRIES}; write it again"
         )
     size, packed = sum(entry.file_size for entry in entries), file.seek(0, io.SEEK_END)
     file.seek(0)
-    require_unpacked(place, size, packed, limit=limit, freely=freely, densest=densest)
+    require_unpacked(label, size, packed, limit=limit, freely=freely, densest=densest)

@@ -246,8 +246,8 @@ def judged(tests: Sequence[DamperTest], law: DamperLaw, starts: Sequence[Vector]
     parameters = fit_law(tests, law, starts)
     errors = [np.full(test.time.size, np.nan) for test in tests]
     for masks in folds_of(tests):
-        rest = [test.settled & ~mask for test, mask in zip(tests, masks, strict=True)]
-        part = fit_law(tests, law, [parameters], rest, 12)
+        remaining = [test.settled & ~mask for test, mask in zip(tests, masks, strict=True)]
+        part = fit_law(tests, law, [parameters], remaining, 12)
         for test, mask, error in zip(tests, masks, errors, strict=True):
             if mask.any():
                 error[mask] = (force_and_slopes(law, part, test.motion)[0] - test.force)[mask] / test.scale
@@ -292,7 +292,7 @@ def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]
     front = [judged(few, first, [np.array([0.0, size])])]
     fits = {first: front[0]}
     while front:
-        least = min(fit.left_out_error for fit in fits.values())
+        lowest_error = min(fit.left_out_error for fit in fits.values())
         new = []
         for smaller in front:
             for law in smaller.law.larger():
@@ -300,7 +300,9 @@ def choose_law(tests: Sequence[DamperTest]) -> tuple[DamperFit, list[DamperFit]]
                     fits[law] = judged(few, law, starts_of(law, smaller, few))
                     new.append(fits[law])
         front = [
-            fit for fit in sorted(new, key=lambda fit: fit.left_out_error)[:BEAM] if fit.left_out_error < GAIN * least
+            fit
+            for fit in sorted(new, key=lambda fit: fit.left_out_error)[:BEAM]
+            if fit.left_out_error < GAIN * lowest_error
         ]
     compared = sorted(fits.values(), key=lambda fit: fit.left_out_error)
     top = compared[0]

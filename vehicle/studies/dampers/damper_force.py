@@ -200,11 +200,11 @@ def _rigid(law: DamperLaw, values: DamperValues, motion: Motion) -> tuple[Vector
     force = np.array(slopes)[segment] * v + np.array(offsets)[segment] + values.gas_stiffness * x + values.offset
     columns = [-np.ones((x.size, 1)), curve]
     if law.friction == "stribeck":
-        sliding, rest, critical = values.friction
+        sliding, at_rest, critical = values.friction
         ratio = (np.abs(v) / critical) ** EXPONENT
         weight, sign = np.exp(-ratio), np.clip(v / STEP, -1.0, 1.0)
-        force = force + sign * (sliding + (rest - sliding) * weight)
-        fall = (rest - sliding) * weight * EXPONENT * ratio / critical
+        force = force + sign * (sliding + (at_rest - sliding) * weight)
+        fall = (at_rest - sliding) * weight * EXPONENT * ratio / critical
         columns.append(np.column_stack([sign * (1.0 - weight), sign * weight, sign * fall]))
     for k, limit in zip(values.stiffness, values.limit, strict=True):
         path = _slider_force(x, float(k), float(limit))

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.records.channel import Measurement
 from vehicle.signals.records.choice import Choice, choose
@@ -103,10 +104,10 @@ class DamperTest:
     def caption(self) -> str:
         """Description of the test in a line."""
         stroke, speed = 1e3 * np.ptp(self.displacement), 1e3 * np.max(np.abs(self.velocity))
-        kind = "no sine"
+        waveform = "no sine"
         if self.sine:
-            kind = f"sine, {1.0 / self.cycle:.2g} Hz"
-        return f"{kind}, stroke {stroke:.3g} mm, up to {speed:.3g} mm/s, {self.time[-1] - self.time[0]:.3g} s"
+            waveform = f"sine, {number(1.0 / self.cycle, 2)} Hz"
+        return f"{waveform}, stroke {stroke:.3g} mm, up to {speed:.3g} mm/s, {self.time[-1] - self.time[0]:.3g} s"
 
 
 def read_test(path: Path, choice: Choice | None = None, *, compression: bool = False,
@@ -157,10 +158,10 @@ def _complete(measurement: Measurement, choice: Choice) -> Choice:
     for role in ROLES:
         if role in channels:
             continue
-        taken = {name for other, name in channels.items() if other != role}
-        numbered = [(str(i + 1), each) for i, each in enumerate(measurement.channels) if str(i + 1) not in taken]
-        named = [number for number, each in numbered if each.name.strip().lower() == role]
-        of_quantity = [number for number, each in numbered if each.quantity == role]
+        used = {name for other, name in channels.items() if other != role}
+        numbered = [(str(i + 1), each) for i, each in enumerate(measurement.channels) if str(i + 1) not in used]
+        named = [column for column, each in numbered if each.name.strip().lower() == role]
+        of_quantity = [column for column, each in numbered if each.quantity == role]
         matches = named if len(named) == 1 else of_quantity
         if len(matches) == 1:
             channels[role] = matches[0]
@@ -186,8 +187,8 @@ def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str
         errors = [np.std((measured - np.interp(samples - d, samples, derivative))[WINDOW:-WINDOW]) for d in delays]
         best = int(np.argmin(errors))
         late = f"; it is {1e3 * step * delays[best]:.3g} ms late" if errors[best] < 0.5 * errors[20] else ""
-        notices.append(f"the measured velocity differs by {100.0 * difference / size:.2g} % from the derivative of the "
-                       f"displacement, which is used{late}")  # fmt: skip
+        notices.append(f"the measured velocity differs by {number(100.0 * difference / size, 2)} % from the derivative "
+                       f"of the displacement, which is used{late}")  # fmt: skip
     weights = scipy.signal.savgol_coeffs(WINDOW, CUBIC, deriv=1, use="dot")
     omega = np.linspace(0.01, np.pi, 2000)
     gain = np.abs(np.exp(1j * np.outer(omega, np.arange(WINDOW) - WINDOW // 2)) @ weights) / omega
@@ -199,10 +200,10 @@ def _velocity(x: Vector, measured: Vector | None, step: float, notices: list[str
 
 def _reversals(x: Vector, velocity: Vector) -> npt.NDArray[np.intp]:
     """Return the samples at reversals with swings of at least a tenth of the stroke, and both ends."""
-    least = 0.1 * np.ptp(x)
+    smallest_swing = 0.1 * np.ptp(x)
     turns = [0]
     for at in np.flatnonzero(np.diff(np.sign(velocity)) != 0.0):
-        if abs(x[at] - x[turns[-1]]) >= least:
+        if abs(x[at] - x[turns[-1]]) >= smallest_swing:
             turns.append(int(at))
     return np.array([*turns, x.size - 1])
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vehicle.digits import number
 from vehicle.studies.dampers.damper_law import EXPONENT, SMOOTHING, values_of
 from vehicle.studies.dampers.fitted_damper import FittedDamper
 
@@ -22,7 +23,7 @@ SHOWN_LAWS = 5
 
 
 def caption_of(fitted: FittedDamper) -> str:
-    """Return the description of the tests in one sentence."""
+    """Return the conditions, the number and the names of the tests."""
     conditions = ", ".join(f"{name} {value:g}" for name, value in fitted.conditions.items())
     names = ", ".join(test.name for test in fitted.tests)
     return f"{f'{conditions}: ' if conditions else ''}{len(fitted.tests)} test{'s'[: len(fitted.tests) > 1]}: {names}"
@@ -33,12 +34,12 @@ def vehicle_lines(fitted: FittedDamper) -> str:
     fit, law = fitted.fit, fitted.fit.law
     values = values_of(law, fit.parameters)
     spread = dict(zip(law.parameters, fit.errors.tolist(), strict=True))
-    number = dict(zip(law.parameters, fit.values.tolist(), strict=True))
+    estimates = dict(zip(law.parameters, fit.values.tolist(), strict=True))
     lines = [f"# {law.title}, fitted to {caption_of(fitted)}", *_curve_lines(fitted, spread)]
-    lines.append(_line("gas_force", max(number["gas_force"], 0.0), "N", spread["gas_force"]))
-    if number["gas_force"] < 0.0:
-        lines[-1] += f"; the mean force of the tests has the other sign: {-number['gas_force']:.3g} N in extension"
-    friction, rest, critical = values.friction
+    lines.append(_line("gas_force", max(estimates["gas_force"], 0.0), "N", spread["gas_force"]))
+    if estimates["gas_force"] < 0.0:
+        lines[-1] += f"; the mean force of the tests has the other sign: {-estimates['gas_force']:.3g} N in extension"
+    friction, at_rest, critical = values.friction
     if law.elements:
         order = np.argsort(values.limit / values.stiffness)
         stiffness, limit = values.stiffness[order], values.limit[order]
@@ -56,20 +57,20 @@ def vehicle_lines(fitted: FittedDamper) -> str:
         lines.append(f'friction_law = "{law.friction or "coulomb"}"')
         lines.append(_line("coulomb_friction", friction, "N", spread.get("friction", 0.0)))
     if law.friction == "stribeck":
-        lines.append(_line("stribeck_friction", max(rest, friction), "N", spread["friction_at_rest"]))
+        lines.append(_line("stribeck_friction", max(at_rest, friction), "N", spread["friction_at_rest"]))
         lines.append(_line("stribeck_velocity", critical, "m/s", spread["stribeck_velocity"]))
         lines.append(f"stribeck_exponent = {EXPONENT}  # [-] assumed")
     lines += [f"smoothing = {SMOOTHING}  # [s/m] of the fit", f"slip_velocity = {SLIP}  # [m/s] assumed"]
     if law.gas_stiffness:
-        reach = max(float(np.max(np.abs(test.displacement))) for test in fitted.tests)
-        force = _short(values.gas_stiffness * reach)
-        lines.append(f"stop = {{ displacement = [{_short(-reach)}, {_short(reach)}], force = [-{force}, {force}] }}  "
+        travel = max(float(np.max(np.abs(test.displacement))) for test in fitted.tests)
+        force = _short(values.gas_stiffness * travel)
+        lines.append(f"stop = {{ displacement = [{_short(-travel)}, {_short(travel)}], force = [-{force}, {force}] }}  "
                      f"# stiffness of the gas, {values.gas_stiffness:.4g} N/m, standard error "
-                     f"{spread['gas_stiffness']:.2g} N/m; add the bump stops of the car")  # fmt: skip
+                     f"{number(spread['gas_stiffness'], 2)} N/m; add the bump stops of the car")  # fmt: skip
     if law.series:
         lines += [
-            f"# series stiffness {values.series:.4g} N/m, standard error {spread['series_stiffness']:.2g} N/m: eye,",
-            "# oil and machine together. It belongs to the mount of the rod, 1/K = 1/K_mount + 1/K_series:",
+            f"# series stiffness {values.series:.4g} N/m, standard error {number(spread['series_stiffness'], 2)} N/m:",
+            "# eye, oil and machine together. It belongs to the mount of the rod, 1/K = 1/K_mount + 1/K_series:",
             f"# [AXLE.bushings.MOUNT] stiffness.z = {_short(values.series)} where the eye of the test is the mount",
         ]
     return "\n".join(lines + [f"# {sentence}" for sentence in fitted.left_open()]) + "\n"
@@ -96,7 +97,9 @@ def _curve_lines(fitted: FittedDamper, spread: dict[str, float]) -> list[str]:
         points += [(sign * v, sign * f) for v, f in zip(ends.tolist(), forces.tolist(), strict=True)]
     points.sort()
     errors = [
-        f"{n} {spread[n]:.2g}" for n in law.parameters if "damping" in n or n.rstrip("0123456789").endswith("velocity_")
+        f"{n} {number(spread[n], 2)}"
+        for n in law.parameters
+        if "damping" in n or n.rstrip("0123456789").endswith("velocity_")
     ]
     return [
         'viscous_law = "table"',
@@ -113,7 +116,7 @@ def _short(value: float) -> str:
 
 def _line(name: str, value: float, unit: str, error: float) -> str:
     """Return the line of a parameter with its standard error."""
-    return f"{name} = {_short(float(value))}  # [{unit}] standard error {error:.2g}"
+    return f"{name} = {_short(float(value))}  # [{unit}] standard error {number(error, 2)}"
 
 
 def control_lines(fits: Sequence[FittedDamper]) -> str:
@@ -164,5 +167,5 @@ def summary_lines(fitted: FittedDamper) -> list[str]:
         lines.append(f"poor fit: an error is above {POOR:g}; look at the pictures, and check signs and time shifts")
     lines.append(f"{'parameter':<22}{'value':>12}   standard error")
     for (name, unit), value, error in zip(fit.law.parameters.items(), fit.values, fit.errors, strict=True):
-        lines.append(f"{name:<22}{value:>12.5g}   {error:.2g} {unit}")
+        lines.append(f"{name:<22}{value:>12.5g}   {number(error, 2)} {unit}")
     return lines + [f"not determined: {sentence}" for sentence in fitted.left_open()]

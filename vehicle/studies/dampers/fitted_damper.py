@@ -61,7 +61,7 @@ class FittedDamper:
         return float(np.sum(force * v) / np.sum(v**2))
 
     def left_open(self) -> list[str]:
-        """Return what the tests do not determine, one sentence each."""
+        """Return texts on the parameters that the tests do not determine."""
         slowest, fastest = self.speeds
         law, fit = self.fit.law, self.fit
         sentences = []
@@ -78,8 +78,8 @@ class FittedDamper:
             law.parameters, fit.parameters, low, high, fit.determined, strict=True
         ):
             if name not in LINEAR and not lowest * AT_LIMIT < value < highest / AT_LIMIT:
-                kind = kind_of(name).replace("_", " ")
-                sentences.append(f"{name} is at the limit of its range: the tests give no {kind} of their own")
+                quantity = kind_of(name).replace("_", " ")
+                sentences.append(f"{name} is at the limit of its range: the tests give no {quantity} of their own")
             elif not determined and name not in LINEAR:
                 sentences.append(f"{name} has a standard error above half of its value")
         return sentences

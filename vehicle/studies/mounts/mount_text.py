@@ -32,7 +32,7 @@ TITLES = {
 
 
 def caption_of(data: MeasuredStiffness, source: str) -> str:
-    """Return the description of measured points in one sentence."""
+    """Return the description of measured points in one line."""
     levels = [f"{1e3 * amplitude:.3g}" for amplitude, _ in data.levels()]
     several = f"amplitudes {', '.join(levels[:-1])} and {levels[-1]}" if len(levels) > 1 else f"amplitude {levels[0]}"
     low, high = np.min(data.frequency), np.max(data.frequency)

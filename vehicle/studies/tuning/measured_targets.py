@@ -357,5 +357,5 @@ def _read(
 
 
 def _notices(file: Path, measured: Measured, more: Sequence[str]) -> tuple[str, ...]:
-    """Return the notices of reading a file and further ones, each with the file name in front."""
+    """Return the notices of reading a file and further notices, with the file name in front."""
     return tuple(f"{file.name}: {text}" for text in (*measured.notices, *more))
