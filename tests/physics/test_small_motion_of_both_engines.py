@@ -44,16 +44,17 @@ def test_all_channels_agree_in_small_motion():
     signal = Signal(time=signal.time, displacement={w: SCALE * z for w, z in signal.displacement.items()})
     names = [*car.vehicle.channels, *car.vehicle.requested_channels]
     whole, reduced = (car.run(signal, engine=engine, channels=names) for engine in ("mujoco", "reduced"))
-    plain = small_car(laws=False).run(signal, engine="reduced", channels=names)
+    shared = [name for name in names if not name.endswith("stop_force")]  # the plain car has no stop
+    plain = small_car(laws=False).run(signal, engine="reduced", channels=shared)
 
     def error(other, name):
         exact = np.asarray(whole[name]) - whole[name][0]
         return np.sqrt(np.mean((np.asarray(other[name]) - other[name][0] - exact) ** 2) / np.mean(exact**2))
 
-    names = [name for name in names if not name.startswith("plate_")]
+    names, shared = ([name for name in part if not name.startswith("plate_")] for part in (names, shared))
     errors = {name: error(reduced, name) for name in names}
     worst = max(errors, key=lambda name: errors[name])
-    assert len(errors) > 120 and np.median([error(plain, name) for name in names]) > 0.05
+    assert len(errors) > 120 and np.median([error(plain, name) for name in shared]) > 0.05
     assert all(abs(whole[name][0] - reduced[name][0]) < 1e-3 * max(abs(whole[name][0]), 1.0) for name in names), worst
     validated(
         "Reduced engine", "largest RMS error of all channels and loads, plates of 0.05 mm, stops and tables",

@@ -35,6 +35,11 @@ class Equations:
         self.model, self.basis = copy.copy(car.model), basis
         self.model.opt.timestep = SHORT
         self.rows = Rows(self.model, car.static.preload)
+        # Laws over displacement and the lift of tyres are forces of the linear motion; their kinks have no second order.
+        layout = self.rows.layout
+        tables = layout.tables._make(part[:0] for part in layout.tables)
+        bushings = layout.bushings._replace(one_sided=layout.bushings.one_sided[:0])
+        self.rows.layout = layout._replace(tables=tables, bushings=bushings)
         self.data = mujoco.MjData(self.model)
         model, layout = self.model, self.rows.layout
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()

@@ -184,6 +184,8 @@ def rms_errors(
     interval = float(time[1] - time[0])
     every = max(int(1.0 / (interval * RATE)), 1)
     names = [name for name in second.channels if name in channels]
+    if not names:
+        return {}
     rows = [second.channels.index(name) for name in names]
     length = round(WINDOW / (interval * every)) * every
     sums, count = np.zeros((3, len(names))), 0
@@ -192,8 +194,7 @@ def rms_errors(
         spectra, samples = periodic_spectra(inputs(part), interval, every)
         state = states(second.model, spectra, interval * every, samples)
         linear = np.array([channels[name][part][::every] for name in names])
-        more = second.response(second.forms.projection @ state, interval * every)[rows, : linear.shape[1]]
-        more += linear
+        more = linear + second.response(second.forms.projection @ state, interval * every)[rows, : linear.shape[1]]
         sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
         count += linear.shape[1]
     forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])

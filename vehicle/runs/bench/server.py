@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+import sys
 from contextlib import redirect_stdout
 from importlib import import_module
 from typing import Any
@@ -72,20 +73,19 @@ def open_server(guard: Guard, port: int) -> Any:
     return server
 
 
-class OneLine(logging.Formatter):
-    """A failed connection as a line: a malformed message ends its connection, not the bench."""
+class OneLine(logging.Handler):
+    """Reports a failed connection in a line: a malformed message ends its connection, not the bench."""
 
-    def format(self, record: logging.LogRecord) -> str:
-        """Return the error of a record."""
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write the error of a record to standard error."""
         error = record.exc_info[1] if record.exc_info else None
-        return f"bench: a connection was closed ({type(error).__name__}: {error})"
+        sys.stderr.write(f"bench: a connection was closed ({type(error).__name__}: {error})\n")
 
 
 def connection_log() -> logging.Logger:
     """Return the log of the connections, whose errors are lines without a traceback."""
-    log, lines = logging.Logger("bench", logging.ERROR), logging.StreamHandler()
-    lines.setFormatter(OneLine())
-    log.addHandler(lines)
+    log = logging.Logger("bench", logging.ERROR)
+    log.addHandler(OneLine())
     return log
 
 
