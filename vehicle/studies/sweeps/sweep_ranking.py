@@ -20,8 +20,9 @@ Vector = npt.NDArray[np.float64]
 RANKED_BY = (f"{SEAT_PREFIX}{WEIGHTED}", WEIGHTED)
 """Columns by which cars are ranked: on the cushion of a car with a seat, otherwise at the seat rail."""
 
-ROUNDING = 1e-9
-"""Relative difference of two comfort values that is rounding: sums of some 1e5 samples in double precision."""
+ROUNDING = 1e-6
+"""Relative difference of two comfort values that is rounding: batches run in single precision, whose values move by
+2e-7 if a parameter changes by the last digit."""
 
 SHOWN = 12
 """Maximum number of cars in the printed table."""
