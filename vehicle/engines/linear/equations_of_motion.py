@@ -35,7 +35,7 @@ class Equations:
         self.model, self.basis = copy.copy(car.model), basis
         self.model.opt.timestep = SHORT
         self.rows = Rows(self.model, car.static.preload)
-        # Laws over displacement and the lift of tyres are forces of the linear motion; their kinks have no second order.
+        # Laws over displacement and lifting tyres are forces of the linear motion; their kinks have no second order.
         layout = self.rows.layout
         tables = layout.tables._make(part[:0] for part in layout.tables)
         bushings = layout.bushings._replace(one_sided=layout.bushings.one_sided[:0])
