@@ -37,7 +37,7 @@ class Equations:
         self.rows = Rows(self.model, car.static.preload)
         # Laws over displacement and lifting tyres are forces of the linear motion; their kinks have no second order.
         layout = self.rows.layout
-        tables = layout.tables._make(part[:0] for part in layout.tables)
+        tables = layout.tables._replace(kinds=layout.tables.kinds[:0])
         bushings = layout.bushings._replace(one_sided=layout.bushings.one_sided[:0])
         self.rows.layout = layout._replace(tables=tables, bushings=bushings)
         self.data = mujoco.MjData(self.model)
