@@ -166,7 +166,7 @@ def test_friction_and_level_equal_the_reduced_engine(browser, overrides):
     car, signal = shipped("high.csv", overrides, first=3000)
     page = Page(browser, car, signal)
     worst = worst_of(page, car, signal, random_states(page, 6, curve=False))
-    # With falling friction the last iteration of the engine may leave up to 8e-9 of the change of a force.
+    # The iteration of the engine ends at 1e-8 of the change of a force (`step_factors.ACCURACY`); 7e-9 with Stribeck.
     limit = 1e-8 if overrides == STRIBECK else 1e-9
     assert worst["channel"] < limit and worst["comfort"] < 1e-6 and worst["slip"] == 0.0, worst
 
