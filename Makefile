@@ -39,7 +39,7 @@ docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
 
 mjcf: setup
-	$(BIN)/python -m vehicle.mjcf --force
+	$(BIN)/python -m vehicle mjcf --force
 
 faults: setup
 	$(BIN)/python -m tests.faults

@@ -13,14 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
+from scenarios.road_measure import RoadInput, RoadMeasure
+from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED, WEIGHTED
-from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import recordings_of, run_of
-from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
 Vector = npt.NDArray[np.float64]

@@ -17,6 +17,8 @@ import numpy.typing as npt
 from scenarios.charts import figure_file
 from scenarios.claims import markdown
 from scenarios.comfort_runs import chosen_engine
+from scenarios.road_measure import RoadInput, RoadMeasure
+from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
 from vehicle.commands.destination import study_folder_of
@@ -30,12 +32,10 @@ from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.folder import study_folder, write_json, write_text
 from vehicle.signals.analysis.ride_comfort import MEANING, UNWEIGHTED, WEIGHTED
-from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_table import table_cases
 from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
-from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep import sweep
 from vehicle.studies.sweeps.sweep_table import SweepTable

@@ -15,10 +15,10 @@ from scenarios.car_runs import CarRuns
 from scenarios.claims import Claim, markdown
 from scenarios.evidence_claims import evidence_claim
 from scenarios.inputs.make_inputs import LEVELS, QUICK_DURATION
+from scenarios.signals.random_road import random_road
 from vehicle.names import across
 from vehicle.runs.car import SATURATED_VELOCITY
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ, SHAKER_ROLL_OFF_ORDER
-from vehicle.signals.excitation.random_road import random_road
 
 Vector = npt.NDArray[np.float64]
 

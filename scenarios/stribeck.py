@@ -21,6 +21,7 @@ from scenarios.charts import figure_file
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, interval_claim, markdown
 from scenarios.interval_probability import AGREES_ABOVE
 from scenarios.places import placed
+from scenarios.signals.bump import BUMP_DURATION_S, BUMP_START_S, bump
 from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.laws.damper import damper_law
@@ -28,7 +29,6 @@ from vehicle.model.parameters.force_elements import Damper
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.slip import SEARCHED, STANDING_OUT, SlipPhase, extra_peaks, most_prominent, slip_phases
-from vehicle.signals.excitation.bump import BUMP_DURATION_S, BUMP_START_S, bump
 
 LAWS = {
     "Coulomb": ("damper.friction_law=coulomb", "damper.coulomb_friction=125"),

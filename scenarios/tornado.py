@@ -20,12 +20,12 @@ from scenarios.charts import figure_file
 from scenarios.claims import DUPLICATE, Claim, Findings, markdown
 from scenarios.comfort_runs import Changes, ComfortRuns, Point, changes, comfort_options, records_of
 from scenarios.comfort_sensitivity.figures import number, setting
+from scenarios.signals.exact_road import ROAD_RMS
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.model.parameters.paths import value_of
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.ride_comfort import WEIGHTED
-from vehicle.signals.excitation.exact_road import ROAD_RMS
 
 
 def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:

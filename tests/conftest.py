@@ -25,7 +25,7 @@ def pytest_runtest_call(item):
 
 
 ADVISED = (
-    *("signals/records", "signals/excitation", "commands", "runs/comparison"),
+    *("signals/formats", "signals/records", "signals/excitation", "commands", "runs/comparison"),
     *("studies/mounts", "studies/replication", "studies/tuning"),
     *("system/test_bad_inputs", "system/test_lost_files", "system/test_no_traceback", "system/test_road_run"),
 )

@@ -25,12 +25,12 @@ from pathlib import Path
 
 import numpy as np
 
+from scenarios.signals.random_road import random_road
 from tests.fuzz_files import file_case, judge_file, largest_memory
 from tests.patience import HANG
 from vehicle.commands import comfort, modes, shaker, sweep
 from vehicle.commands.command_line import FAULT
 from vehicle.model.parameters.shipped import FOCUS_FILE
-from vehicle.signals.excitation.random_road import random_road
 
 CODES = {0, 2, 3, 4, 5, 6}
 """Exit codes of the contract; 130 needs an interruption."""

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.signals.records.logger_files import DBC, TEXTS
+from tests.signals.formats.logger_files import DBC, TEXTS
 from vehicle.commands import inspect
 
 LARGEST_GROWTH = 400.0
@@ -110,7 +110,7 @@ def _frame(path: Path) -> None:
 
 
 def _bus(path: Path) -> None:
-    from tests.signals.records.test_buses_and_frames import raw_mdf
+    from tests.signals.formats.test_buses_and_frames import raw_mdf
 
     raw_mdf(path.with_suffix(".mf4"), with_signals=True)
     path.with_suffix(".mf4").rename(path)

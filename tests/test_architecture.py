@@ -20,11 +20,12 @@ EVERYWHERE = {"digits", "errors", "names"}
 
 WINGS = {
     "core": (),
-    "signals": ("analysis", "records", "excitation", "inputs"),
+    "signals": ("analysis", "formats", "records", "excitation", "inputs"),
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
-    "engines": ("simulation", "linear", "reduced", "lumped"),
+    "engines": ("simulation", "kinematics", "linear", "reduced"),
     "drawing": ("rendering", "notebook"),
-    "runs": ("car", "fmu", "trial", "comparison", "output", "report", "bench"),
+    "runs": ("car", "comparison", "output", "report"),
+    "handover": ("fmu", "page", "bench"),
     "studies": ("design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
 }
@@ -37,78 +38,67 @@ BELOW = EVERYWHERE | {"replacement", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
-    "core": set(),
-    "parameters": {"records"},
-    "laws": {"core", "parameters", "records"},
-    "records": {"analysis"},
-    "excitation": {"analysis", "records", "replacement"},
-    "flexbody": {"analysis", "parameters", "records", "replacement"},
-    "shapes": set(),
-    "assembly": {"parameters", "flexbody", "shapes", "laws"},
-    "simulation": {"parameters", "excitation", "assembly", "core", "flexbody", "laws"},
-    "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
-    "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
-    "analysis": {"threads"},
-    "lumped": {"parameters", "laws", "linear"},
-    "comparison": {"analysis", "car", "linear", "records", "rendering", "threads"},
-    "notebook": {"analysis", "records", "rendering", "simulation"},
-    "rendering": {"simulation", "analysis", "assembly", "parameters", "shapes", "threads"},
-    "car": {"analysis", "excitation", "flexbody", "laws", "linear", "notebook", "parameters", "records", "reduced"}
-    | {"rendering", "simulation", "threads"},
-    "bench": {"analysis", "assembly", "car", "excitation", "linear", "output", "parameters", "records", "reduced"}
-    | {"rendering", "report", "shapes", "threads"},
-    "fmu": {"car", "laws", "linear", "parameters", "reduced", "version"},
-    "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
-    | {"replacement", "simulation"},
-    "design": {"car", "flexbody", "parameters", "simulation", "threads"},
-    "sweeps": {"analysis", "car", "excitation", "flexbody", "notebook", "output", "parameters", "records"}
-    | {"reduced", "rendering", "report", "simulation", "threads"},
-    "tuning": {"analysis", "car", "excitation", "output", "parameters", "records", "reduced", "rendering"}
-    | {"report", "threads"},
-    "mounts": {"records", "parameters"},
-    "dampers": {"records"},
-    "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
-    "replication": {"car", "excitation", "output", "records", "reduced", "rendering", "threads"},
-    "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records", "rendering"}
-    | {"simulation", "trial", "version"},
-    "commands": {"analysis", "assembly", "bench", "car", "comparison", "dampers", "design", "excitation", "flexbody"}
-    | {"fmu"}
-    | {"linear", "mounts", "optimisation", "output", "parameters", "records", "rendering", "replication", "report"}
-    | {"simulation"}
-    | {"sweeps", "threads", "tuning", "version"},
-    "threads": set(),
-    "version": set(),
-    "replacement": set(),
     "digits": set(),
     "errors": set(),
     "names": set(),
-    "__init__": {
-        "car",
-        "comparison",
-        "dampers",
-        "excitation",
-        "fmu",
-        "mounts",
-        "optimisation",
-        "output",
-        "parameters",
-        "records",
-        "replication",
-    }
-    | {"report", "sweeps", "tuning"},
+    "replacement": set(),
+    "threads": set(),
+    "version": set(),
+    "core": set(),
+    "analysis": {"threads"},
+    "formats": {"analysis"},
+    "records": {"analysis", "formats"},
+    "excitation": {"analysis", "formats", "records", "replacement"},
+    "parameters": {"formats"},
+    "laws": {"core", "formats", "parameters"},
+    "flexbody": {"analysis", "formats", "parameters", "replacement"},
+    "shapes": set(),
+    "assembly": {"flexbody", "laws", "parameters", "shapes"},
+    "simulation": {"assembly", "core", "excitation", "flexbody", "laws", "parameters"},
+    "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
+    "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
+    "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
+    "rendering": {"analysis", "assembly", "kinematics", "parameters", "shapes", "simulation", "threads"},
+    "notebook": {"analysis", "records", "rendering", "simulation"},
+    "car": {"analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
+    | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
+    "comparison": {"analysis", "car", "formats", "linear", "records", "rendering", "threads"},
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "parameters"}
+    | {"records", "rendering", "replacement", "simulation"},
+    "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records"}
+    | {"rendering", "simulation", "version"},
+    "fmu": {"car", "laws", "linear", "parameters", "reduced", "version"},
+    "page": {"analysis", "car", "excitation", "fmu", "linear", "output", "parameters", "reduced"}
+    | {"rendering", "report", "simulation"},
+    "bench": {"analysis", "assembly", "car", "excitation", "formats", "linear", "output", "page"}
+    | {"parameters", "records", "reduced", "rendering", "report", "shapes", "threads"},
+    "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},
+    "mounts": {"formats", "parameters"},
+    "dampers": {"formats", "records"},
+    "replication": {"car", "excitation", "formats", "output", "records", "reduced", "rendering", "threads"},
+    "sweeps": {"analysis", "car", "excitation", "flexbody", "formats", "notebook", "output"}
+    | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
+    "tuning": {"analysis", "car", "excitation", "formats", "output", "parameters", "records", "reduced"}
+    | {"rendering", "report", "threads"},
+    "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
+    "commands": {"analysis", "assembly", "bench", "car", "comparison", "dampers", "design", "excitation"}
+    | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
+    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
+    | {"threads", "tuning", "version"},
+    "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "mounts", "optimisation"}
+    | {"output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},
 }
 """What each room, and each module above the rooms, imports of the package: this and no more, and all of it."""
 
-STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "laws", "linear", "lumped", "output"} | {
-    *("parameters", "records", "reduced", "rendering", "simulation", "sweeps", "threads", "tuning")
+STUDIES = {"analysis", "assembly", "car", "commands", "excitation", "formats", "kinematics", "laws"} | {
+    *("linear", "output", "parameters", "reduced", "rendering", "simulation", "sweeps", "threads", "tuning")
 }
 """What `scenarios` imports of the package; the package imports nothing of `scenarios`."""
 
 HEAVY = {
-    "mujoco": {"assembly", "simulation", "linear", "rendering"},
+    "mujoco": {"assembly", "simulation", "kinematics", "linear", "rendering"},
     "trimesh": {"shapes", "assembly"},
     "mediapy": {"rendering"},
     "matplotlib": {"rendering"},
@@ -283,7 +273,7 @@ def test_no_file_is_longer_than_400_lines():
 
 def test_importing_the_package_loads_nothing_heavy():
     code = (
-        "import sys, vehicle, vehicle.__main__, vehicle.shaker, vehicle.modes, vehicle.sweep, vehicle.comfort\n"
+        "import sys, vehicle, vehicle.__main__, vehicle.shaker, vehicle.modes, vehicle.comfort\n"
         "print(sorted({name.split('.')[0] for name in sys.modules} & "
         "{'mujoco', 'numpy', 'scipy', 'matplotlib', 'trimesh', 'mediapy', 'OpenGL'}))"
     )

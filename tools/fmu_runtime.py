@@ -3,7 +3,7 @@
     python -m pip install ziglang==0.17.1
     python tools/fmu_runtime.py [FOLDER WITH THE C HEADERS OF FMI 2.0 AND 3.0]
 
-The sources are in vehicle/runs/fmu/runtime; equal sources give equal bytes. With the folder, as fmpy/c-code of the
+The sources are in vehicle/handover/fmu/runtime; equal sources give equal bytes. With the folder, as fmpy/c-code of the
 wheel FMPy, the compiler also compares every function with its declaration in the headers of the standard. stamp.json
 beside the libraries has the digest of the sources, which a test compares.
 """
@@ -19,7 +19,7 @@ import tempfile
 from importlib import metadata
 from pathlib import Path
 
-FMU = Path(__file__).resolve().parents[1] / "vehicle" / "runs" / "fmu"
+FMU = Path(__file__).resolve().parents[1] / "vehicle" / "handover" / "fmu"
 SOURCES, BINARIES = FMU / "runtime", FMU / "binaries"
 TARGETS = {
     "x86_64-linux": ("x86_64-linux-gnu.2.17", "car.so"),

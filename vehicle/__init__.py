@@ -34,8 +34,7 @@ Run(road_C_80, 4 s, reduced, Car(focus_road, ...))
 >>> f"{table.column('weighted')[1]:.4f}" == f"{drive.comfort().weighted.overall:.4f}"
 True
 
-Names are imported at their first use; `help(vehicle.sweep)` prints the documentation of a name. The import of a module
-`vehicle.NAME` replaces a function of the same name, so the module of `vehicle/sweep.py` can be called.
+Names are imported at their first use; `help(vehicle.sweep)` prints the documentation of a name.
 """
 
 from __future__ import annotations
@@ -50,6 +49,8 @@ if TYPE_CHECKING:
     from vehicle.errors import OutputError as OutputError
     from vehicle.errors import SimulationError as SimulationError
     from vehicle.errors import VehicleError as VehicleError
+    from vehicle.handover.fmu.fmu_file import write_fmu as write_fmu
+    from vehicle.handover.page.report_file import write_report as write_report
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
     from vehicle.runs.car.car import Car as Car
     from vehicle.runs.car.car_data import CarData as CarData
@@ -59,19 +60,17 @@ if TYPE_CHECKING:
     from vehicle.runs.comparison.compared_run import compare as compare
     from vehicle.runs.comparison.comparison import Comparison as Comparison
     from vehicle.runs.comparison.mode_comparison import compare_modes as compare_modes
-    from vehicle.runs.fmu.fmu_file import write_fmu as write_fmu
     from vehicle.runs.output.comparison_files import save_comparison as save_comparison
     from vehicle.runs.output.saved_car import save_car as save_car
     from vehicle.runs.output.saved_run import load_run as load_run
     from vehicle.runs.output.saved_run import save_run as save_run
-    from vehicle.runs.report.report_file import write_report as write_report
     from vehicle.signals.excitation.input_files import shipped_inputs as shipped_inputs
     from vehicle.signals.excitation.signal import Signal as Signal
     from vehicle.signals.excitation.signal_file import read_signal as read_signal
     from vehicle.signals.excitation.signal_file import write_signal as write_signal
+    from vehicle.signals.formats.reader import read as read
     from vehicle.signals.records.choice import Choice as Choice
     from vehicle.signals.records.measured import read_measured as read_measured
-    from vehicle.signals.records.reader import read as read
     from vehicle.signals.records.record_comfort import RecordComfort as RecordComfort
     from vehicle.signals.records.record_comfort import evaluate_comfort as evaluate_comfort
     from vehicle.studies.dampers.fitted_damper import FittedDamper as FittedDamper
@@ -122,7 +121,7 @@ _MODULES = {
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",
-    "read": "vehicle.signals.records.reader",
+    "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",
     "read_signal": "vehicle.signals.excitation.signal_file",
     "replicate_drive": "vehicle.studies.replication.drive_search",
@@ -135,8 +134,8 @@ _MODULES = {
     "shipped_inputs": "vehicle.signals.excitation.input_files",
     "sweep": "vehicle.studies.sweeps.plan",
     "tune": "vehicle.studies.tuning.car_fit",
-    "write_fmu": "vehicle.runs.fmu.fmu_file",
-    "write_report": "vehicle.runs.report.report_file",
+    "write_fmu": "vehicle.handover.fmu.fmu_file",
+    "write_report": "vehicle.handover.page.report_file",
     "write_signal": "vehicle.signals.excitation.signal_file",
 }
 """Public name to the module that defines it; the block for type checkers above lists the same."""

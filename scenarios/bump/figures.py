@@ -24,6 +24,7 @@ from scenarios.bump.runs import (
 from scenarios.bump.seeds import BumpSeeds, row_key
 from scenarios.charts import figure_file, rows_of
 from scenarios.evidence import evidence_of
+from scenarios.signals.bump import BUMP_START_S
 from scenarios.study import computed_by
 from vehicle.drawing.rendering.backend import choose_backend
 from vehicle.drawing.rendering.figure import COLOURS, LINES
@@ -32,7 +33,6 @@ from vehicle.drawing.rendering.layout import Layout, font
 from vehicle.drawing.rendering.shot import Shot, Take
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.runs.output.folder import write_whole
-from vehicle.signals.excitation.bump import BUMP_START_S
 
 Vector = npt.NDArray[np.float64]
 

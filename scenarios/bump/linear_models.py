@@ -10,8 +10,8 @@ from scenarios.bump.runs import SHOWN_S, SIZES
 from scenarios.bump.seeds import RECORD
 from scenarios.car_runs import CarRuns
 from scenarios.claims import PREDICTED, Claim
+from scenarios.signals.bump import bump
 from scenarios.verdict import common
-from vehicle.signals.excitation.bump import bump
 
 LINEAR = {"stick": ("damper.coulomb_friction=1e5",), "slip": ("damper.coulomb_friction=0",)}
 """Linear models: a damper that never moves, and a damper with its viscous force alone."""

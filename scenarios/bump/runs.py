@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import INSTANT_READING, SLIP_INSTANT
+from scenarios.signals.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Run
-from vehicle.signals.excitation.bump import BUMP_DURATION_S, BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]

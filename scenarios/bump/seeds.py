@@ -12,10 +12,10 @@ import numpy.typing as npt
 from scenarios.bump.runs import SHOWN_S, SIZES, Record, damper_velocity, relative_acceleration
 from scenarios.car_runs import CarRuns
 from scenarios.comfort_runs import changes
+from scenarios.signals.bump import BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.names import AXES
 from vehicle.runs.car import SATURATED_VELOCITY, Car
 from vehicle.signals.excitation.band import SHAKER_EDGE_HZ
-from vehicle.signals.excitation.bump import BUMP_START_S, NOISE_RMS, Reading, bump
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]

@@ -47,9 +47,9 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_modes,
 )
 from scenarios.comfort_sensitivity.trials import end_trials, level_trials, trial_cases
+from scenarios.signals.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from scenarios.study import QUICK_NOTE, car_study
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED
-from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 
 QUICK_WHY = f"records of {QUICK.duration:g} s tell it too coarsely"

@@ -11,7 +11,7 @@ from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, Interval
 from scenarios.comfort_runs import Changes, Curves, Point, Variation
 from scenarios.evidence import COMFORT_ENDS
 from scenarios.evidence_claims import evidence_claim, reason
-from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ
+from scenarios.signals.exact_road import ROAD_EDGE_HZ
 
 Ends = Mapping[float, Interval]
 """Value of the parameter to the interval of the relative comfort value [%]."""

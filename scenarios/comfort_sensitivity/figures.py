@@ -14,13 +14,13 @@ from scenarios.claims import markdown
 from scenarios.comfort_runs import Changes, ComfortRuns, Curves, Point, Variation, Vector, chosen_engine
 from scenarios.comfort_sensitivity.claims import PUBLISHED, PUBLISHED_SLIP
 from scenarios.comfort_sensitivity.histories import MEASURED_PEAKS, SPECTRUM_WINDOW_S, RoadLevels
+from scenarios.signals.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
 from scenarios.study import car_text
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.drawing.rendering.placed_axes import Margins, placed_axes
 from vehicle.model.parameters.paths import value_of
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.spectra import power_spectral_density
-from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, velocity_density
 from vehicle.signals.excitation.slip_set import sets_text
 
 EXCERPT_S = (27.0, 27.5)

@@ -13,10 +13,10 @@ from scenarios.comfort_runs import Changes, ComfortRuns, Point, Variation
 from scenarios.comfort_sensitivity.claims import MOUNT_STIFFNESS, SOURCE, TITLES
 from scenarios.evidence import LEVELS, evidence_of
 from scenarios.evidence_claims import evidence_claim, reason
+from scenarios.signals.exact_road import RATE_HZ, ROAD_RMS
 from vehicle.signals.analysis.peaks import phase_resonance
 from vehicle.signals.analysis.segments import window_extremes
 from vehicle.signals.analysis.spectra import power_spectral_density
-from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import signal_of
 from vehicle.studies.sweeps.case_evaluation import recordings_of
 

@@ -10,9 +10,9 @@ from scenarios.comfort_runs import SEAT_RAIL_Z, Changes, ComfortRuns, Numbers
 from scenarios.comfort_sensitivity.claims import RIGID_BODY, SOURCE
 from scenarios.comfort_sensitivity.histories import WINDOW_S, ends_of
 from scenarios.evidence import COMFORT_ENDS, LEVELS
+from scenarios.signals.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.signals.analysis.ride_comfort import UNWEIGHTED
 from vehicle.signals.analysis.segments import window_extremes
-from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import recordings_of
 

@@ -45,13 +45,13 @@ from scenarios.damper_choice.runs import (
     road_holding,
     trade_off,
 )
-from scenarios.study import VERTICAL_TYRES, lumped_study
-from vehicle.model.parameters.damper_choice import (
+from scenarios.lumped.damper_choice import (
     FITTED,
     DamperChoiceParameters,
     ExponentialRoad,
     damper_choice_parameters,
 )
+from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.model.parameters.toml_file import as_table
 from vehicle.model.parameters.vehicle import load_vehicle
 

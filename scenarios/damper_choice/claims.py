@@ -14,11 +14,11 @@ from scenarios.damper_choice.optimum import Optimum
 from scenarios.damper_choice.other_vehicles import CROSSING, LOW_EDGE, SAME, Refit, region_verdicts
 from scenarios.damper_choice.response_features import crossing, last_peak, local_peaks, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHolding
+from scenarios.lumped.damper_choice import DamperChoiceParameters
+from scenarios.lumped.half_car_rider_model import ENDS
+from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from scenarios.places import placed
 from scenarios.verdict import common
-from vehicle.engines.lumped.half_car_rider_model import ENDS
-from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
-from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 
 Array = npt.NDArray[np.float64]
 

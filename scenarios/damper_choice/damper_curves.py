@@ -15,14 +15,14 @@ import numpy.typing as npt
 
 from scenarios.charts import chart, lines
 from scenarios.claims import NOT_TESTABLE, Claim
+from scenarios.lumped.damper_choice import DamperChoiceParameters
+from scenarios.lumped.fixed_step_solution import fixed_step_solution
+from scenarios.lumped.half_car_rider_model import axle_links
+from scenarios.lumped.network import ROAD, Network, masses_of
+from scenarios.lumped.road_holding import exponential_density, quarter_car_model
 from scenarios.places import placed
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.linear.network import ROAD, Network, masses_of
 from vehicle.engines.linear.system import Slide
-from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
-from vehicle.engines.lumped.half_car_rider_model import axle_links
-from vehicle.engines.lumped.road_holding import exponential_density, quarter_car_model
-from vehicle.model.parameters.damper_choice import DamperChoiceParameters
 
 Array = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
 from scenarios.damper_choice.response_features import crossing, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, START_REAR, half_car_measure, half_responses
-from vehicle.model.parameters.damper_choice import DamperChoiceParameters
+from scenarios.lumped.damper_choice import DamperChoiceParameters
 
 Array = npt.NDArray[np.float64]
 

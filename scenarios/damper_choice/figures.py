@@ -10,8 +10,8 @@ import numpy.typing as npt
 from scenarios.charts import chart, lines
 from scenarios.damper_choice.optimum import Fluctuation
 from scenarios.damper_choice.runs import READ_OFF, SPEED, START_REAR, RoadHolding, TradeOff
+from scenarios.lumped.half_car_rider_model import ENDS
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.lumped.half_car_rider_model import ENDS
 
 Array = npt.NDArray[np.float64]
 

@@ -15,14 +15,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import least_squares
 
-from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
-from vehicle.model.parameters.axle import Axle
-from vehicle.model.parameters.damper_choice import (
+from scenarios.lumped.axle import Axle
+from scenarios.lumped.damper_choice import (
     ExponentialRoad,
     FrequencyBands,
     RoadHoldingHalfCar,
     RoadHoldingQuarterCar,
 )
+from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 
 Array = npt.NDArray[np.float64]
 

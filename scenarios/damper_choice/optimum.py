@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import minimize, minimize_scalar
 
-from vehicle.engines.lumped.half_car_rider_model import ENDS
+from scenarios.lumped.half_car_rider_model import ENDS
 from vehicle.errors import ConfigurationError, SimulationError
 
 Array = npt.NDArray[np.float64]

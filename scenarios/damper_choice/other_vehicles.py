@@ -15,8 +15,8 @@ from scipy.optimize import least_squares
 from scenarios.damper_choice.fit import HALF_BOUNDS, HALF_SCALE, half_car_of, half_car_residuals, half_car_values
 from scenarios.damper_choice.response_features import crossing, spread_of
 from scenarios.damper_choice.runs import HALF_DAMPING, half_responses
-from vehicle.engines.lumped.road_holding import half_car_model
-from vehicle.model.parameters.damper_choice import DamperChoiceParameters
+from scenarios.lumped.damper_choice import DamperChoiceParameters
+from scenarios.lumped.road_holding import half_car_model
 
 Array = npt.NDArray[np.float64]
 

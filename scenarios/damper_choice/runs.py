@@ -9,7 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.damper_choice.optimum import Fluctuation, Optimum, Step, iterate, joint_optimum, optimum
-from vehicle.engines.lumped.road_holding import (
+from scenarios.lumped.axle import Axle
+from scenarios.lumped.damper_choice import (
+    DamperChoiceParameters,
+    ExponentialRoad,
+    FrequencyBands,
+    RoadHoldingQuarterCar,
+)
+from scenarios.lumped.road_holding import (
     RideMeasures,
     RoadHoldingModel,
     half_car_model,
@@ -17,13 +24,6 @@ from vehicle.engines.lumped.road_holding import (
     quarter_car_model,
     ride_measures,
     tyre_load_ratio,
-)
-from vehicle.model.parameters.axle import Axle
-from vehicle.model.parameters.damper_choice import (
-    DamperChoiceParameters,
-    ExponentialRoad,
-    FrequencyBands,
-    RoadHoldingQuarterCar,
 )
 from vehicle.model.parameters.paths import value_of
 from vehicle.model.parameters.vehicle import Vehicle

@@ -29,13 +29,13 @@ from scenarios.four_post.runs import (
     matrix_response,
     run_motion,
 )
+from scenarios.signals.four_post import DURATION_S, MOTIONS
 from scenarios.study import QUICK_NOTE, Study, study_parser
 from vehicle.commands.options import engine_option, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.driving import tyre_words
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.four_post import DURATION_S, MOTIONS
 
 CARS = ("focus_road", "sedan")
 """Shipped cars on four wheels."""

@@ -10,10 +10,10 @@ import numpy.typing as npt
 
 from scenarios.charts import figure_file
 from scenarios.four_post.runs import LINES, STATES, OneRun, channels_of, transmissibility
+from scenarios.signals.four_post import MOTIONS
 from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS
 from vehicle.drawing.rendering.figure import LINES as STYLES
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.four_post import MOTIONS
 
 LINEAR = {"stuck": ("#222222", ":"), "sliding": ("#888888", "--")}
 """Colour and style of the curves from matrices."""

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.signals.four_post import MOTIONS, four_post
 from vehicle.drawing.rendering.recorded_run import hub_channel
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.engines.linear.first_order import first_order
@@ -17,7 +18,6 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.peaks import Peak, resonance_peaks
-from vehicle.signals.excitation.four_post import MOTIONS, four_post
 
 Vector = npt.NDArray[np.float64]
 

@@ -25,13 +25,13 @@ from scenarios.half_car_rider.claims import (
 from scenarios.half_car_rider.figures import lift_off_figure, speed_figure, study_figures, time_figures
 from scenarios.half_car_rider.runs import SPEEDS, Outcome, base_case_table, driven, outcome, parameter_study, passive
 from scenarios.half_car_rider.seats import FACTORS, Measure, with_experiment
-from scenarios.study import VERTICAL_TYRES, lumped_study
-from vehicle.engines.lumped.half_car_rider_model import ENDS
-from vehicle.model.parameters.half_car_rider_parameters import (
+from scenarios.lumped.half_car_rider_model import ENDS
+from scenarios.lumped.half_car_rider_parameters import (
     PUBLISHED,
     HalfCarRiderParameters,
     half_car_rider_parameters,
 )
+from scenarios.study import VERTICAL_TYRES, lumped_study
 from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
 
@@ -45,7 +45,7 @@ SETTLING_NOTE = (
 
 ASSUMED = (
     "Assumed, because the source does not print them: seat mass 35 kg, stiffness 15000 N/m and damping 150 N s/m; all "
-    "numbers of the semi-active dampers (vehicle/model/parameters/half_car_rider.toml)."
+    "numbers of the semi-active dampers (scenarios/lumped/half_car_rider.toml)."
 )
 
 

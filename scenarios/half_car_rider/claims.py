@@ -21,9 +21,9 @@ from scenarios.half_car_rider.runs import (
     varied,
 )
 from scenarios.half_car_rider.settling_claims import settling_claims
-from vehicle.engines.lumped.half_car_rider_model import half_car_rider
-from vehicle.engines.lumped.history import Array, History
-from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.half_car_rider_model import half_car_rider
+from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.history import Array, History
 
 Study = Mapping[str, list[list[Outcome]]]
 """Varied parameter -> speed -> factor -> outcome."""

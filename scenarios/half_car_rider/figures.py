@@ -11,10 +11,10 @@ import numpy as np
 from scenarios.charts import chart, lines
 from scenarios.half_car_rider.claims import TRAVEL_DIRECTIONS, Study
 from scenarios.half_car_rider.runs import SPEEDS, VARIED, Motion, Outcome
+from scenarios.lumped.half_car_rider_model import linear_tyre_load
+from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.history import History
 from vehicle.drawing.rendering.figure import COLOURS
-from vehicle.engines.lumped.half_car_rider_model import linear_tyre_load
-from vehicle.engines.lumped.history import History
-from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 BUMP = "Half-sine bump 0.05 m high, 0.5 m long"
 

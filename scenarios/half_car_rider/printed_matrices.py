@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from scenarios.lumped.half_car_rider_model import half_car_rider
+from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.system import LinearSystem
-from vehicle.engines.lumped.half_car_rider_model import half_car_rider
-from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 
 
 def printed_system(parameters: HalfCarRiderParameters) -> LinearSystem:

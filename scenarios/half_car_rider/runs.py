@@ -9,13 +9,13 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider_model import ENDS, half_car_rider, lift_off, linear_tyre_load, output_points
-from vehicle.engines.lumped.history import Array, History
-from vehicle.engines.lumped.semi_active_half_car import simulate_bump
+from scenarios.lumped.axle import Axle
+from scenarios.lumped.bump_response import bump_passage, bump_response
+from scenarios.lumped.half_car_rider_model import ENDS, half_car_rider, lift_off, linear_tyre_load, output_points
+from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.history import Array, History
+from scenarios.lumped.semi_active_half_car import simulate_bump
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.axle import Axle
-from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
 from vehicle.model.parameters.semi_active_damper import PASSIVE
 from vehicle.signals.analysis.exposure import vibration_dose_value
 

@@ -13,8 +13,8 @@ from itertools import product
 import numpy as np
 
 from scenarios.claims import Claim
-from vehicle.engines.lumped.history import Array
-from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.history import Array
 
 STIFFNESS = (5e3, 15e3, 50e3, 150e3)
 """Stiffness of the seat [N/m]: from a soft cushion on springs to a bare frame."""

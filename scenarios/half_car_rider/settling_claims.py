@@ -6,8 +6,8 @@ import numpy as np
 
 from scenarios.claims import CHOSEN, PREDICTED, Claim
 from scenarios.half_car_rider.runs import BANDS, KMH, SETTLING_BAND, SPEEDS, Motion, settling_time
-from vehicle.engines.lumped.history import Array, History
-from vehicle.model.parameters.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.half_car_rider_parameters import HalfCarRiderParameters
+from scenarios.lumped.history import Array, History
 
 READING = 0.3
 """The printed times are read from figures, most of them with the word "about" [s]."""

@@ -5,17 +5,17 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from scenarios.signals.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
+from scenarios.signals.four_post import HIGHEST_HZ, LOWEST_HZ, ROAD_CLASS, SPEED_KMH, four_post
+from scenarios.signals.four_post import SEED as FOUR_POST_SEED
+from scenarios.signals.random_road import random_road
 from vehicle.signals.excitation.band import (
     LOWEST_FREQUENCY_HZ,
     SHAKER_EDGE_HZ,
     SHAKER_ROLL_OFF_ORDER,
     UPPER_BAND_EDGE_HZ,
 )
-from vehicle.signals.excitation.bump import BUMP_START_S, NOISE_RMS, NOISE_SEED, bump
-from vehicle.signals.excitation.four_post import HIGHEST_HZ, LOWEST_HZ, ROAD_CLASS, SPEED_KMH, four_post
-from vehicle.signals.excitation.four_post import SEED as FOUR_POST_SEED
 from vehicle.signals.excitation.input_files import INPUT_FOLDER, find_input
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal, write_signal
 

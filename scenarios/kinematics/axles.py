@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from vehicle.engines.simulation.axle_curves import SMALL, design_slopes, travel_curve
-from vehicle.engines.simulation.axle_statics import WheelPose
+from vehicle.engines.kinematics.axle_curves import SMALL, design_slopes, travel_curve
+from vehicle.engines.kinematics.axle_statics import WheelPose
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.paths import value_of
 from vehicle.runs.car import Car

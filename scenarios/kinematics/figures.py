@@ -12,7 +12,7 @@ from scenarios.charts import figure_file
 from scenarios.kinematics.axles import Axle, Moved
 from scenarios.kinematics.claims import COMPLIANCES
 from vehicle.drawing.rendering.figure import COLOURS, LINES
-from vehicle.engines.simulation.axle_statics import WheelPose
+from vehicle.engines.kinematics.axle_statics import WheelPose
 
 PANELS = {
     "camber [deg], top outwards +": "camber_deg",

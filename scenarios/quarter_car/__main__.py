@@ -10,11 +10,11 @@ import sys
 from pathlib import Path
 
 from scenarios.claims import Findings
+from scenarios.lumped.quarter_car_parameters import PUBLISHED, load_quarter_car
 from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
 from scenarios.quarter_car.runs import Runs
 from scenarios.study import lumped_study
-from vehicle.model.parameters.quarter_car_parameters import PUBLISHED, load_quarter_car
 
 
 def study(runs: Runs, folder: Path, options: argparse.Namespace) -> Findings | str:

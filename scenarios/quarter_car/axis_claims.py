@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from scenarios.claims import Claim, Interval, interval_claim
+from scenarios.lumped.history import Array, History
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Runs
 from scenarios.quarter_car.sine_claims import START, late
-from vehicle.engines.lumped.history import Array, History
 
 START_OPEN = (
     "a stuck strut damps nothing, so the size of its vibration is that of the start, which is not printed: ours starts "

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from scenarios.charts import chart, lines
+from scenarios.lumped.history import History
+from scenarios.lumped.quarter_car_network import elastomer
 from scenarios.quarter_car.runs import (
     CONSTANT,
     DEGRESSIVE,
@@ -23,8 +25,6 @@ from scenarios.quarter_car.runs import (
 )
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.history import History
-from vehicle.engines.lumped.quarter_car_network import elastomer
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.signals.analysis.spectra import power_spectral_density
 

@@ -12,16 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.claims import OWN_CHECK, Claim
+from scenarios.lumped.quarter_car_network import quarter_car
+from scenarios.lumped.quarter_car_parameters import QuarterCar
+from scenarios.lumped.quarter_car_spec import WHEEL, quarter_car_spec
 from scenarios.quarter_car.runs import STEP, Runs, rms
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.quarter_car_network import quarter_car
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
-from vehicle.model.assembly.quarter_car_spec import WHEEL, quarter_car_spec
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.friction import Clamped
-from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.signals.analysis.slip import slip_share
 from vehicle.signals.excitation.signal import Signal
 

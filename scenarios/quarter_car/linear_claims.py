@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from scenarios.claims import INFERRED, PREDICTED, Claim
+from scenarios.lumped.quarter_car_network import elastomer
 from scenarios.places import placed
 from scenarios.quarter_car.runs import Runs
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.quarter_car_network import elastomer
 
 ABOUT = "printed with 'about', read from a figure: 5 %"
 

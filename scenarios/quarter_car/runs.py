@@ -10,18 +10,18 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from scenarios.lumped.fixed_step_solution import fixed_step_solution
+from scenarios.lumped.history import History
+from scenarios.lumped.input_signals import Sampled, Sine
+from scenarios.lumped.quarter_car_network import quarter_car, single_mass
+from scenarios.lumped.quarter_car_parameters import QuarterCar
+from scenarios.lumped.quarter_car_spec import WHEEL
+from scenarios.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
+from scenarios.lumped.switch import Switch
+from scenarios.signals.random_road import random_road
 from vehicle.engines.linear.first_order import FirstOrder
-from vehicle.engines.lumped.fixed_step_solution import fixed_step_solution
-from vehicle.engines.lumped.history import History
-from vehicle.engines.lumped.input_signals import Sampled, Sine
-from vehicle.engines.lumped.quarter_car_network import quarter_car, single_mass
-from vehicle.engines.lumped.stiff_solution import Tolerances, stiff_solution, switch_solution
-from vehicle.model.assembly.quarter_car_spec import WHEEL
 from vehicle.model.laws.coulomb import Coulomb
-from vehicle.model.laws.switch import Switch
-from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 from vehicle.signals.analysis.spectra import power_spectral_density
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 
 Array = npt.NDArray[np.float64]

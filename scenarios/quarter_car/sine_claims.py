@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from scenarios.claims import OWN_CHECK, PREDICTED, Claim
+from scenarios.lumped.history import History
+from scenarios.lumped.quarter_car_parameters import QuarterCar
 from scenarios.places import placed
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Array, Runs, rms
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.history import History
-from vehicle.model.parameters.quarter_car_parameters import QuarterCar
 
 NEARLY = 0.1
 """"Nearly equal" [-]."""

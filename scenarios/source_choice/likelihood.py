@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from scenarios.evidence import COMFORT_ENDS, EVIDENCE, LEVELS, USED, Evidence
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
+from scenarios.signals.exact_road import ROAD_RMS
 from scenarios.source_choice.candidates import NOISE_LEVELS, SLIP_VELOCITIES, Rig
 from scenarios.source_choice.runs import BUMPS, ENDS, POINTS, Plan, Readings, swings
-from vehicle.signals.excitation.exact_road import ROAD_RMS
 
 Vector = npt.NDArray[np.float64]
 

@@ -14,6 +14,9 @@ from scenarios.evidence import COMFORT_ENDS, LEVELS
 from scenarios.inertia import led_by, roll_mode
 from scenarios.inputs.make_inputs import LEVELS as SHAKER_RMS
 from scenarios.levels import WHEEL_BAND
+from scenarios.signals.bump import BUMP_START_S, NOISE_RMS, bump
+from scenarios.signals.exact_road import LEAD_S, RATE_HZ, ROAD_RMS, road
+from scenarios.signals.random_road import random_road
 from scenarios.source_choice.candidates import (
     NOISE_LEVELS,
     PLATES,
@@ -29,9 +32,6 @@ from vehicle.runs.car import Car
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.peaks import phase_resonance
 from vehicle.signals.excitation.band import SHAKER_ROLL_OFF_ORDER
-from vehicle.signals.excitation.bump import BUMP_START_S, NOISE_RMS, bump
-from vehicle.signals.excitation.exact_road import LEAD_S, RATE_HZ, ROAD_RMS, road
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]

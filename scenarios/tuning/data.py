@@ -20,8 +20,8 @@ from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.records.frf_file import read_frf, write_frf
-from vehicle.signals.records.table import Record
+from vehicle.signals.formats.frf_file import read_frf, write_frf
+from vehicle.signals.formats.table import Record
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.measured_targets import BAND, SPACING, MeasuredTarget
 from vehicle.studies.tuning.record_target import RecordTarget

@@ -8,10 +8,10 @@ import time
 from statistics import median
 
 from vehicle import read_signal, road
-from vehicle.runs.bench.drive import SECONDS, bench_drive
-from vehicle.runs.bench.guard import Guard
-from vehicle.runs.bench.motion import car_motion, mode_motion
-from vehicle.runs.bench.numbers import numbers
+from vehicle.handover.bench.drive import SECONDS, bench_drive
+from vehicle.handover.bench.guard import Guard
+from vehicle.handover.bench.motion import car_motion, mode_motion
+from vehicle.handover.bench.numbers import numbers
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
 
@@ -57,8 +57,8 @@ def frame_ms(name: str = "focus", picture: str = "run", seconds: float = 4.0) ->
         picture: "run" on high.csv, "mode", or "obstacle": a run over a cleat.
         seconds: length of the measurement [s].
     """
-    from vehicle.runs.bench.server import close_server, open_server
-    from vehicle.runs.bench.stage import CYCLE, Stage
+    from vehicle.handover.bench.server import close_server, open_server
+    from vehicle.handover.bench.stage import CYCLE, Stage
 
     car, guard = Car.load(name), Guard()
     high = read_signal(find_input("high.csv"), wheel=car.vehicle.shaker_wheel)

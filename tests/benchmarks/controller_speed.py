@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy.typing as npt
 
+from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from tests.model.laws.controller_files import controller_fmu
 from vehicle.core.library import core
 from vehicle.model.laws.control_laws import in_steps, pack
 from vehicle.model.laws.controller_fmu import Controller, read_controller
-from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
-from vehicle.signals.records.reader import digest
+from vehicle.signals.formats.reader import digest
 
 CALLS, SERIES = 2_000, 100
 

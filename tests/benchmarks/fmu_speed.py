@@ -9,9 +9,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.runs.fmu.master import Fmu, Instance
+from tests.handover.fmu.master import Fmu, Instance
+from vehicle.handover.fmu.fmu_file import write_fmu
 from vehicle.runs.car import Car
-from vehicle.runs.fmu.fmu_file import write_fmu
 
 SECONDS, LENGTH = 4.0, 1e-3
 """Time of the run and communication step [s]."""

@@ -23,7 +23,7 @@ from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.records.frf_file import FrfData
+from vehicle.signals.formats.frf_file import FrfData
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.posterior import EmulatedCar, emulated_car, posterior_of, values_at, verdict
 from vehicle.studies.tuning.response_cells import evaluated_cars

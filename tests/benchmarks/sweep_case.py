@@ -10,11 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from scenarios.global_sensitivity import RANGES, points_of
-from vehicle.signals.excitation.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
+from scenarios.road_measure import RoadInput, RoadMeasure
+from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import run_of
 from vehicle.studies.sweeps.case_table import table_cases
-from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 from vehicle.studies.sweeps.sweep import sweep
 
 SECONDS = 20.0

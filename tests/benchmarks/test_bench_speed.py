@@ -8,8 +8,8 @@ import pytest
 
 from tests.benchmarks.bench_speed import frame_ms, numbers_ms
 from vehicle import read_signal
-from vehicle.runs.bench.drive import SECONDS, bench_drive
-from vehicle.runs.bench.numbers import numbers
+from vehicle.handover.bench.drive import SECONDS, bench_drive
+from vehicle.handover.bench.numbers import numbers
 from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
 

@@ -7,8 +7,8 @@ import time
 
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the library of the tests is for Linux")

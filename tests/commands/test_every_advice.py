@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.advice import advised, run_advice
-from tests.signals.records import logger_files
+from tests.signals.formats import logger_files
 from vehicle.signals.excitation.input_files import find_input
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -11,7 +11,7 @@ import pytest
 from tests.advice import run_advice
 from vehicle.commands.comfort import main as comfort
 from vehicle.commands.inspect import main as inspect
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats.channel import Channel
 from vehicle.signals.records.channel_words import axis_of, suggested_channels, wheel_of
 
 

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.core.march_again import Fields, copied
 from vehicle.core.records import packed
 from vehicle.engines.reduced import group_run
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.runs.car import Car, Road
-from vehicle.signals.excitation.random_road import random_road
 
 RUBBER = {
     "front.bushings.arm_rear.friction_force": [300.0] * 3,

@@ -8,11 +8,11 @@ import itertools
 import numpy as np
 import pytest
 
+from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from tests.core import laws
 from vehicle.model.laws.control_laws import act, at_rest, demanded, in_steps, pack
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.damper import FRICTION, RECORD
-from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.model.parameters.semi_active_damper import LAWS
 
 SPEEDS = (-2.0, -0.3, -1e-9, -1e-300, 0.0, 1e-300, 1e-9, 0.3, 2.0, 1e20)

@@ -34,7 +34,7 @@ NOT_RUN = {
     "make shaker": "sets up the environment in which this test runs",
     "make test": "this test runs in it",
     "make docs": "test_site.py runs its command",
-    "python -m vehicle bench": "serves a page until Ctrl-C; tests/runs/bench/test_page.py opens it",
+    "python -m vehicle bench": "serves a page until Ctrl-C; tests/handover/bench/test_page.py opens it",
 }
 """Beginning of a command of a `sh` block to the reason why no test of this file runs it."""
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump_shape
 from tests.engines.simulation.test_load_channels import at_poses, centres, moved_by
 from tests.physics.rolling_car import rolling_car
 from tests.physics.test_displacement_tables import bent, changed_car
@@ -14,10 +15,9 @@ from tests.validation import validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError
+from vehicle.handover.fmu.car_numbers import car_numbers
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.runs.fmu.car_numbers import car_numbers
-from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 SPEED = 15.0

@@ -12,10 +12,10 @@ pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-sha
 from tests.model.laws.controller_files import PARAMETERS, controller_fmu
 from tests.validation import validated
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.handover.fmu.fmu_file import write_fmu
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.runs.fmu.fmu_file import write_fmu
-from vehicle.signals.records.reader import digest
+from vehicle.signals.formats.reader import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)

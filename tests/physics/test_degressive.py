@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from scenarios.lumped.degressive import Degressive
 from tests.engines.simulation.row_model import Stepper, add_damper, empty_spec
 from tests.validation import foreign, validated
-from vehicle.model.laws.degressive import Degressive
 from vehicle.runs.car import Car
 
 LAW = Degressive(low_damping=15000.0, high_damping=1500.0, knee_velocity=0.02)  # appendix C.2 of Bommer 2006

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 
 SYMMETRIC = [

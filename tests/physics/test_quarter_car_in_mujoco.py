@@ -9,18 +9,18 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.lumped.input_signals import Sampled
+from scenarios.lumped.quarter_car_network import quarter_car
+from scenarios.lumped.quarter_car_parameters import Friction, load_quarter_car
+from scenarios.lumped.quarter_car_spec import quarter_car_spec
+from scenarios.lumped.stiff_solution import stiff_solution
 from scenarios.quarter_car.in_mujoco import DEFAULT_STEP, friction_of_the_rows, in_mujoco
+from scenarios.signals.random_road import random_road
 from tests.engines.simulation.row_model import poles
 from tests.validation import foreign, validated
 from vehicle.engines.linear.natural_modes import natural_modes
-from vehicle.engines.lumped.input_signals import Sampled
-from vehicle.engines.lumped.quarter_car_network import quarter_car
-from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.errors import ConfigurationError
-from vehicle.model.assembly.quarter_car_spec import quarter_car_spec
-from vehicle.model.parameters.quarter_car_parameters import Friction, load_quarter_car
 from vehicle.signals.analysis.slip import slip_share
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 
 CAR = load_quarter_car()

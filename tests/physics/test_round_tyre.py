@@ -10,7 +10,7 @@ import pytest
 
 from tests.physics.rolling_car import RADIUS, rolling_car
 from tests.validation import validated
-from vehicle.engines.simulation.axle_curves import design_slopes
+from vehicle.engines.kinematics.axle_curves import design_slopes
 from vehicle.engines.simulation.rows import Rows
 from vehicle.runs.car import Car
 from vehicle.runs.car.axle import axle_statics

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.periodic import multisine
 from tests.validation import validated
 from vehicle.model.parameters.vehicle import load_vehicle
@@ -12,7 +13,6 @@ from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.input_files import find_input
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 

@@ -8,18 +8,18 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.lumped.bump_response import bump_passage
+from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
+from scenarios.lumped.semi_active_half_car import simulate_bump
 from tests.physics.controlled_half_car import half_car_spec
 from tests.validation import validated
 from vehicle.engines.linear.car_matrices import car_matrices
-from vehicle.engines.lumped.bump_response import bump_passage
-from vehicle.engines.lumped.semi_active_half_car import simulate_bump
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.plate_arrays import PlateArrays
 from vehicle.engines.simulation.rows import Rows, prepare_model
 from vehicle.engines.simulation.static_trim import StaticTrim
-from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.excitation.signal import Signal, uniform_time

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.engines.simulation.row_model import Stepper, add_bushing, add_damper, add_free_body, element_law, empty_spec
 from tests.validation import validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
@@ -15,7 +16,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.laws.damper import RECORD
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.excitation.random_road import random_road
 
 LIMIT, COEFFICIENT = 100.0, 0.2
 SIDE = {f"{axle}.damper.side_force_coefficient": 0.3 for axle in ("front", "rear")}

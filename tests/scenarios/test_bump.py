@@ -18,9 +18,9 @@ from scenarios.bump.runs import SIZES, relative_acceleration, ring_down_time, sl
 from scenarios.bump.seeds import BumpSeeds, many_seeds, row_key
 from scenarios.car_runs import CarRuns
 from scenarios.evidence import evidence_of
+from scenarios.signals.bump import bump
 from tests.scenarios.kept_table import contradictions
 from vehicle.drawing.rendering.backend import film_available, find_ffmpeg
-from vehicle.signals.excitation.bump import bump
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ import pytest
 from scenarios import car_runs
 from scenarios.car_runs import CarRuns
 from scenarios.claims import PREDICTED, Findings
+from scenarios.signals.bump import bump
 from scenarios.study import car_study
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.bump import bump
 from vehicle.signals.excitation.signal import Signal
 
 SHORT = bump(amplitude=7.5e-3, wheel="fr", duration=1.0, start=0.1)

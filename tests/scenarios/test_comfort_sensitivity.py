@@ -34,13 +34,13 @@ from scenarios.comfort_sensitivity.histories import (
     wheel_peak,
 )
 from scenarios.evidence import LEVELS, evidence_of, status_of
+from scenarios.road_measure import RoadInput, RoadMeasure
+from scenarios.signals.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from tests.scenarios.kept_table import contradictions
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER
-from vehicle.signals.excitation.exact_road import ROAD_EDGE_HZ, ROAD_RMS
 from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.road_measure import RoadInput, RoadMeasure
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,9 @@ from scenarios.damper_choice.__main__ import main
 from scenarios.damper_choice.damper_curves import compare_curves
 from scenarios.damper_choice.other_vehicles import region_verdicts
 from scenarios.damper_choice.runs import complete_car_quarter, trade_off
+from scenarios.lumped.damper_choice import FITTED, damper_choice_parameters
+from scenarios.lumped.road_holding import quarter_car_model, tyre_load_ratio
 from tests.scenarios.kept_table import contradictions
-from vehicle.engines.lumped.road_holding import quarter_car_model, tyre_load_ratio
-from vehicle.model.parameters.damper_choice import FITTED, damper_choice_parameters
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.output.written_files import MARKER
 

@@ -18,7 +18,7 @@ from scenarios.damper_choice.fit import (
     quarter_car_values,
     root_stiffness_mass,
 )
-from vehicle.model.parameters.damper_choice import damper_choice_parameters
+from scenarios.lumped.damper_choice import damper_choice_parameters
 from vehicle.model.parameters.toml_file import as_table
 
 P = damper_choice_parameters()

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from scenarios.damper_choice.optimum import iterate, joint_optimum, optimum
-from vehicle.engines.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
+from scenarios.lumped.damper_choice import damper_choice_parameters
+from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
 from vehicle.errors import ConfigurationError, SimulationError
-from vehicle.model.parameters.damper_choice import damper_choice_parameters
 
 P = damper_choice_parameters()
 GRID = np.arange(1000.0, 8001.0, 250.0)

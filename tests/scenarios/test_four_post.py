@@ -9,8 +9,8 @@ import pytest
 
 from scenarios.four_post.__main__ import main
 from scenarios.four_post.runs import LINES, channels_of, matrix_response
+from scenarios.signals.four_post import MOTIONS
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.four_post import MOTIONS
 
 
 @pytest.fixture(scope="module")

@@ -11,10 +11,10 @@ from scenarios.half_car_rider.__main__ import main
 from scenarios.half_car_rider.claims import relative_changes
 from scenarios.half_car_rider.runs import SPEEDS, TIME_STEP, VARIED, outcome, parameter_study, passive, varied
 from scenarios.half_car_rider.seats import MEASURES, STIFFNESS, seats, with_experiment
+from scenarios.lumped.bump_response import bump_passage, bump_response
+from scenarios.lumped.half_car_rider_model import half_car_rider, output_points
+from scenarios.lumped.half_car_rider_parameters import PUBLISHED, half_car_rider_parameters
 from tests.scenarios.kept_table import contradictions
-from vehicle.engines.lumped.bump_response import bump_passage, bump_response
-from vehicle.engines.lumped.half_car_rider_model import half_car_rider, output_points
-from vehicle.model.parameters.half_car_rider_parameters import PUBLISHED, half_car_rider_parameters
 from vehicle.runs.output.written_files import MARKER
 from vehicle.signals.analysis.exposure import vibration_dose_value
 

@@ -11,7 +11,7 @@ from scipy.signal import welch
 from scenarios.inputs.make_block import BASE, EDGES, PUBLISHED, RMS, STEP, block_heights, main
 from tests.validation import validated
 from vehicle.signals.excitation.measured_road import read_road
-from vehicle.signals.records.crg_format import read_surface
+from vehicle.signals.formats.crg_format import read_surface
 
 
 def test_the_bands_are_those_of_the_pavement():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from scenarios.claims import Claim
+from scenarios.lumped.quarter_car_parameters import load_quarter_car
 from scenarios.quarter_car.__main__ import main
 from scenarios.quarter_car.claims import findings
 from scenarios.quarter_car.figures import FIGURES
@@ -16,7 +17,6 @@ from scenarios.quarter_car.runs import HIGH, LEVELS, STEP, UPPER_EDGE_HZ, Runs, 
 from scenarios.quarter_car.sine_claims import stuck_bound
 from tests.scenarios.kept_table import contradictions
 from tests.validation import validated
-from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 from vehicle.runs.output.written_files import MARKER
 
 TENFOLD = "sine 1 mm, from rest: body acceleration"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from scenarios.signals.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, road, velocity_density
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.exact_road import RATE_HZ, ROAD_EDGE_HZ, ROAD_RMS, road, velocity_density
 
 LEAD = 5.0
 

@@ -6,11 +6,11 @@ import json
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump
 from scenarios.stribeck import force_error, law_force, main, peak_claims
 from tests.scenarios.kept_table import contradictions
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.slip import extra_peaks, most_prominent, slip_phases
-from vehicle.signals.excitation.bump import bump
 
 TIME = np.arange(0.0, 1.0, 1e-3)
 

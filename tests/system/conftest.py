@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.commands.shaker import main
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import write_signal
 
 

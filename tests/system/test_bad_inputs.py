@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.patience import HANG
 from tests.system.conftest import csv_text
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 ROOT = Path(__file__).resolve().parents[2]
 GOOD = random_road(rms=1e-4, seed=1, wheel="fr", duration=4.0).displacement["fr"]

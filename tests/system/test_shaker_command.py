@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.benchmarks.frf_accuracy import banded_input
 from tests.patience import HANG
 from vehicle.errors import DataError
@@ -20,7 +21,6 @@ from vehicle.model.parameters.template import SHIPPED
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER, written
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import write_signal
 

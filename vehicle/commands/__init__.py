@@ -32,5 +32,5 @@ def module_of(name: str) -> str:
     return f"vehicle.commands.{name.replace('-', '_')}"
 
 
-OLDER = COMMANDS[:5]
+OLDER = ("shaker", "modes", "comfort")
 """Those that are called as `python -m vehicle.NAME` too."""

@@ -51,8 +51,8 @@ def _shaker(options_text: Sequence[str]) -> None:
 def _compare(options_text: Sequence[str]) -> None:
     from vehicle.commands.compare import measured_choice, parser
     from vehicle.model.parameters.vehicle import load_vehicle
+    from vehicle.signals.formats.reader import read_record
     from vehicle.signals.records.measured import read_measured
-    from vehicle.signals.records.reader import read_record
 
     options = parser().parse_args(options_text)
     (name,) = options.measured

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.accepted import refusal
 from vehicle.errors import VehicleError
-from vehicle.signals.records.channel import NOT_OVER_TIME, ROAD_PROFILE
+from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE
+from vehicle.signals.formats.text import LARGEST
 from vehicle.signals.records.channel_words import (
     axis_of,
     map_options,
@@ -18,10 +19,9 @@ from vehicle.signals.records.channel_words import (
     wheel_of,
     words_of,
 )
-from vehicle.signals.records.text import LARGEST
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.channel import Channel, Measurement
+    from vehicle.signals.formats.channel import Channel, Measurement
 
 Numbered = tuple[int, "Channel"]
 """Number of a channel in its file, and the channel."""
@@ -182,7 +182,7 @@ def _clock(*channels: Channel) -> tuple[str, ...]:
     """Return the options that make the times of channels usable and common, in the longest part with all values."""
     import numpy as np
 
-    from vehicle.signals.records.clock import clock_options
+    from vehicle.signals.formats.clock import clock_options
     from vehicle.signals.records.common_span import blocks_of, cut, resampling_rate
 
     if any(channel.axis is None for channel in channels):

@@ -53,11 +53,11 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.runs.bench.drive import bench_drive
-    from vehicle.runs.bench.guard import Guard
-    from vehicle.runs.bench.page import Page
-    from vehicle.runs.bench.server import close_server, open_server
-    from vehicle.runs.bench.state import BenchState
+    from vehicle.handover.bench.drive import bench_drive
+    from vehicle.handover.bench.guard import Guard
+    from vehicle.handover.bench.page import Page
+    from vehicle.handover.bench.server import close_server, open_server
+    from vehicle.handover.bench.state import BenchState
     from vehicle.runs.car import Car
 
     car = Car.load(options.car, options.overrides)

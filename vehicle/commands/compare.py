@@ -27,7 +27,7 @@ from vehicle.errors import ConfigurationError
 if TYPE_CHECKING:
     from vehicle.runs.car import Car, Run
     from vehicle.runs.comparison.simulated import Simulated
-    from vehicle.signals.records.channel import Measurement
+    from vehicle.signals.formats.channel import Measurement
     from vehicle.signals.records.choice import Choice
     from vehicle.signals.records.measured import Measured
 
@@ -223,7 +223,7 @@ def _compared(options: argparse.Namespace, output: Path) -> tuple[dict[str, Any]
     from vehicle.runs.comparison.compared_run import compare
     from vehicle.runs.comparison.frf_comparison import edges_of
     from vehicle.runs.output.comparison_files import save_comparison
-    from vehicle.signals.records.reader import read_record
+    from vehicle.signals.formats.reader import read_record
 
     edges = edges_of(options.bands)
     choice = measured_choice(options)

@@ -15,7 +15,7 @@ from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.names import FMI_VERSIONS
 
 if TYPE_CHECKING:
-    from vehicle.runs.fmu.fmu_file import WrittenFmu
+    from vehicle.handover.fmu.fmu_file import WrittenFmu
 
 HIGHEST_SPEED = 300.0
 """Maximum speed [km/h]."""
@@ -55,8 +55,8 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.commands.loads import recorded_channels
+    from vehicle.handover.fmu.fmu_file import LONGEST_STEP, SHORTEST_STEP, write_fmu
     from vehicle.runs.car import Car
-    from vehicle.runs.fmu.fmu_file import LONGEST_STEP, SHORTEST_STEP, write_fmu
     from vehicle.runs.output.folder import write_whole
 
     shortest, longest = 1e3 * SHORTEST_STEP, 1e3 * LONGEST_STEP

@@ -14,7 +14,7 @@ from vehicle.commands.parser import Parser
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.channel import Channel, Measurement
+    from vehicle.signals.formats.channel import Channel, Measurement
 
 
 SHOWN = 60
@@ -38,7 +38,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.input_files import find_input
-    from vehicle.signals.records.reader import read_record
+    from vehicle.signals.formats.reader import read_record
 
     def one(name: str) -> dict[str, Any]:
         measurement = read_record(find_input(name), tuple(options.databases))
@@ -94,7 +94,7 @@ def overview(results: list[dict[str, Any]]) -> str:
 
 def contents(measurement: Measurement) -> dict[str, Any]:
     """Return the content of a file as plain numbers and texts; levels in SI units, or in the file's if unknown."""
-    from vehicle.signals.records.clock import time_remarks
+    from vehicle.signals.formats.clock import time_remarks
     from vehicle.signals.records.common_span import different_spans
 
     axes = {
@@ -164,7 +164,7 @@ def report(content: dict[str, Any]) -> str:
     Args:
         content: of `contents`, with the command.
     """
-    from vehicle.signals.records.units import find_ratio
+    from vehicle.signals.formats.units import find_ratio
 
     lines = [
         f"{content['file']}: {content['format']}, {(count := len(content['channels']))} channel{'s' * (count != 1)}"

@@ -18,8 +18,8 @@ from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from vehicle.engines.simulation.axle_statics import WheelPose
-    from vehicle.engines.simulation.wheel_geometry import WheelGeometry
+    from vehicle.engines.kinematics.axle_statics import WheelPose
+    from vehicle.engines.kinematics.wheel_geometry import WheelGeometry
 
 MOST_POSITIONS = 2001
 """Positions of one table: 0.1 mm over 200 mm."""
@@ -80,7 +80,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.engines.simulation.axle_curves import design_slopes, geometry_curve, travel_curve
+    from vehicle.engines.kinematics.axle_curves import design_slopes, geometry_curve, travel_curve
     from vehicle.runs.car import Car
     from vehicle.runs.car.axle import axle_statics, car_at_rest, direction_to_middle
 
@@ -215,7 +215,7 @@ def _write(
 ) -> None:
     from vehicle.drawing.rendering.kinematics_plot import plot_kinematics
     from vehicle.runs.output.folder import output_folder, write_whole
-    from vehicle.signals.records.text_format import write_table
+    from vehicle.signals.formats.text_format import write_table
 
     units = {"m": "m", "deg": "deg", "n": "N"}
     heads = [f"{name.rpartition('_')[0]} [{units[name.rpartition('_')[2]]}]" for name in COLUMNS]

@@ -50,7 +50,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.load_plot import plot_loads
     from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.signals.analysis.load_spectrum import load_spectrum
-    from vehicle.signals.records.reader import read_columns, time_file
+    from vehicle.signals.formats.reader import read_columns, time_file
     from vehicle.signals.records.run_summary import available_summary
 
     source = time_file(options.run)

@@ -1,4 +1,4 @@
-"""`python -m vehicle.mjcf`: write the generated MJCF files of a vehicle."""
+"""`python -m vehicle mjcf`: write the generated MJCF files of a vehicle."""
 
 from __future__ import annotations
 

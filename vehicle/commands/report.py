@@ -31,7 +31,7 @@ def parser() -> Parser:
 
 
 def _job(options: argparse.Namespace) -> None:
-    from vehicle.runs.report.report_file import write_report
+    from vehicle.handover.page.report_file import write_report
 
     missing = next((run for run in options.runs if not run.is_dir()), None)
     if missing is not None:

@@ -39,7 +39,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.quantity import PATH_PATTERN
 from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.names import CORNERS
-from vehicle.signals.records.formats import TABLES, WRITTEN
+from vehicle.signals.formats.formats import TABLES, WRITTEN
 
 if TYPE_CHECKING:
     from vehicle.signals.excitation.signal import Signal
@@ -149,7 +149,7 @@ def _job(options: argparse.Namespace) -> None:
     _check_numbers(options)
     output = output_folder_of(options, Path("runs") / stem, protect=inputs)
     if "h5" in options.formats:
-        from vehicle.signals.records.reader import extra
+        from vehicle.signals.formats.reader import extra
 
         extra("h5py", "hdf5", "--format h5")
     engine, reason = _engine(options)
@@ -209,12 +209,13 @@ def _job(options: argparse.Namespace) -> None:
             film(run, path, take, jobs=drawing_jobs(), progress=progress)
 
         def make_report(path: Path) -> None:
+            from vehicle.handover.page.trial_section import trial
             from vehicle.runs.report.finished_run import read_run
             from vehicle.runs.report.page import report_page
 
             progress = ProgressLine("report    ", enabled=not options.quiet)
             finished = read_run(folder, final_path=output, car=car, recording=run.recording)
-            page = report_page([finished], progress, author=options.author, project=options.project)
+            page = report_page([finished], progress, trial=trial, author=options.author, project=options.project)
             path.write_text(page, encoding="utf-8")
 
         summary = write_run(
@@ -281,7 +282,7 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
         ConfigurationError: no damper of the car has limits of its coefficient, or there is nothing to trust.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
-    from vehicle.signals.records.reader import digest
+    from vehicle.signals.formats.reader import digest
 
     vehicle = load_vehicle(options.vehicle, options.overrides)
     controls = {damper.path: control for damper in vehicle.composition.dampers if (control := damper.law.control)}

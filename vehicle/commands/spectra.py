@@ -48,7 +48,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.spectra_plot import plot_road_levels, plot_spectra
     from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.runs.output.spectra_files import picture_columns, spectra_text, third_octaves_text
-    from vehicle.signals.records.reader import time_file
+    from vehicle.signals.formats.reader import time_file
     from vehicle.signals.records.record_spectra import record_spectra
 
     asked = [name.strip() for name in options.channels.split(",")] if options.channels else None

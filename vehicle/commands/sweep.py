@@ -1,4 +1,4 @@
-"""`python -m vehicle.sweep`: table of comfort and slip for variations of parameters and inputs."""
+"""`python -m vehicle sweep`: table of comfort and slip for variations of parameters and inputs."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Engines that compute a car: MuJoCo simulation, linear system, reduced engine, lumped models."""
+"""Engines that compute a car: MuJoCo simulation, lifted axles, linear system, reduced engine."""

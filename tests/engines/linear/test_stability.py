@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.commands import modes
 from vehicle.engines.linear.natural_modes import grows
 from vehicle.engines.simulation.judgement import require_finite
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import evaluate
 

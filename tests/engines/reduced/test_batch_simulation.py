@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.engines.linear.plain_matrices import plain_matrices
-from tests.engines.lumped.stick_slip import ExactStickSlip
 from tests.engines.reduced.test_reduced_quarter_car import damper, matrices
+from tests.scenarios.lumped.stick_slip import ExactStickSlip
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import LONGEST_STEP, simulate_reduced
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 ROAD = random_road(rms=1e-3, seed=5, wheel="fr", duration=2.0)

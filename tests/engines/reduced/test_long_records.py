@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.engines.reduced import group_run, plate_samples
 from vehicle.engines.simulation import recorded_acceleration
 from vehicle.engines.simulation.judgement import require_samples
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 
 def test_pieces_give_the_same_run(car, monkeypatch):

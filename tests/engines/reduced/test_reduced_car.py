@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump_shape
+from scenarios.signals.random_road import random_road
 from tests.periodic import multisine
 from tests.validation import validated
 from vehicle.engines.reduced import group_run
@@ -13,8 +15,6 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.periodic_record import whole_record_responses
-from vehicle.signals.excitation.bump import bump_shape
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 CHANNELS = load_vehicle().channels

@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 import scipy
 
+from scenarios.lumped.input_signals import Sampled
+from scenarios.lumped.quarter_car_network import quarter_car
+from scenarios.lumped.quarter_car_parameters import load_quarter_car
+from scenarios.lumped.stiff_solution import stiff_solution
 from scenarios.quarter_car.in_mujoco import friction_of_the_rows
+from scenarios.signals.random_road import random_road
 from tests.engines.linear.plain_matrices import plain_matrices
 from tests.validation import foreign, validated
-from vehicle.engines.lumped.input_signals import Sampled
-from vehicle.engines.lumped.quarter_car_network import quarter_car
-from vehicle.engines.lumped.stiff_solution import stiff_solution
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recorded_acceleration import acceleration
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.stribeck import Stribeck
-from vehicle.model.parameters.quarter_car_parameters import load_quarter_car
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.slip import slip_share
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 CAR = load_quarter_car()

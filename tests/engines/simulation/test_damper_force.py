@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.engines.simulation import callbacks, stepping
 from vehicle.engines.simulation.damper_force import fill_sensors
 from vehicle.engines.simulation.rows import Rows
 from vehicle.engines.simulation.run_model import run_model
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 LAWS = {
     "focus": [],  # Coulomb friction, linear

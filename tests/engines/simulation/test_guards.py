@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.engines.simulation.stepping import record_every
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 SHORT = random_road(rms=1e-4, seed=1, wheel="fr", duration=1.5)

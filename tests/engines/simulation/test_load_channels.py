@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump_shape
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.road_level import CLASSES
-from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.iso_road import IsoRoad, Side, drive
 from vehicle.signals.excitation.signal import Signal, uniform_time
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.engines.simulation import plate_arrays
 from vehicle.engines.simulation.plate_arrays import PlateArrays
-from vehicle.signals.excitation.random_road import random_road
 
 ROAD = random_road(rms=5e-4, seed=2, wheel="fr", duration=3.0)
 

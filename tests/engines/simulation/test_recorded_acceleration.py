@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from scenarios.signals.random_road import random_road
 from tests.validation import validated
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS, acceleration
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 INTERVAL = 1e-3
 

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.engines.simulation.car_model import build_model
 from vehicle.errors import DataError
 from vehicle.model.assembly.spec import assemble
@@ -15,7 +16,6 @@ from vehicle.model.parameters.paths import override
 from vehicle.model.parameters.toml_file import write_text
 from vehicle.model.parameters.vehicle import load_vehicle, vehicle_of
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 WIDER = 0.03  # m on each side
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.engines.simulation.axle_statics import AxleStatics
+from vehicle.engines.kinematics.axle_statics import AxleStatics
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.rows import Rows
 from vehicle.errors import ConfigurationError

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.model.flexbody.beam import FloatArray
 from vehicle.model.flexbody.carried_nodes import carried_by, with_carried_nodes
 from vehicle.model.flexbody.frame_modes import rigid_shapes
@@ -18,7 +19,6 @@ from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.template import SHIPPED
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 TEXT = FOCUS_FILE.read_text(encoding="utf-8")
 BRACE = (0.7, 0.1, 1.2)

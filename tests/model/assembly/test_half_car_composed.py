@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenarios.lumped.half_car_rider_model import half_car_rider
+from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
-from vehicle.engines.lumped.half_car_rider_model import half_car_rider
-from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car
 

@@ -53,9 +53,9 @@ def test_committed_files_are_the_generated_ones(files):
         if path.is_file() and path.name not in ("README.md", MARKER)
     }
     assert len(files) > 50
-    assert sorted(committed) == sorted(files), "run: python -m vehicle.mjcf --force"
+    assert sorted(committed) == sorted(files), "run: python -m vehicle mjcf --force"
     changed = [name for name, content in files.items() if not same_file(committed[name], content)]
-    assert not changed, f"run: python -m vehicle.mjcf --force ({changed[:3]} differ)"
+    assert not changed, f"run: python -m vehicle mjcf --force ({changed[:3]} differ)"
 
 
 def test_plain_mujoco_refuses_the_model_and_names_the_reason(files, tmp_path):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
+from scenarios.signals.bump import bump_shape
 from tests.validation import validated
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.response import frequency_response
@@ -17,7 +18,6 @@ from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.shipped import VEHICLES
 from vehicle.model.parameters.vehicle import load_vehicle, vehicle_of
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 SEATED = VEHICLES / "focus_road_seated" / "vehicle.toml"

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
-from vehicle.engines.simulation.axle_statics import AxleStatics
+from vehicle.engines.kinematics.axle_statics import AxleStatics
 from vehicle.model.parameters.vehicle import load_vehicle, vehicle_of
 from vehicle.runs.car import Car
 

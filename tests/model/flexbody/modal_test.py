@@ -8,8 +8,8 @@ import numpy as np
 
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.signals.records.geometry import Geometry, ModeShape
-from vehicle.signals.records.uff_writer import write
+from vehicle.signals.formats.geometry import Geometry, ModeShape
+from vehicle.signals.formats.uff_writer import write
 
 POINTS = tuple(load_vehicle(None).composition.attachments())
 """Names of all points of the car on the body."""

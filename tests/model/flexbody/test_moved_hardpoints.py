@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.body_design import read_design
 from vehicle.model.flexbody.body_frame import body_frame
@@ -16,7 +17,6 @@ from vehicle.model.flexbody.symmetry import parity
 from vehicle.model.parameters.shipped import FOCUS_FILE
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 
 ROAD = random_road(rms=1e-3, seed=1, wheel="fr", duration=1.0)
 

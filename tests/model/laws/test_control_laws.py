@@ -6,10 +6,10 @@ import itertools
 import numpy as np
 import pytest
 
+from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
-from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
 from vehicle.model.parameters.semi_active_damper import LAWS
 
 DAMPER = half_car_rider_parameters().semi_active

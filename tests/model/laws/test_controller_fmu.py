@@ -13,6 +13,7 @@ import pytest
 
 pytest.importorskip("fmpy", reason="FMPy is missing: pip install 'vehicle-on-shaker[fmu]'")
 
+from scenarios.lumped.half_car_rider_parameters import half_car_rider_parameters
 from tests.core import laws as core_laws
 from tests.core.laws import called
 from tests.model.laws.controller_files import NUMBERS, PARAMETERS, controller_fmu
@@ -20,8 +21,7 @@ from tools.controller_library import FOLDER, digests
 from vehicle.errors import ConfigurationError, DataError, SimulationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
 from vehicle.model.laws.controller_fmu import NOT_FINITE, TERMINATED, Controller, controllers, read_controller
-from vehicle.model.parameters.half_car_rider_parameters import half_car_rider_parameters
-from vehicle.signals.records.reader import digest
+from vehicle.signals.formats.reader import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)

@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenarios.lumped.degressive import Degressive
+from scenarios.lumped.switch import Switch
 from tests.core.laws import friction_limit
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.coulomb import Coulomb
 from vehicle.model.laws.damper import damper_law, pack
-from vehicle.model.laws.degressive import Degressive
 from vehicle.model.laws.friction import Clamped
 from vehicle.model.laws.kelvin import Kelvin
 from vehicle.model.laws.law import Parallel
 from vehicle.model.laws.maxwell import Maxwell
 from vehicle.model.laws.stribeck import Stribeck
-from vehicle.model.laws.switch import Switch
 from vehicle.model.parameters.vehicle import load_vehicle
 
 STRIBECK = {

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from vehicle.handover.bench.setting import settings
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.parameter_list import parameter_at
 from vehicle.model.parameters.paths import assignments, override, value_at
 from vehicle.model.parameters.shipped import shipped_cars
 from vehicle.model.parameters.vehicle import vehicle_of
-from vehicle.runs.bench.setting import settings
 from vehicle.runs.car import Car
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from tests.engines.simulation.instant_centres import across, motion, rod
+from tests.engines.kinematics.instant_centres import across, motion, rod
 from tests.validation import validated
 from vehicle import Car, ConfigurationError
 from vehicle.model.parameters.vehicle import vehicle_of

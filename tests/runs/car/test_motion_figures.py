@@ -19,8 +19,8 @@ from vehicle import Car
 from vehicle.commands.modes import main as modes
 from vehicle.commands.new import main as new
 from vehicle.commands.show import main as show
+from vehicle.engines.kinematics.axle_ride import Support
 from vehicle.engines.linear.car_matrices import CarMatrices
-from vehicle.engines.simulation.axle_ride import Support
 from vehicle.model.parameters.composition import PlacedWheel
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.runs.car.car_text import figures_table

@@ -10,10 +10,10 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle import load_run, road, save_run
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car, Run
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.records.run_summary import read_summary
 
 CHANGES = {"damper.coulomb_friction": 93.75, "body.mass": 830}

@@ -15,9 +15,9 @@ from vehicle.runs.car import Car
 from vehicle.runs.comparison.mode_comparison import compare_modes, shapes_at
 from vehicle.runs.output.mode_file import mode_shapes
 from vehicle.signals.analysis.modal_assurance import mac
-from vehicle.signals.records.channel import Measurement
-from vehicle.signals.records.geometry import Geometry, ModeShape
-from vehicle.signals.records.reader import read_record
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.geometry import Geometry, ModeShape
+from vehicle.signals.formats.reader import read_record
 
 
 @pytest.fixture(scope="module")

@@ -6,17 +6,17 @@ import json
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.commands.compare import main as compare_command
 from vehicle.commands.shaker import main as shaker
 from vehicle.commands.tune import main as tune
 from vehicle.errors import DataError
 from vehicle.runs.car import Car
 from vehicle.runs.comparison.compared_run import compare
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import write_signal
-from vehicle.signals.records import uff_writer
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats import uff_writer
+from vehicle.signals.formats.channel import Channel
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.measured import read_measured
 

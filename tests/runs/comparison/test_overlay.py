@@ -21,10 +21,10 @@ from vehicle.runs.comparison.compared_run import comparison_of
 from vehicle.runs.comparison.simulated import of_folder
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal_file import read_signal
-from vehicle.signals.records import uff_writer
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats import uff_writer
+from vehicle.signals.formats.channel import Channel
+from vehicle.signals.formats.text_format import write_table
 from vehicle.signals.records.measured import read_measured
-from vehicle.signals.records.text_format import write_table
 
 MOUNT, ENGINE = "bushings.suspension_mount.stiffness.z", "bushings.linear_mount.stiffness.z"
 HIDDEN = {MOUNT: 5.5e5, ENGINE: 4.5e5}

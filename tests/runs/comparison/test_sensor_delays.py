@@ -12,10 +12,10 @@ from vehicle.commands.compare import main
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car
 from vehicle.runs.comparison.compared_run import compare
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats.channel import Channel
+from vehicle.signals.formats.uff_writer import write
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.delays import parsed_delays
-from vehicle.signals.records.uff_writer import write
 
 ACCELERATIONS = ("knuckle_fr_acc_z", "knuckle_fl_acc_z", "seat_rail_acc_z", "engine_acc_z")
 OTHERS = ("plate_fr_displacement", "plate_fl_displacement", "damper_fr_velocity")

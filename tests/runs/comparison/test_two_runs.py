@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle import Car, compare, road, save_run
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.random_road import random_road
 
 FRICTION = "damper.coulomb_friction=62.5"
 COMPARED = ("seat_rail_acc_z", "plate_fl_displacement")

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.commands.shaker import main
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import write_signal
 
 

@@ -10,24 +10,24 @@ import pytest
 
 from tests.runs.report.test_trial import shipped
 from vehicle.errors import ConfigurationError
+from vehicle.handover.page.trial_data import trial_data
+from vehicle.handover.page.trial_section import trial
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
-from vehicle.runs.report.trial_section import trial
-from vehicle.runs.trial.trial_data import trial_data
 
 
 def test_a_report_without_sliders_says_why(reported):
     run = read_run(reported.folder)
     rubbing = dataclasses.replace(run, car=run.car.with_({"front.damper.side_force_coefficient": 0.2}))
-    assert "damper_fr.side_force_coefficient: found 0.2" in trial(rubbing)[1]
-    assert "This report has no sliders for this car or input" in report_page([rubbing])
+    assert "damper_fr.side_force_coefficient: found 0.2" in trial(rubbing).content
+    assert "This report has no sliders for this car or input" in report_page([rubbing], trial=trial)
     summary: Any = run.summary
     cams: Any = {**summary, "input": {**summary["input"], "road": {"tyre_contact": "cams"}}}
-    assert "through cams" in trial(dataclasses.replace(run, summary=cams))[1]
+    assert "through cams" in trial(dataclasses.replace(run, summary=cams)).content
     silent = {name: history for name, history in run.recording.channels.items() if not name.startswith("plate")}
     recording = dataclasses.replace(run.recording, channels=silent)
-    numbers, content = trial(dataclasses.replace(run, recording=recording))
-    assert numbers == "" and "no channel &#x27;plate_fl_displacement&#x27;" in content
+    silent_trial = trial(dataclasses.replace(run, recording=recording))
+    assert silent_trial.numbers == "" and "no channel &#x27;plate_fl_displacement&#x27;" in silent_trial.content
 
 
 def test_a_car_that_the_page_cannot_run_has_no_section():

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from scenarios.signals.random_road import random_road
 from tests.patience import HANG
 from tests.runs.report.test_trial import STRIBECK
 from vehicle.commands.shaker import main
+from vehicle.handover.page.page_input import LONGEST, RunRoad
+from vehicle.handover.page.trial_data import PAGE, WORKER, scripts, trial_data
 from vehicle.runs.car import Car, Road
-from vehicle.runs.trial.page_input import LONGEST, RunRoad
-from vehicle.runs.trial.trial_data import PAGE, WORKER, scripts, trial_data
 from vehicle.signals.excitation.input_files import find_input
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import read_signal, write_signal
 
 LARGEST = 600_000

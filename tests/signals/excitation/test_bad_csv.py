@@ -10,7 +10,7 @@ import pytest
 from tests.signals.excitation.csv_samples import HEADER, read_plain, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.plausibility import band_limited_acceleration
-from vehicle.signals.records import text as csv_text
+from vehicle.signals.formats import text as csv_text
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
 

@@ -7,10 +7,10 @@ import hashlib
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.signals.excitation.csv_samples import HEADER, read_plain, rows, with_row, write
 from vehicle.errors import ConfigurationError, DataError, OutputError
 from vehicle.signals.excitation.input_files import find_input, shipped_inputs
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.rest import half_cosine
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.signal_file import read_signal, write_signal

@@ -5,8 +5,8 @@ import pickle
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.errors import DataError
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 TIME = uniform_time(samples=1001, timestep=1e-3)

@@ -20,9 +20,9 @@ from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.measured_road import read_road
 from vehicle.signals.excitation.recorded_road import RecordedDrive, delayed
 from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.formats.crg_format import read_surface
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.crg_format import read_surface
-from vehicle.signals.records.reader import read_record
 
 BASE = 2.6
 """Wheelbase [m]."""

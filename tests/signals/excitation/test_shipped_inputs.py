@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from scenarios.inputs.make_inputs import FOUR_POST, HEIGHTS, LEVELS
+from scenarios.signals.bump import bump_shape
+from scenarios.signals.four_post import MOTIONS, level_rms
 from tests.validation import validated
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.bump import bump_shape
-from vehicle.signals.excitation.four_post import MOTIONS, level_rms
 from vehicle.signals.excitation.input_files import INPUT_FOLDER, find_input, shipped_inputs
 from vehicle.signals.excitation.signal_file import read_signal
 

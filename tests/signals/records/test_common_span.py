@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.failing_inputs import FAILING, beside_the_project
-from tests.signals.records.logger_files import LVM
+from tests.signals.formats.logger_files import LVM
 from tests.validation import validated
 from vehicle.__main__ import main
 from vehicle.commands.advice import command_for
@@ -16,12 +16,12 @@ from vehicle.commands.inspect import contents
 from vehicle.commands.shaker import main as shaker
 from vehicle.errors import DataError
 from vehicle.signals.excitation.measured_road import read_road
-from vehicle.signals.records import hdf_format, mdf_format
-from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.formats import hdf_format, mdf_format
+from vehicle.signals.formats.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.uff_writer import write as write_uff
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.measured import read_measured
-from vehicle.signals.records.reader import read_record
-from vehicle.signals.records.uff_writer import write as write_uff
 
 BOTH = {"plate_fl_displacement": "Plate FL", "knuckle_fl_acc_z": "Plate FL acceleration"}
 

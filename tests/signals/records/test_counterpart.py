@@ -8,8 +8,8 @@ import pytest
 
 from tests.benchmarks.record_alignment import STEP, made_pair
 from vehicle.runs.comparison.record_comparison import compare_records, unlike_copies
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import clock_advice, counterparts, response_faults, run_times, sign_and_unit
-from vehicle.signals.records.table import Record
 
 NAMES = ("knuckle_fr_acc_z", "seat_rail_acc_z", "engine_acc_z")
 

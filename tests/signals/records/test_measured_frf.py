@@ -5,11 +5,11 @@ import pytest
 
 from tests.validation import validated
 from vehicle.errors import DataError
-from vehicle.signals.records.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.formats.channel import Channel, Measurement, uniform_axis
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.measured import read_measured
 from vehicle.signals.records.measured_frf import measured_frfs
-from vehicle.signals.records.reader import read_record
 
 LINES = np.arange(2.0, 30.0, 0.5)
 OMEGA = 2.0 * np.pi * LINES

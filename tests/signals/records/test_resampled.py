@@ -14,11 +14,11 @@ from vehicle.commands.inspect import main as inspect
 from vehicle.errors import DataError
 from vehicle.names import AXES
 from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.formats.clock import clock_options, time_remarks
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose
-from vehicle.signals.records.clock import clock_options, time_remarks
 from vehicle.signals.records.integration import filtered
 from vehicle.signals.records.measured import read_measured
-from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.resampled import resampled
 from vehicle.studies.replication.target import read_target
 

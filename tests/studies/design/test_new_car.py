@@ -12,9 +12,9 @@ import scipy
 
 from tests.validation import validated
 from vehicle.commands.new import main
-from vehicle.engines.simulation.axle_ride import axle_ride, axle_rides
+from vehicle.engines.kinematics.axle_ride import axle_ride, axle_rides
+from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.engines.simulation.car_masses import car_masses
-from vehicle.engines.simulation.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Road
 from vehicle.runs.car.inertia_survey import SURVEY, AxleGeometry

@@ -10,9 +10,9 @@ import shutil
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.commands.optimise import main
 from vehicle.model.parameters.vehicle import load_vehicle
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal_file import write_signal
 from vehicle.studies.optimisation.ride import ride_measure
 from vehicle.studies.sweeps.case import SignalFile

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.optimisation.ride import QUANTITIES, RideMeasure, ride_measure, split_name
 from vehicle.studies.sweeps.run_batch import Runs
 

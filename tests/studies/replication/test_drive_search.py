@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from scenarios.inputs.make_inputs import LEVELS, SEED
+from scenarios.signals.random_road import random_road
 from vehicle.engines.linear.first_order import first_order
 from vehicle.engines.linear.response import frequency_response
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.studies.replication.driven_car import DrivenCar
 from vehicle.studies.replication.inverse import Lines

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from itertools import product
 from pathlib import Path
 
-from vehicle.signals.excitation.random_road import random_road
+from scenarios.signals.random_road import random_road
 from vehicle.studies.sweeps.case_table import table_cases
 
 

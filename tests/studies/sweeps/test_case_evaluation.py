@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump_shape
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
 from vehicle.signals.analysis.seat_value import weighted_rms_of
-from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_evaluation import evaluate

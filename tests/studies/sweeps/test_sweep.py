@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.patience import HANG
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, Worker, grid, threads
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.studies.sweeps import executors
 from vehicle.studies.sweeps.case import SignalFile
 from vehicle.studies.sweeps.case_keys import case_keys

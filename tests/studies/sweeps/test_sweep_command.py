@@ -1,4 +1,4 @@
-"""`python -m vehicle.sweep` as a user runs it."""
+"""`python -m vehicle sweep` as a user runs it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HEAD = ("--author", "A. Engineer", "--project", "Ride")
 
 @pytest.fixture
 def signal(tmp_path):
-    from vehicle.signals.excitation.random_road import random_road
+    from scenarios.signals.random_road import random_road
 
     road = random_road(rms=3e-4, seed=1, wheel="fl", duration=3.0)
     path = tmp_path / "road.csv"

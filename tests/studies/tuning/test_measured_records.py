@@ -5,12 +5,12 @@ import re
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.car import Car
-from vehicle.signals.excitation.bump import bump
-from vehicle.signals.records import uff_writer
-from vehicle.signals.records.channel import Channel, uniform_axis
-from vehicle.signals.records.text_format import write_table
+from vehicle.signals.formats import uff_writer
+from vehicle.signals.formats.channel import Channel, uniform_axis
+from vehicle.signals.formats.text_format import write_table
 from vehicle.studies.tuning.measured_targets import measured_histories
 
 NOISE = 0.02

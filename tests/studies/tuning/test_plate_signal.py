@@ -5,16 +5,16 @@ import json
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from vehicle.commands.shaker import main as shaker
 from vehicle.commands.tune import main as tune
 from vehicle.errors import DataError
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.reader import read_record
 from vehicle.studies.tuning.measured_targets import measured_histories
 
 ACCELERATIONS = ("knuckle_fr_acc_z", "knuckle_fl_acc_z")

@@ -11,7 +11,7 @@ from tests.validation import validated
 from vehicle.errors import ConfigurationError, DataError, MissingPartError
 from vehicle.model.parameters.ranges import Range
 from vehicle.signals.analysis.response_name import parsed_name
-from vehicle.signals.records.frf_file import FrfData
+from vehicle.signals.formats.frf_file import FrfData
 from vehicle.studies.tuning.convergence import effective_samples, r_hat
 from vehicle.studies.tuning.emulator import Emulator, fitted_emulator, legendre_terms
 from vehicle.studies.tuning.frf_target import FrfTarget

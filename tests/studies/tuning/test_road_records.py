@@ -15,9 +15,9 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.paths import value_of
 from vehicle.runs.car import Car, Road
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.channel import uniform_axis
+from vehicle.signals.formats.channel import uniform_axis
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.car_fit import tune
 from vehicle.studies.tuning.level_target import LevelTarget, level_target
 from vehicle.studies.tuning.measured_targets import measured_histories, measured_levels

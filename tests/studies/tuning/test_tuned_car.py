@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
+from scenarios.signals.bump import bump
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.paths import overrides_of
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.response_name import parsed_name
-from vehicle.signals.excitation.bump import bump
-from vehicle.signals.records.frf_file import FrfData
-from vehicle.signals.records.table import Record
+from vehicle.signals.formats.frf_file import FrfData
+from vehicle.signals.formats.table import Record
 from vehicle.studies.tuning.frf_target import FrfTarget
 from vehicle.studies.tuning.full_steps import SMALL, full_steps
 from vehicle.studies.tuning.least_squares import fit

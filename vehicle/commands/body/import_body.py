@@ -245,7 +245,7 @@ def _given_modes(options: argparse.Namespace, units: Units, mass: float, points:
     from vehicle.model.flexbody.sources.body_units import require_level, require_size
     from vehicle.model.flexbody.sources.frd import read_frd
     from vehicle.model.flexbody.sources.mode_shapes import modes_of_measurement
-    from vehicle.signals.records.reader import read_record
+    from vehicle.signals.formats.reader import read_record
 
     if options.file.suffix == ".frd":
         modes = read_frd(options.file, *units.sizes)

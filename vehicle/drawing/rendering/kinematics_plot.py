@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
-from vehicle.engines.simulation.axle_statics import WheelPose
-from vehicle.engines.simulation.wheel_geometry import WheelGeometry
+from vehicle.engines.kinematics.axle_statics import WheelPose
+from vehicle.engines.kinematics.wheel_geometry import WheelGeometry
 
 PANELS: dict[str, dict[str, str]] = {
     "camber [deg], top outwards +": {"camber_deg": ""},

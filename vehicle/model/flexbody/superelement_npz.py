@@ -14,7 +14,7 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.flexbody.superelement_toml import FORMAT, RIGID, given_rigid, head_of, numbers
-from vehicle.signals.records.unpacked_size import require_archive
+from vehicle.signals.formats.unpacked_size import require_archive
 
 _ARRAYS = {
     "positions": "position_m",

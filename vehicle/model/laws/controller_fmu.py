@@ -40,7 +40,7 @@ from vehicle.core.library import core
 from vehicle.core.records import Packed, packed
 from vehicle.errors import ConfigurationError, DataError, MissingPartError, SimulationError
 from vehicle.model.parameters.semi_active_damper import CONTROLLER_PARAMETERS, FMU, SemiActiveDamper
-from vehicle.signals.records.unpacked_size import require_archive
+from vehicle.signals.formats.unpacked_size import require_archive
 
 LARGEST = 200e6
 """Maximum size of an FMU, packed and unpacked [byte]: libraries for all platforms have some 10 MB."""

@@ -1,6 +1,6 @@
 """Coulomb friction: the same limit at every velocity.
 
-The set-valued form is computed by a switch (`vehicle.model.laws.switch`).
+The set-valued form is computed by a switch (`scenarios.lumped.switch`).
 """
 
 from __future__ import annotations

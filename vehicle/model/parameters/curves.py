@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from vehicle.errors import ConfigurationError, VehicleError
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.table import Header
+    from vehicle.signals.formats.table import Header
 
 T = TypeVar("T")
 
@@ -122,7 +122,7 @@ def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str,
         spring_numbers,
         spring_of_points,
     )
-    from vehicle.signals.records.teim_orbit import is_property_file, read_property_file
+    from vehicle.signals.formats.teim_orbit import is_property_file, read_property_file
 
     *above, name = path.split(".")[:-1] or [""]
     of_points = name == "stop" or name.startswith("table")
@@ -154,7 +154,7 @@ def _numbers(table: Mapping[str, Any], file: Path, path: str) -> tuple[dict[str,
 def _stop(stop: Mapping[str, Any], folder: Path, path: str, sources: dict[str, str]) -> dict[str, Any]:
     """Return the table of a stop whose ends are files of a bump stop and a rebound stop."""
     from vehicle.model.parameters.property_files import stop_numbers, stop_points
-    from vehicle.signals.records.teim_orbit import is_property_file, read_property_file
+    from vehicle.signals.formats.teim_orbit import is_property_file, read_property_file
 
     ends: dict[str, list[tuple[float, float]]] = {}
     files = []
@@ -189,9 +189,9 @@ def _within(path: str, read: Callable[[], T]) -> T:
 def _points(file: Path, path: str, key: str) -> dict[str, Any]:
     """Return the columns of a file by their keys: the abscissa and "force"."""
     # Imported here: parameters are read without numpy, tables are not.
-    from vehicle.signals.records.named_columns import named_columns
-    from vehicle.signals.records.reader import read_table
-    from vehicle.signals.records.table import Wanted
+    from vehicle.signals.formats.named_columns import named_columns
+    from vehicle.signals.formats.reader import read_table
+    from vehicle.signals.formats.table import Wanted
 
     heads = {key: HEADS[key], "force": "force [N]"}
     needed = " and ".join(map(repr, heads.values()))

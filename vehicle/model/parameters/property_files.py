@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from vehicle.errors import ConfigurationError, DataError
 
 if TYPE_CHECKING:
-    from vehicle.signals.records.teim_orbit import PropertyFile
+    from vehicle.signals.formats.teim_orbit import PropertyFile
 
 NAMES = {"dpr": "damper", "spr": "spring", "bus": "bushing", "bum": "bump stop", "reb": "rebound stop"}
 """Elements by the type of their property file."""

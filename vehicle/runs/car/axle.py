@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.axle_statics import AxleStatics
+from vehicle.engines.kinematics.axle_statics import AxleStatics
 from vehicle.errors import ConfigurationError
 
 

@@ -1,6 +1,6 @@
 """Stiffnesses, masses and geometry of an axle of a car in its design position.
 
-Rates, masses, ride frequency and roll stiffness are those of `vehicle.engines.simulation.axle_ride`, for both wheels;
+Rates, masses, ride frequency and roll stiffness are those of `vehicle.engines.kinematics.axle_ride`, for both wheels;
 the roll stiffness of the tyres is K_t t_p^2 / 2, with the track t_p of the patches. Geometry and motion ratios are
 those of ideal joints.
 """
@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vehicle.engines.simulation.axle_curves import design_axle, design_slopes, position_rate
-from vehicle.engines.simulation.axle_ride import axle_ride
-from vehicle.engines.simulation.wheel_geometry import WheelGeometry
+from vehicle.engines.kinematics.axle_curves import design_axle, design_slopes, position_rate
+from vehicle.engines.kinematics.axle_ride import axle_ride
+from vehicle.engines.kinematics.wheel_geometry import WheelGeometry
 from vehicle.runs.car.axle import direction_to_middle
 
 

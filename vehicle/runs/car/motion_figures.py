@@ -1,6 +1,6 @@
 """Headline figures of a car with the modes of the whole car that share their motions.
 
-Frequency and damping ratio of each figure are those of `vehicle.engines.simulation.ride_figures`: one motion alone, by
+Frequency and damping ratio of each figure are those of `vehicle.engines.kinematics.ride_figures`: one motion alone, by
 its mass and its rates. A mode contains several motions, so a mode is never the figure; the modes are listed with it,
 each with its share of this motion in its kinetic energy (`vehicle.engines.linear.motion_names`).
 """
@@ -12,9 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from vehicle.engines.kinematics.axle_ride import DamperState, axle_rides
+from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.engines.linear.car_modes import Mode
-from vehicle.engines.simulation.axle_ride import DamperState, axle_rides
-from vehicle.engines.simulation.ride_figures import ride_figures
 from vehicle.runs.car.axle import car_at_rest
 from vehicle.threads import one_blas_thread
 

@@ -21,7 +21,7 @@ from vehicle.runs.comparison.frf_comparison import (
 from vehicle.runs.comparison.record_comparison import RecordComparison, compare_records, unlike_copies
 from vehicle.runs.comparison.simulated import Simulated, of_folder, of_run
 from vehicle.signals.analysis.phase_delay import phase_delay
-from vehicle.signals.records.channel import Measurement
+from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import (
     PARTS,

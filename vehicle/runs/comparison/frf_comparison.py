@@ -12,7 +12,7 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf_agreement import BandError, band_errors, csac, csf, frac, scaled_frac
 from vehicle.signals.analysis.response_name import row_of
-from vehicle.signals.records.frf_file import FrfData
+from vehicle.signals.formats.frf_file import FrfData
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

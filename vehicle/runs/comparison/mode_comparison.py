@@ -16,9 +16,9 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
 from vehicle.runs.car import Car
 from vehicle.signals.analysis.modal_assurance import mac
-from vehicle.signals.records.channel import Measurement
-from vehicle.signals.records.geometry import Geometry, ModeShape
-from vehicle.signals.records.reader import read_record
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.geometry import Geometry, ModeShape
+from vehicle.signals.formats.reader import read_record
 
 Complex = npt.NDArray[np.complex128]
 Matrix = npt.NDArray[np.float64]

@@ -12,9 +12,9 @@ import numpy.typing as npt
 from vehicle.errors import DataError
 from vehicle.signals.analysis.record_rating import RecordRating, rate_record
 from vehicle.signals.analysis.time_shift import TimeShift
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import Counterpart, counterparts
 from vehicle.signals.records.resampled import at_times
-from vehicle.signals.records.table import Record
 
 Vector = npt.NDArray[np.float64]
 

@@ -9,8 +9,8 @@ import numpy as np
 from vehicle.runs.car import Car
 from vehicle.runs.comparison.mode_comparison import shapes_at
 from vehicle.runs.output.run_formats import geometry
-from vehicle.signals.records import uff_writer
-from vehicle.signals.records.geometry import ModeShape
+from vehicle.signals.formats import uff_writer
+from vehicle.signals.formats.geometry import ModeShape
 
 
 def mode_shapes(car: Car, damper: str = "stuck") -> tuple[ModeShape, ...]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.spectra import power_spectral_density
-from vehicle.signals.records.text_format import write_table
+from vehicle.signals.formats.text_format import write_table
 
 PSD_WINDOW, PSD_HIGHEST = 4.0, 100.0
 """Length of a window [s] and highest frequency [Hz] of the densities of a run on a road."""

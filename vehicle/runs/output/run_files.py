@@ -31,8 +31,9 @@ from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.peaks import resonances
 from vehicle.signals.analysis.periodic_record import whole_record_responses
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.formats import write_record
-from vehicle.signals.records.frf_file import write_frf
+from vehicle.signals.formats.formats import write_record
+from vehicle.signals.formats.frf_file import write_frf
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.measured import Measured
 from vehicle.signals.records.run_frf import CHANNEL
 from vehicle.signals.records.run_summary import (
@@ -44,7 +45,6 @@ from vehicle.signals.records.run_summary import (
     PlacedLoad,
     RunSummary,
 )
-from vehicle.signals.records.table import Record
 
 FRAME = "x to the rear, y to the driver's right, z up; SI units"
 LOADS = (
@@ -99,7 +99,7 @@ def write_run(
         folder: temporary folder of `output_folder`.
         run: the run.
         time_format: "npz" or "csv".
-        formats: further formats of `vehicle.signals.records.formats.WRITTEN`.
+        formats: further formats of `vehicle.signals.formats.formats.WRITTEN`.
         figures: False writes no pictures.
         engine_reason: reason for the choice of the engine; by default that of the run.
         video: name of the film, or a path outside the folder, and the function that writes it.

@@ -10,10 +10,10 @@ from typing import Any
 
 from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.motion_response import MotionResponse
-from vehicle.signals.records.channel import Channel, uniform_axis
-from vehicle.signals.records.formats import BY_NAME, write_record
-from vehicle.signals.records.geometry import Geometry
-from vehicle.signals.records.table import Record
+from vehicle.signals.formats.channel import Channel, uniform_axis
+from vehicle.signals.formats.formats import BY_NAME, write_record
+from vehicle.signals.formats.geometry import Geometry
+from vehicle.signals.formats.table import Record
 
 _ACCELERATION = re.compile(r"(?P<place>\w+)_acc_(?P<axis>[xyz])")
 _PLATE = re.compile(r"(?P<place>plate_\w+)_displacement")
@@ -96,7 +96,7 @@ def writer(
     """Return the function that writes a run in a format.
 
     Args:
-        form: name in `vehicle.signals.records.formats.WRITTEN`.
+        form: name in `vehicle.signals.formats.formats.WRITTEN`.
         run: the run.
         responses: FRFs of the run; may be empty.
         channels: names of the rows.

@@ -15,7 +15,7 @@ from vehicle.runs.output.folder import output_folder
 from vehicle.runs.output.run_files import write_run
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.reader import read_columns
+from vehicle.signals.formats.reader import read_columns
 from vehicle.signals.records.run_summary import SUMMARY_FILE, RunSummary, read_summary
 
 

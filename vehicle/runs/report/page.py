@@ -6,6 +6,7 @@ import base64
 import dataclasses
 import hashlib
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from datetime import date
 from importlib import resources
 
@@ -24,18 +25,34 @@ from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, mov
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
-from vehicle.runs.report.trial_section import trial
-from vehicle.runs.trial.trial_data import PAGE, WORKER, scripts
 from vehicle.version import package_version
 
 Part = tuple[str, str, Markup]
 """Title, anchor and content of a section."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Trial:
+    """Section in which the reader changes the car, which then runs in the page; a higher package makes it.
+
+    Attributes:
+        content: content of the section.
+        numbers: numbers of its scripts as JSON; empty if the page cannot run this car on these plates.
+        script: script of the page.
+        worker: script that computes, in a thread of its own.
+    """
+
+    content: Markup
+    numbers: str = ""
+    script: str = ""
+    worker: str = ""
+
+
 def report_page(
     runs: Sequence[FinishedRun],
     progress: Callable[[float], None] | None = None,
     *,
+    trial: Callable[[FinishedRun], Trial],
     author: str = "",
     project: str = "",
 ) -> str:
@@ -44,6 +61,7 @@ def report_page(
     Args:
         runs: finished runs.
         progress: called with the finished fraction.
+        trial: makes the section for trials of a single run.
         author, project: names in the head of the page; may be empty.
 
     Returns:
@@ -58,10 +76,10 @@ def report_page(
     done = progress or (lambda fraction: None)
     modes = [modes_of(run) for run in runs]
     done(0.1)
-    numbers = ""
+    tried = None
     if len(runs) == 1:
-        numbers, trial_part = trial(runs[0])
-        parts = _of_one(runs[0], modes[0], trial_part)
+        tried = trial(runs[0])
+        parts = _of_one(runs[0], modes[0], tried.content)
     else:
         parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share))
     first, others = runs[0].name, [run.name for run in runs[1:]]
@@ -69,7 +87,7 @@ def report_page(
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))
     head = head_line(author, project)
     data = as_json(car_modes_of(runs, modes))
-    page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data, numbers=numbers)
+    page = document(f"Car on the shaker: {names}", (captions, head), parts, modes=data, trial=tried)
     done(1.0)
     return page
 
@@ -156,7 +174,9 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
     return [*parts, ("Each run", "runs", joined(details))]
 
 
-def document(title: str, subtitles: Sequence[str], parts: Sequence[Part], *, modes: str = "", numbers: str = "") -> str:
+def document(
+    title: str, subtitles: Sequence[str], parts: Sequence[Part], *, modes: str = "", trial: Trial | None = None
+) -> str:
     """Return an HTML document; its security policy blocks external content and scripts.
 
     Args:
@@ -164,12 +184,12 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[Part], *, mod
         subtitles: lines below the title.
         parts: title, anchor and content of each section.
         modes: moving modes as JSON; empty for a page without them.
-        numbers: numbers of the section for trials as JSON; empty for a page without it.
+        trial: section for trials, whose scripts the page gets; None for a page without it.
     """
     parts_of_page = [_file("wireframe.js"), _file("modes.js")] if modes else []
     allowed, started = "", ""
-    if numbers:
-        parts_of_page.append(scripts(PAGE))
+    if trial and trial.numbers:
+        parts_of_page.append(trial.script)
         # Its worker is a script from the page itself, and runs a module of WebAssembly.
         allowed, started = " 'wasm-unsafe-eval'", "; worker-src blob:"
     digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in parts_of_page)
@@ -182,9 +202,9 @@ def document(title: str, subtitles: Sequence[str], parts: Sequence[Part], *, mod
     top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in subtitles))
     body = joined(section(name, anchor, content) for name, anchor, content in parts)
     data = f'<script type="application/json" id="mode-data">{modes}</script>\n' if modes else ""
-    if numbers:
-        data += f'<script type="application/json" id="trial-data">{numbers}</script>\n'
-        data += f'<script type="text/plain" id="trial-worker">{scripts(WORKER)}</script>\n'
+    if trial and trial.numbers:
+        data += f'<script type="application/json" id="trial-data">{trial.numbers}</script>\n'
+        data += f'<script type="text/plain" id="trial-worker">{trial.worker}</script>\n'
     run_scripts = "".join(f"<script>{text}</script>\n" for text in parts_of_page)
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

@@ -9,11 +9,11 @@ import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import CORNERS, is_wheel
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats.channel import Channel
+from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.table import TIME, USABLE, Header, Table
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.integration import displacement
-from vehicle.signals.records.reader import read_record
-from vehicle.signals.records.table import TIME, USABLE, Header, Table
 
 WHEEL_REMEDY = "pass wheel='fl' (of a car: wheel=car.vehicle.shaker_wheel), or name the column displacement_fl"
 """Remedy for a plate displacement without a wheel, read from Python; a command takes the wheel of its car."""

@@ -27,7 +27,7 @@ from vehicle.signals.analysis.road_level import REFERENCE
 from vehicle.signals.excitation.band import positive, samples_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
-from vehicle.signals.records.channel import uniform_axis
+from vehicle.signals.formats.channel import uniform_axis
 
 COPIES = 8
 """Number of arrays of the length of the record in memory, without height, slope and profile of each wheel: lines,

@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 from vehicle.errors import DataError, VehicleError
 from vehicle.signals.excitation.iso_road import Contact, Side, contact_words
 from vehicle.signals.excitation.tyre_envelope import SAMPLES, TyreEnvelope
-from vehicle.signals.records.channel import uniform_axis
-from vehicle.signals.records.crg_format import read_surface, road_words
-from vehicle.signals.records.formats import recognised_format
-from vehicle.signals.records.named_columns import named_columns
-from vehicle.signals.records.reader import read_record, read_table
-from vehicle.signals.records.table import Header, Vector, Wanted, name_and_unit
+from vehicle.signals.formats.channel import uniform_axis
+from vehicle.signals.formats.crg_format import read_surface, road_words
+from vehicle.signals.formats.formats import recognised_format
+from vehicle.signals.formats.named_columns import named_columns
+from vehicle.signals.formats.reader import read_record, read_table
+from vehicle.signals.formats.table import Header, Vector, Wanted, name_and_unit
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
 TRACKS = {
@@ -162,7 +162,7 @@ def read_road(path: Path, track: float, patch: float = 0.0, envelope: TyreEnvelo
 
     Args:
         path: file with the columns `distance [m]`, `left [m]`, `right [m]` in any order; or a file of any format of
-            `vehicle.signals.records` with channels of these names, or of `TRACKS`, in units of length; or an
+            `vehicle.signals.formats` with channels of these names, or of `TRACKS`, in units of length; or an
             OpenCRG surface, whose reference line is under the middle of the car.
         track: distance of the tracks of the car [m], for a surface.
         patch: length of the contact patch [m] over which the profile is averaged.

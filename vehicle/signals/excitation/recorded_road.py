@@ -32,14 +32,14 @@ from vehicle.signals.excitation.plausibility import acceleration_events
 from vehicle.signals.excitation.road_drive import AFTER_RISE_S, SKIP_S
 from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, SMOOTH_RATE
-from vehicle.signals.records.channel import Measurement
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.clock import UNIFORM_TOLERANCE
+from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.table import USABLE, Vector
 from vehicle.signals.records.channel_words import of_receiver
 from vehicle.signals.records.choice import Choice, Chosen, choose
-from vehicle.signals.records.clock import UNIFORM_TOLERANCE
 from vehicle.signals.records.integration import displacement
-from vehicle.signals.records.reader import read_record
 from vehicle.signals.records.resampled import resampled
-from vehicle.signals.records.table import USABLE, Vector
 
 PREFIX = "channel:"
 """Prefix of a speed that is a channel name."""

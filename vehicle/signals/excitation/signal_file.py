@@ -17,8 +17,7 @@ from vehicle.signals.excitation.plausibility import aliasing_notices, check_leve
 from vehicle.signals.excitation.rest import start_from_rest
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal, uniform_time
 from vehicle.signals.excitation.time_grid import FINE_RATE, LOWEST_RATE, SMOOTH_RATE, check_rate, fill_missing
-from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.clock import (
+from vehicle.signals.formats.clock import (
     UNIFORM_TOLERANCE,
     check_increasing,
     check_stamps,
@@ -27,11 +26,12 @@ from vehicle.signals.records.clock import (
     is_uniform,
     without_rounding,
 )
-from vehicle.signals.records.reader import is_table, read_table
+from vehicle.signals.formats.reader import is_table, read_table
+from vehicle.signals.formats.table import TIME, USABLE, Header, Table, Vector, Wanted, name_and_unit
+from vehicle.signals.formats.text_format import write_table
+from vehicle.signals.formats.units import find_unit
+from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.resampled import resampled
-from vehicle.signals.records.table import TIME, USABLE, Header, Table, Vector, Wanted, name_and_unit
-from vehicle.signals.records.text_format import write_table
-from vehicle.signals.records.units import find_unit
 
 NEEDED = "'time [s]' and 'displacement [m]' (or 'displacement_fr [m]', 'displacement_fl [m]'); [mm] is accepted"
 
@@ -63,7 +63,7 @@ def read_signal(
     that does not begin at rest gets a half-cosine ramp.
 
     Args:
-        path: measurement file of any format of `vehicle.signals.records`.
+        path: measurement file of any format of `vehicle.signals.formats`.
         wheel: wheel that a plain `displacement` column drives, such as `car.vehicle.shaker_wheel`; None if the columns
             name their wheels.
         interpolate: fill missing displacements by a cubic spline over gaps up to 10 ms.

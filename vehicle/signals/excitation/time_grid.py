@@ -9,8 +9,8 @@ import scipy
 
 from vehicle.errors import DataError
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES
-from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
-from vehicle.signals.records.table import USABLE, Table, Vector
+from vehicle.signals.formats.clock import UNIFORM_TOLERANCE, longest_gap
+from vehicle.signals.formats.table import USABLE, Table, Vector
 
 LOWEST_RATE = 10.0
 """Minimum sampling rate [Hz]: usable up to 4 Hz, bounce and pitch of a body."""

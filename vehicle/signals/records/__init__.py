@@ -1,1 +1,1 @@
-"""Measurement files: formats, units, tables and records, read and written here only."""
+"""Records: chosen channels of a file on one clock, their comfort, their spectra, their delays."""

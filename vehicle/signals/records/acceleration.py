@@ -10,13 +10,13 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.names import AXES
+from vehicle.signals.formats.reader import is_table, read_columns, read_record
+from vehicle.signals.formats.table import Record, Vector
+from vehicle.signals.formats.units import STANDARD_GRAVITY
 from vehicle.signals.records.channel_faults import faults
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.integration import filtered
 from vehicle.signals.records.rare_events import rare_events
-from vehicle.signals.records.reader import is_table, read_columns, read_record
-from vehicle.signals.records.table import Record, Vector
-from vehicle.signals.records.units import STANDARD_GRAVITY
 
 UNITS = {"m/s2": 1.0, "m/s^2": 1.0, "m/s²": 1.0, "g": STANDARD_GRAVITY}
 """Accepted units of acceleration and their values in m/s2."""

@@ -6,7 +6,7 @@ import re
 import shlex
 from collections.abc import Collection, Sequence
 
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats.channel import Channel
 
 FRONT = ("front", "f", "vorn", "vorne", "v", "va")
 REAR = ("rear", "r", "back", "hinten", "hinter", "h", "ha")

@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.records.channel import NOT_OVER_TIME, Channel, Measurement, uniform_axis
+from vehicle.signals.formats.channel import NOT_OVER_TIME, Channel, Measurement, uniform_axis
+from vehicle.signals.formats.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
+from vehicle.signals.formats.table import USABLE, Vector
+from vehicle.signals.formats.text import LARGEST
+from vehicle.signals.formats.units import allowed_units, find_ratio, find_unit
 from vehicle.signals.records.channel_faults import MOTIONS, faults
-from vehicle.signals.records.clock import check_stamps, clock_options, is_uniform, longest_step, without_rounding
 from vehicle.signals.records.common_span import Block, blocks_of, cut, need_resampling, without_times
 from vehicle.signals.records.resampled import resampled
-from vehicle.signals.records.table import USABLE, Vector
-from vehicle.signals.records.text import LARGEST
-from vehicle.signals.records.units import allowed_units, find_ratio, find_unit
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

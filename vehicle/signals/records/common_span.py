@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.signals.records.channel import Channel
-from vehicle.signals.records.table import Vector
+from vehicle.signals.formats.channel import Channel
+from vehicle.signals.formats.table import Vector
 
 COINCIDENT = 1e-3
 """Maximum difference of coincident sample times, in steps [-]."""

@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from vehicle.digits import number
 from vehicle.signals.analysis.time_shift import TimeShift, time_shift
+from vehicle.signals.formats.table import Record, Vector
+from vehicle.signals.formats.units import STANDARD_GRAVITY
 from vehicle.signals.records.resampled import at_times
-from vehicle.signals.records.table import Record, Vector
-from vehicle.signals.records.units import STANDARD_GRAVITY
 
 Complex = npt.NDArray[np.complex128]
 

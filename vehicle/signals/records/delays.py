@@ -22,10 +22,10 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
+from vehicle.signals.formats.frf_file import FrfData
+from vehicle.signals.formats.table import Vector
 from vehicle.signals.records.choice import Chosen, pairs
-from vehicle.signals.records.frf_file import FrfData
 from vehicle.signals.records.resampled import DEGREE
-from vehicle.signals.records.table import Vector
 
 PLATES = "plates"
 """Group of the inputs, to which the delays of the other groups refer."""

@@ -6,8 +6,8 @@ import numpy as np
 import scipy
 
 from vehicle.errors import DataError
+from vehicle.signals.formats.table import Vector
 from vehicle.signals.records.choice import Choice, Chosen
-from vehicle.signals.records.table import Vector
 
 ORDER = 4
 """Order of the Butterworth high-pass, applied forwards and backwards (squared magnitude)."""

@@ -14,16 +14,16 @@ from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import channel_units
 from vehicle.signals.analysis.motion_response import motion_responses
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
-from vehicle.signals.records.channel import Measurement
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.frf_file import FrfData, frf_data
+from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.table import Record
+from vehicle.signals.formats.units import find_unit
 from vehicle.signals.records.channel_words import map_options, suggested_channels
 from vehicle.signals.records.choice import Choice, choose, matching, pick
 from vehicle.signals.records.delays import channel_delays, responses_without_delays, without_delays
-from vehicle.signals.records.frf_file import FrfData, frf_data
 from vehicle.signals.records.integration import displacement, filtered
 from vehicle.signals.records.measured_frf import input_of, is_response, measured_frfs
-from vehicle.signals.records.reader import read_record
-from vehicle.signals.records.table import Record
-from vehicle.signals.records.units import find_unit
 
 EXAMPLES = re.compile(r"plate_\w+_displacement|knuckle_\w+_acc_z|seat_rail_acc_z")
 """Names of model channels in a message: those that are measured most often."""

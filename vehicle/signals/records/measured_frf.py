@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
-from vehicle.signals.records.channel import Channel, Measurement
+from vehicle.signals.formats.channel import Channel, Measurement
+from vehicle.signals.formats.frf_file import RANDOM_ERROR, FrfData
+from vehicle.signals.formats.table import Vector
+from vehicle.signals.formats.units import find_ratio
 from vehicle.signals.records.choice import Choice, matching, pick
-from vehicle.signals.records.frf_file import RANDOM_ERROR, FrfData
-from vehicle.signals.records.table import Vector
-from vehicle.signals.records.units import find_ratio
 
 ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Order of the time derivative of the displacement."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vehicle.signals.records.table import Vector
+from vehicle.signals.formats.table import Vector
 
 RARE_SHARE = 0.01
 """Maximum share of samples [-] of rare events, such as potholes. A wrong unit makes a record at least 9.8 times larger:

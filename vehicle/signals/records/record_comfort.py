@@ -23,10 +23,10 @@ from vehicle.signals.analysis.evaluation import (
 )
 from vehicle.signals.analysis.exposure import RunningAverage
 from vehicle.signals.analysis.seat_value import seat_value
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.acceleration import read_acceleration
 from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice
-from vehicle.signals.records.table import Record
 
 OFFSETS = ("refuse", "remove", "keep")
 """Treatments of mean and drift of an axis."""

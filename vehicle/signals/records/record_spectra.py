@@ -14,7 +14,7 @@ import numpy.typing as npt
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.road_level import RoadLevel, road_level
 from vehicle.signals.analysis.vibration_spectra import RANGE, ChannelSpectrum, vibration_spectra
-from vehicle.signals.records.reader import read_columns, time_file
+from vehicle.signals.formats.reader import read_columns, time_file
 from vehicle.signals.records.run_summary import RunSummary, available_summary
 
 Vector = npt.NDArray[np.float64]

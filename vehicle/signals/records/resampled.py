@@ -9,8 +9,8 @@ import scipy
 
 from vehicle.digits import number
 from vehicle.errors import DataError
-from vehicle.signals.records.clock import UNIFORM_TOLERANCE, longest_gap
-from vehicle.signals.records.table import Vector
+from vehicle.signals.formats.clock import UNIFORM_TOLERANCE, longest_gap
+from vehicle.signals.formats.table import Vector
 
 KEPT = 0.4
 """Corner frequency of the low-pass before downsampling, over the lower rate [-]."""

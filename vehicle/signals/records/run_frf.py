@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name, plates_of
-from vehicle.signals.records.frf_file import FrfData, read_frf
+from vehicle.signals.formats.frf_file import FrfData, read_frf
 from vehicle.signals.records.run_summary import RunSummary
 
 CHANNEL = "<channel>"

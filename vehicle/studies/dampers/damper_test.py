@@ -15,9 +15,9 @@ import scipy
 
 from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.records.channel import Measurement
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice, choose
-from vehicle.signals.records.reader import read_record
 from vehicle.studies.dampers.damper_force import Motion
 
 Vector = npt.NDArray[np.float64]

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from vehicle.engines.simulation.axle_parts import axle_parts
+from vehicle.engines.kinematics.axle_parts import axle_parts
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.template import read_template
 from vehicle.model.parameters.vehicle import vehicle_of

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.axle_ride import axle_rides
-from vehicle.engines.simulation.ride_figures import ride_figures
+from vehicle.engines.kinematics.axle_ride import axle_rides
+from vehicle.engines.kinematics.ride_figures import ride_figures
 from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.model.parameters.paths import value_at
 from vehicle.model.parameters.quantity import field_quantity

@@ -11,8 +11,8 @@ from vehicle.drawing.rendering.drive_plot import plot_convergence, plot_replicat
 from vehicle.runs.output.folder import output_folder, write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.signals.excitation.signal_file import write_signal
-from vehicle.signals.records.formats import write_record
-from vehicle.signals.records.table import Record
+from vehicle.signals.formats.formats import write_record
+from vehicle.signals.formats.table import Record
 from vehicle.studies.replication.drive_search import FoundDrive
 from vehicle.studies.replication.iteration import Replication
 

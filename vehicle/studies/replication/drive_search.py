@@ -14,9 +14,9 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.names import CORNERS, in_order
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.delays import split_delay
-from vehicle.signals.records.reader import read_record
 from vehicle.studies.replication.channel_delays import ChannelDelay, against_median, delays_between
 from vehicle.studies.replication.driven_car import DrivenCar
 from vehicle.studies.replication.iteration import Replication, Step, replicate

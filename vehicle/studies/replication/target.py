@@ -11,12 +11,12 @@ import scipy
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, uniform_time
+from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.table import USABLE
 from vehicle.signals.records.channel_faults import copies
 from vehicle.signals.records.choice import Choice, choose
 from vehicle.signals.records.delays import channel_delays, without_delays
 from vehicle.signals.records.integration import filtered
-from vehicle.signals.records.reader import read_record
-from vehicle.signals.records.table import USABLE
 from vehicle.studies.replication.inverse import Lines, Vector
 
 LEAST_PERIODS = 2.0

@@ -19,9 +19,9 @@ import numpy.typing as npt
 from vehicle.drawing.notebook.frames import table_frame
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.runs.output.folder import check_file, write_text
-from vehicle.signals.records.formats import recognised_format
-from vehicle.signals.records.sheet_format import read_sheet_texts
-from vehicle.signals.records.text_format import read_texts
+from vehicle.signals.formats.formats import recognised_format
+from vehicle.signals.formats.sheet_format import read_sheet_texts
+from vehicle.signals.formats.text_format import read_texts
 from vehicle.studies.sweeps.case import Case
 from vehicle.studies.sweeps.case_result import Result
 from vehicle.studies.sweeps.store import StoredRows

@@ -17,8 +17,8 @@ from vehicle.signals.analysis.motion_response import motion_responses
 from vehicle.signals.analysis.phase_delay import PhaseDelay, phase_delay
 from vehicle.signals.analysis.response_name import PLATE, ResponseName, plates_of, row_of
 from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.records.counterpart import SAME_MOTION
-from vehicle.signals.records.frf_file import FrfData, frf_data
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
 Vector = npt.NDArray[np.float64]

@@ -16,7 +16,7 @@ from vehicle.signals.analysis.frf_agreement import log_ratio
 from vehicle.signals.analysis.phase_delay import PhaseDelay
 from vehicle.signals.analysis.response_name import ResponseName
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.frf_file import FrfData
+from vehicle.signals.formats.frf_file import FrfData
 from vehicle.studies.tuning.frf_target import FLOOR, LEAST_COHERENCE, Complex, Vector, late, response_lags
 from vehicle.studies.tuning.record_target import RecordTarget
 from vehicle.studies.tuning.response_delays import ResponseDelays

@@ -14,13 +14,13 @@ from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.response_name import ResponseName, plates_of
 from vehicle.signals.excitation.signal import Signal
-from vehicle.signals.records.channel import uniform_axis
+from vehicle.signals.formats.channel import uniform_axis
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.choice import Choice
 from vehicle.signals.records.counterpart import clock_advice, counterparts, run_times, sign_and_unit
 from vehicle.signals.records.delays import Delay, split_delay
 from vehicle.signals.records.measured import Measured, read_measured
 from vehicle.signals.records.resampled import at_times
-from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.fit_result import LEAST_VALUES
 from vehicle.studies.tuning.frf_target import FrfTarget, motions_of, to_driven_plates
 from vehicle.studies.tuning.level_target import LevelTarget, level_target

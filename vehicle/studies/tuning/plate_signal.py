@@ -14,11 +14,11 @@ from vehicle.runs.car import Car
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import ForeignTableError, read_signal
-from vehicle.signals.records.channel import Channel
+from vehicle.signals.formats.channel import Channel
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.records.channel_words import map_options, suggested_channels
 from vehicle.signals.records.choice import Choice, matching
 from vehicle.signals.records.measured import PLATE_CHANNEL, Measured
-from vehicle.signals.records.reader import read_record
 
 
 def plate_choices(asked: Choice, file: Path, signal: object) -> tuple[Choice, Choice | None]:

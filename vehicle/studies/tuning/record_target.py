@@ -16,8 +16,8 @@ from vehicle.runs.car import Car, Run
 from vehicle.signals.analysis.phase_delay import PhaseDelay
 from vehicle.signals.analysis.time_shift import time_shift
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
+from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
-from vehicle.signals.records.table import Record
 from vehicle.studies.tuning.response_delays import ResponseDelays
 from vehicle.studies.tuning.road_car import RoadCar
 

@@ -15,7 +15,7 @@ from vehicle.model.flexbody.mass_properties import MassProperties
 from vehicle.model.flexbody.sources.body_matrices import BodyNodes
 from vehicle.model.flexbody.sources.superelement_of import BodyModes
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.signals.records.channel import Measurement
+from vehicle.signals.formats.channel import Measurement
 
 LARGEST_IMAGINARY = 0.3
 """Maximum imaginary part of a shape over its real part, after the phase rotation that minimises it [1]: shapes of

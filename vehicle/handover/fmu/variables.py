@@ -1,0 +1,148 @@
+"""Variables of an FMU: names, units, value references, first values.
+
+Value references are those of runtime/instance.c.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vehicle.handover.fmu.car_numbers import COMMANDS, PARAMETERS, CarNumbers
+from vehicle.model.parameters.force_elements import Damper
+
+FIRST_PLATE, FIRST_SLOPE, FIRST_COMMAND, FIRST_PARAMETER, FIRST_OUTPUT = 100, 5000, 10000, 20000, 30000
+"""First value references."""
+
+STRIBECK_ONLY = ("static_friction", "stribeck_velocity", "stribeck_exponent")
+"""Parameters of dampers with the Stribeck law alone."""
+
+UNITS = {
+    "m": {"m": 1},
+    "s": {"s": 1},
+    "m/s": {"m": 1, "s": -1},
+    "m/s2": {"m": 1, "s": -2},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N m": {"kg": 1, "m": 2, "s": -2},
+    "N s/m": {"kg": 1, "s": -1},
+}
+"""Units of the variables in base units of the SI."""
+
+_MEANING = {
+    "coulomb_friction": "Coulomb friction Fd",
+    "static_friction": "static friction Fs of the Stribeck law, at least Fd",
+    "stribeck_velocity": "velocity vs of the Stribeck law",
+    "stribeck_exponent": "exponent of the Stribeck law",
+    "curve_scale": "factor on the force over velocity without friction and gas; the poles of the car keep the damping "
+    "at 1, so other values are exact to about 0.1 %",
+    "control": "1: the control law of the car acts; 0: softest setting, for a controller outside that sets the "
+    "coefficient command",
+    "displacement": "displacement of the plate or road at the END of the communication step, upwards",
+    "velocity": "velocity of the plate or road at the END of the communication step, upwards; needed: without it the "
+    "tyre forces are wrong",
+    "slope_excess": "V tan(beta) - z' of a road whose slope under the tyre is not the derivative of its height (a tyre "
+    "that envelops an obstacle), mean over the communication step; 0 otherwise",
+    "force": "force added to that of the damper, constant over the communication step; positive pulls body and wheel "
+    "together",
+    "coefficient": "damping added to the curve of the damper, constant over the communication step",
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Variable:
+    """Variable of an FMU.
+
+    Attributes:
+        name: its name.
+        reference: value reference.
+        causality: "independent", "input", "parameter" or "output".
+        unit: key of `UNITS`; empty for a number.
+        start: first value of an input or a parameter; None for time and outputs.
+        meaning: description.
+    """
+
+    name: str
+    reference: int
+    causality: str
+    unit: str
+    start: float | None = None
+    meaning: str = ""
+
+    @property
+    def variability(self) -> str:
+        """Return "tunable" for a parameter, otherwise "continuous"."""
+        return "tunable" if self.causality == "parameter" else "continuous"
+
+
+def variables(numbers: CarNumbers, dampers: Sequence[Damper]) -> list[Variable]:
+    """Return the variables of the FMU of a car: time, inputs, parameters, outputs.
+
+    Args:
+        numbers: numbers of the car.
+        dampers: laws of its dampers.
+    """
+    entries = [Variable(name="time", reference=0, causality="independent", unit="s")]
+    for k, wheel in enumerate(numbers.plates):
+        for part, (quantity, unit) in enumerate((("displacement", "m"), ("velocity", "m/s"))):
+            entries.append(
+                Variable(
+                    name=f"plate_{wheel}_{quantity}",
+                    reference=FIRST_PLATE + 2 * k + part,
+                    causality="input",
+                    unit=unit,
+                    start=0.0,
+                    meaning=_MEANING[quantity],
+                )
+            )
+    for k, wheel in enumerate(numbers.plates if numbers.rolling else ()):
+        entries.append(
+            Variable(
+                name=f"plate_{wheel}_slope_excess",
+                reference=FIRST_SLOPE + k,
+                causality="input",
+                unit="m/s",
+                start=0.0,
+                meaning=_MEANING["slope_excess"],
+            )
+        )
+    for i, name in enumerate(numbers.dampers):
+        for part, (quantity, unit) in enumerate(COMMANDS.items()):
+            entries.append(
+                Variable(
+                    name=f"{name}_{quantity}_command",
+                    reference=FIRST_COMMAND + 2 * i + part,
+                    causality="input",
+                    unit=unit,
+                    start=0.0,
+                    meaning=_MEANING[quantity],
+                )
+            )
+    for i, (name, law) in enumerate(zip(numbers.dampers, dampers, strict=True)):
+        for k, (quantity, unit) in enumerate(PARAMETERS.items()):
+            if (quantity in STRIBECK_ONLY and law.friction_law != "stribeck") or (
+                quantity == "control" and not law.controlled
+            ):
+                continue
+            entries.append(
+                Variable(
+                    name=f"{name}_{quantity}",
+                    reference=FIRST_PARAMETER + len(PARAMETERS) * i + k,
+                    causality="parameter",
+                    unit=unit,
+                    start=float(np.asarray(numbers.parameters)[i, k]),
+                    meaning=_MEANING[quantity],
+                )
+            )
+    entries += [
+        Variable(
+            name=output.name,
+            reference=FIRST_OUTPUT + index,
+            causality="output",
+            unit=output.unit,
+            meaning=output.meaning,
+        )
+        for index, output in enumerate(numbers.outputs)
+    ]
+    return entries

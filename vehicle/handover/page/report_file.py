@@ -1,0 +1,53 @@
+"""Report of finished runs as a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from vehicle.errors import ConfigurationError
+from vehicle.handover.page.trial_section import trial
+from vehicle.runs.output.folder import check_file, write_text
+from vehicle.runs.output.work_folder import put_in_order
+from vehicle.runs.report.finished_run import read_run
+from vehicle.runs.report.page import report_page
+
+
+def write_report(
+    runs: Path | str | Sequence[Path | str],
+    file: Path | str,
+    *,
+    force: bool = False,
+    progress: Callable[[float], None] | None = None,
+    author: str = "",
+    project: str = "",
+) -> Path:
+    """Write the report of one run, or of several compared with the first, as one HTML file.
+
+    Args:
+        runs: folders of runs, as "runs/low"; `save_run` writes them.
+        file: name of the report, with the ending .html.
+        force: replace a report that was written there before.
+        progress: called with the finished fraction.
+        author, project: names in the head of the page; may be empty.
+
+    Returns:
+        The file.
+
+    Raises:
+        ConfigurationError: no run, a folder that holds none, another ending, or a file that exists without `force`.
+        DataError: a file of a run is missing or damaged.
+        OutputError: the file cannot be written.
+    """
+    folders = [Path(runs)] if isinstance(runs, Path | str) else [Path(run) for run in runs]
+    for folder in folders:
+        put_in_order(folder)
+    missing = next((folder for folder in folders if not folder.is_dir()), None)
+    if missing is not None:
+        raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
+    path = Path(file)
+    check_file(path, ending=".html", force=force)
+    finished = [read_run(folder) for folder in folders]
+    page = report_page(finished, progress, trial=trial, author=author, project=project)
+    write_text(path, page)
+    return path

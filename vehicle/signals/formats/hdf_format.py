@@ -1,0 +1,274 @@
+"""Read and write HDF5: MAT files of version 7.3, and arrays with units as attributes.
+
+A written file has one array per channel with the attributes name, unit, kind, start, step, function, place, direction,
+and uneven frequencies in the group `axes`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
+from vehicle.signals.formats.heads import TIME_NAME, split_head
+from vehicle.signals.formats.matlab_format import channels_of
+from vehicle.signals.formats.packed_values import unpacked
+from vehicle.signals.formats.pandas_frames import frame_channels
+from vehicle.signals.formats.reader import digest, extra
+from vehicle.signals.formats.table import Vector
+from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.unpacked_size import require_unpacked
+
+PLAIN_CLASSES = frozenset(
+    ("double", "single", "logical", "char", "struct", "cell", "function_handle", "canonical empty")
+) | {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+"""MATLAB classes other than objects."""
+
+LONG = 10
+"""Minimum ratio of columns to rows of an array with one channel per row."""
+
+LONG_UNITS = {"days": 86400.0, "hours": 3600.0, "minutes": 60.0}
+"""Units of netCDF times in s, in addition to those of `vehicle.signals.formats.units`."""
+
+NO_VALUES = "This is a netCDF dimension but not a netCDF variable"
+"""Begin of the attribute NAME of an array that netCDF writes for a dimension alone; its numbers have no meaning."""
+
+AXES = "axes"
+"""Name of the group with the uneven axes, under the names of their channels."""
+
+
+def read(path: Path) -> Measurement:
+    """Read the structures of a MATLAB file, or all numeric arrays of another HDF5 file.
+
+    Raises:
+        MissingPartError: h5py is not installed.
+        DataError: the file is damaged, truncated, or without numbers.
+    """
+    h5py = extra("h5py", "hdf5", "an HDF5 file (MAT 7.3)")
+    start = ""
+    try:
+        with h5py.File(path, "r") as file:
+            require_unpacked(path, _size(file, h5py), path.stat().st_size)
+            if any("MATLAB_class" in item.attrs for item in file.values()):
+                objects = {name: matlab_class for name, item in file.items() if (matlab_class := _object_class(item))}
+                names = [name for name in file if not name.startswith("#") and name not in objects]
+                variables = {name: _matlab(file, file[name], h5py) for name in names}
+                variables = {name: item for name, item in variables.items() if item is not None}
+                channels, notices = channels_of(variables, path, objects)
+                program = "MATLAB 7.3"
+            else:
+                notices = []
+                channels, start = _walk(path, file, h5py, notices)
+                program = _attribute(file, "program")
+    except DataError:
+        raise
+    except Exception as error:  # h5py raises errors of any type for damaged files
+        raise DataError(f"{path}: cannot be read as HDF5 ({error}); it may be truncated; export it again") from None
+    if not channels:
+        raise DataError(f"{path}: no numeric array; export the channels as arrays")
+    return Measurement(
+        path=path,
+        format="hdf5",
+        channels=channels,
+        sha256=digest(path),
+        program=program,
+        start=start,
+        notices=tuple(notices),
+    )
+
+
+def _size(file: Any, h5py: Any) -> float:
+    """Return the size of all arrays of a file [byte], unpacked."""
+    sizes: list[float] = []
+    file.visititems(lambda _, item: sizes.append(float(item.nbytes)) if isinstance(item, h5py.Dataset) else None)
+    return sum(sizes)
+
+
+def _walk(path: Path, file: Any, h5py: Any, notices: list[str]) -> tuple[tuple[Channel, ...], str]:
+    """Return the channels of all arrays and pandas frames, in the order of the file, and the first start time."""
+    all_channels: list[Channel] = []
+    starts: list[str] = []
+
+    def enter(group: Any, prefix: str) -> None:
+        for name, item in group.items():
+            label = f"{prefix}{name}"
+            if isinstance(item, h5py.Dataset):
+                all_channels.extend(_arrays(label, item, notices))
+            elif item.attrs.get("pandas_type") is not None:
+                channels, start = frame_channels(path, label, item)
+                all_channels.extend(channels)
+                starts.append(start)
+            else:
+                enter(item, f"{label}/")
+
+    enter(file, "")
+    return tuple(all_channels), next(filter(None, starts), "")
+
+
+def _object_class(variable: Any) -> str:
+    """Return the class of a MATLAB object, such as a table; empty for arrays, structures and cells."""
+    matlab_class = variable.attrs.get("MATLAB_class", b"")
+    matlab_class = matlab_class.decode("latin-1") if isinstance(matlab_class, bytes) else str(matlab_class)
+    return (
+        matlab_class
+        if "MATLAB_object_decode" in variable.attrs or (matlab_class and matlab_class not in PLAIN_CLASSES)
+        else ""
+    )
+
+
+def _matlab(file: Any, variable: Any, h5py: Any) -> Any:
+    """Read a MATLAB variable as `scipy.io.loadmat` does: structures as records, arrays transposed."""
+    if isinstance(variable, h5py.Group):
+        fields = {name: _matlab(file, inner, h5py) for name, inner in variable.items()}
+        record = np.empty((1, 1), dtype=[(name, object) for name in fields])
+        for name, value in fields.items():
+            record[0, 0][name] = value
+        return record
+    matlab_class = variable.attrs.get("MATLAB_class", b"")
+    if _object_class(variable):
+        return np.empty(
+            (1, 1), dtype=[(name, object) for name in ("s0", "s1", "s2", "arr")]
+        )  # as in `scipy.io.loadmat`
+    if variable.attrs.get("MATLAB_empty", 0):
+        return np.array([])
+    values = variable[()]
+    if matlab_class == b"char":
+        return np.array(["".join(chr(int(code)) for code in np.asarray(values).ravel())])
+    if variable.dtype.kind == "O":
+        references = np.asarray(values).ravel()
+        return _matlab(file, file[references[0]], h5py) if references.size == 1 else None
+    if variable.dtype.names == ("real", "imag"):
+        values = values["real"] + 1j * values["imag"]
+    return np.asarray(values).T
+
+
+def _arrays(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
+    """Return the channels of an array: its columns, or its rows if these are at least `LONG` times longer."""
+    if name.startswith(f"{AXES}/") or dataset.size is None or dataset.size < 2:
+        return []
+    if dataset.dtype.names is not None:
+        return _fields(name, dataset, notices)
+    if (
+        dataset.dtype.kind not in "fiuc"
+        or dataset.ndim not in (1, 2)
+        or _attribute(dataset, "NAME").startswith(NO_VALUES)
+    ):
+        return []
+    values, fault, messages = unpacked(name, dataset)
+    notices.extend(messages)
+    index_text = "(:,{})"
+    if values.ndim == 2 and (len(values) == 1 or LONG * len(values) <= values.shape[1]):
+        if len(values) > 1:
+            notices.append(f"array {name!r} of {len(values)} x {values.shape[1]}: each row is a channel")
+        values, index_text = values.T, "({},:)"
+    values = values.reshape(len(values), -1)
+    step, start = dataset.attrs.get("step"), float(dataset.attrs.get("start", 0.0))
+    axis_quantity = _attribute(dataset, "kind")
+    axis = uniform_axis(len(values), float(step), start) if step is not None and step > 0.0 and axis_quantity else None
+    stored_axis = dataset.file.get(f"{AXES}/{name}")
+    if getattr(stored_axis, "shape", None) == (len(values),) and axis_quantity:
+        axis = np.asarray(stored_axis[()], dtype=np.float64)
+    if axis is None:
+        axis = _coordinate(dataset, len(values))
+    label = _attribute(dataset, "name") or name
+    unit = _attribute(dataset, "unit") or _attribute(dataset, "units")
+    return [
+        Channel(
+            name=label if values.shape[1] == 1 else label + index_text.format(n + 1),
+            values=values[:, n].copy(),
+            unit="" if fault else unit,
+            axis=axis,
+            kind="frequency" if axis_quantity == "frequency" else "time",
+            function=_attribute(dataset, "function") or "time history",
+            place=_attribute(dataset, "place"),
+            direction=_attribute(dataset, "direction"),
+            reference=_attribute(dataset, "reference"),
+            remark=f"{fault}: the unit {unit!r} is not taken" if fault and unit else "",
+        )
+        for n in range(values.shape[1])
+    ]
+
+
+def _coordinate(dataset: Any, count: int) -> Vector | None:
+    """Return the times of the first dimension [s] from its dimension scale; None without a scale in a unit of time.
+
+    Times since a date, as "seconds since 2026-01-01" (CF conventions, section 4.4), begin at zero.
+    """
+    scales = dataset.dims[0]
+    if not len(scales) or scales[0].shape != (count,) or scales[0].dtype.kind not in "fiu":
+        return None
+    unit, since, _ = _attribute(scales[0], "units").partition(" since ")
+    factor = LONG_UNITS.get(unit.strip().lower()) or _seconds(unit.strip())
+    if not factor:
+        return None
+    times = np.asarray(unpacked("", scales[0]).values, dtype=np.float64) * factor
+    return times - times[0] if since else times
+
+
+def _fields(name: str, dataset: Any, notices: list[str]) -> list[Channel]:
+    """Return the fields of a record array as channels; a time field becomes their axis."""
+    if dataset.ndim != 1:
+        notices.append(f"array {name!r} of records with {dataset.ndim} axes is ignored")
+        return []
+    table = dataset[()]
+    numeric = [field for field in table.dtype.names if table[field].dtype.kind in "fiu" and table[field].ndim == 1]
+    others = [field for field in table.dtype.names if field not in numeric]
+    if others:
+        notices.append(f"fields of {name!r} without numbers are ignored: {', '.join(map(repr, others))}")
+    heads = {field: split_head(field) for field in numeric}
+    key = next((field for field, (text, unit) in heads.items() if TIME_NAME.fullmatch(text) and _seconds(unit)), None)
+    axis = None if key is None else table[key].astype(np.float64) * _seconds(heads[key][1])
+    return [
+        Channel(name=text, values=table[field].astype(np.float64), unit=unit, axis=axis, place=name)
+        for field, (text, unit) in heads.items()
+        if field != key
+    ]
+
+
+def _seconds(unit: str) -> float:
+    """Return the factor from a unit of time to seconds; 0 for other units."""
+    entry = find_unit(unit)
+    return entry.factor if entry is not None and entry.quantity == "time" else 0.0
+
+
+def _attribute(item: Any, name: str) -> str:
+    value = item.attrs.get(name, "")
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
+    """Write channels to an HDF5 file, one array per channel.
+
+    Args:
+        path: file to write.
+        channels: channels of any type.
+        description: description of the record.
+
+    Raises:
+        MissingPartError: h5py is not installed.
+        OSError: the file cannot be written.
+    """
+    h5py = extra("h5py", "hdf5", "writing HDF5")
+    # The file is made in memory: an error as HDF5 closes a file on a full disk cannot be caught, and ends the process.
+    with h5py.File(path.name, "w", driver="core", backing_store=False) as file:
+        file.attrs["program"] = description
+        for number, channel in enumerate(channels, 1):
+            array = file.create_dataset(f"{number:04d}", data=channel.values, compression="gzip", compression_opts=4)
+            texts = {
+                name: getattr(channel, name) for name in ("name", "unit", "function", "place", "direction", "reference")
+            }
+            for name, text in texts.items():
+                array.attrs[name] = text
+            if channel.axis is not None:
+                array.attrs["kind"] = channel.kind
+                array.attrs["start"] = float(channel.axis[0])
+                step = even_step(channel.axis)
+                array.attrs["step"] = 0.0 if step is None else step
+                if step is None:
+                    file.create_dataset(f"{AXES}/{number:04d}", data=channel.axis)
+        file.flush()
+        image = file.id.get_file_image()
+    path.write_bytes(image)

@@ -1,0 +1,120 @@
+"""Read pandas frames in HDF5 files (`DataFrame.to_hdf`) without pandas: names, index and blocks of columns.
+
+A fixed frame stores the names of all columns in `axis0`, its index in `axis1`, and for each block of columns of one
+type the names in `blockN_items` and the numbers in `blockN_values`, (rows, columns). Frames in table format store
+column names as pickled objects, which are not loaded for security.
+
+Source: pandas, `pandas/io/pytables.py`.
+"""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.signals.formats.channel import Channel
+from vehicle.signals.formats.heads import TIME_NAME, split_head
+from vehicle.signals.formats.table import Vector
+from vehicle.signals.formats.units import find_unit
+
+NANOSECONDS = 1e-9
+"""Length of a nanosecond [s]."""
+
+
+def frame_channels(path: Path, name: str, group: Any) -> tuple[list[Channel], str]:
+    """Return the columns of a pandas frame or series as channels, and its start time.
+
+    Args:
+        path: HDF5 file, for messages.
+        name: name of the group.
+        group: group of an HDF5 file, with the attribute `pandas_type`.
+
+    Raises:
+        DataError: an unsupported storage format; the message contains a command that converts the frame.
+    """
+    frame_type = _text(group.attrs.get("pandas_type"))
+    if frame_type not in ("frame", "series"):
+        convert = f"import pandas; pandas.read_hdf({path.name!r}, {name!r}).to_csv({name.replace('/', '_') + '.csv'!r})"
+        raise DataError(
+            f"{path}: {name!r} is a pandas {frame_type} in table format, whose column names are not readable "
+            f'without pandas; convert it: python -c "{convert}"'
+        )
+    index = group["axis1" if frame_type == "frame" else "index"]
+    columns: dict[str, Vector] = {}
+    if frame_type == "series":
+        title = _text(group.attrs.get("name")) or name
+        columns[title] = _numbers(group["values"])
+    else:
+        for number in range(int(group.attrs.get("nblocks", 0))):
+            block = group[f"block{number}_values"]
+            if block.dtype.kind not in "fiub":
+                continue
+            values = np.asarray(block[()])
+            if not group[f"block{number}_values"].attrs.get("transposed", True):
+                values = values.T
+            items = [_text(item_name) for item_name in group[f"block{number}_items"][()]]
+            if values.ndim != 2 or values.shape != (index.shape[0], len(items)):
+                raise DataError(
+                    f"{path}: {name!r}: the shape of block {number} contradicts its names; the file is damaged"
+                )
+            columns |= {item: values[:, n].astype(np.float64) for n, item in enumerate(items)}
+        order = [_text(item_name) for item_name in group["axis0"][()]]
+        columns = {item: columns[item] for item in order if item in columns}
+    axis, start, index_values = _index(index)
+    heads = {column: split_head(column) for column in columns}
+    if axis is None:
+        key = next((c for c, (text, unit) in heads.items() if TIME_NAME.fullmatch(text) and _is_time(unit)), None)
+        time_unit = find_unit(heads[key][1]) if key is not None else None
+        if key is not None and time_unit is not None:
+            axis = columns.pop(key) * time_unit.factor
+    channels = [
+        Channel(name=heads[column][0], values=values, unit=heads[column][1], axis=axis, place=name)
+        for column, values in columns.items()
+    ]
+    if index_values is not None:
+        channels.insert(
+            0, Channel(name=_text(index.attrs.get("name")) or "index", values=index_values, axis=axis, place=name)
+        )
+    return channels, start
+
+
+def _index(index: Any) -> tuple[Vector | None, str, Vector | None]:
+    """Return times and start of an index of dates, or the values of another index; None for a plain row index."""
+    if index.dtype.kind not in "iuf" or not index.size:
+        return None, "", None
+    values = np.asarray(index[()])
+    index_type = _text(index.attrs.get("kind"))
+    if index_type.startswith(("datetime64", "timedelta64")):
+        scale = {"[s]": 1.0, "[ms]": 1e-3, "[us]": 1e-6}.get(
+            index_type[index_type.find("[") :] if "[" in index_type else "", NANOSECONDS
+        )
+        seconds = (values - values[0]).astype(np.float64) * scale
+        first = float(values[0]) * scale
+        start = datetime.fromtimestamp(first, tz=UTC).isoformat(timespec="milliseconds") if index_type[0] == "d" else ""
+        return seconds, start, None
+    if np.array_equal(values, np.arange(values.size)):
+        return None, "", None
+    return None, "", values.astype(np.float64)
+
+
+def _numbers(block: Any) -> Vector:
+    values = np.asarray(block[()])
+    return values.astype(np.float64).ravel() if values.dtype.kind in "fiub" else np.full(values.shape[0], np.nan)
+
+
+def _is_time(unit: str) -> bool:
+    unit_entry = find_unit(unit)
+    return unit_entry is not None and unit_entry.quantity == "time"
+
+
+def _text(value: Any) -> str:
+    """Return an attribute or a name as text; empty for a pickled object or None."""
+    if value is None:
+        return ""
+    if isinstance(value, bytes):
+        return "" if value[:1] in (b"\x80", b"N", b"(") and value[-1:] == b"." else value.decode("utf-8", "replace")
+    return str(value)

@@ -1,0 +1,154 @@
+"""Read measurements, tables and time histories from files of any registered format."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.clock import check_increasing, check_stamps, check_uniform, without_rounding
+from vehicle.signals.formats.formats import BY_NAME, recognised_format
+from vehicle.signals.formats.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
+
+MINIMUM_SAMPLES = 3
+"""Minimum number of samples of a record: two give the step, the third shows that the step is uniform."""
+
+
+def read_record(path: str | Path, databases: Sequence[Path] = ()) -> Measurement:
+    """Read all channels of a measurement file.
+
+    Args:
+        path: measurement file of any format of `vehicle.signals.formats.formats`.
+        databases: DBC files that decode the log of a CAN bus.
+
+    Returns:
+        Channels with names, units and times, mode shapes and geometry, in the units of the file.
+
+    Raises:
+        ConfigurationError: the file does not exist, or databases are passed for a file other than a bus log.
+        DataError: an unsupported format, or a damaged file.
+        MissingPartError: a library of the format is not installed; the message names the extra.
+    """
+    file = Path(path)
+    recognised = recognised_format(file)
+    if databases and not recognised.databases:
+        raise ConfigurationError(
+            f"{path}: --dbc decodes the log of a CAN bus (MDF, .asc, .trc, candump); it is {recognised.name}"
+        )
+    read = recognised.function("reader", "read")
+    measurement: Measurement = read(file, databases) if databases else read(file)
+    return measurement
+
+
+def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
+    """Read all channels of a measurement file of any format, or of the folder of a run.
+
+    Args:
+        file: measurement file, or the folder of a run, whose time histories are read.
+        databases: DBC files that decode the log of a CAN bus.
+
+    Returns:
+        Channels with names, units and times; `read(file)["Seat Z"]` is one of them.
+
+    Raises:
+        ConfigurationError, DataError, MissingPartError: see `read_record`.
+    """
+    return read_record(time_file(Path(file)), databases)
+
+
+def is_table(path: Path) -> bool:
+    """Return True for a file in a table format; also for a missing file, which `read_table` reports."""
+    return not path.is_file() or bool(recognised_format(path).table)
+
+
+def read_table(path: Path, wanted: Wanted) -> Table:
+    """Read a table from an archive of arrays or a text file.
+
+    Args:
+        path: table file.
+        wanted: requirements on the columns.
+
+    Raises:
+        ConfigurationError: the file does not exist.
+        DataError: bad data; the message names line and column.
+    """
+    try:
+        with path.open("rb") as file:
+            archive = file.read(2) == b"PK"
+    except OSError:
+        archive = False  # the text reader reports the error
+    table: Table = BY_NAME["npz" if archive else "csv"].function("table", "read")(path, wanted)
+    return table
+
+
+def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
+    """Read a record: a table with a uniform column `time [s]`.
+
+    Args:
+        path: table file.
+        needed: description of the required columns, for messages.
+
+    Raises:
+        ConfigurationError: the file does not exist.
+        DataError: the file is not a record; the message names line and column.
+    """
+    table = read_table(path, Wanted(needed=needed, key=key_column(TIME, needed)))
+    channels: dict[str, Vector] = {}
+    units = {}
+    for index, cell in enumerate(table.header.cells):
+        name, unit = name_and_unit(cell)
+        if name in channels:
+            raise DataError(f"{table.header.where}: column {name!r} appears twice; each may appear once")
+        channels[name], units[name] = table.values[:, index], unit or ""
+    time, _ = channels.pop("time"), units.pop("time")
+    if time.size < MINIMUM_SAMPLES:
+        raise DataError(f"{path}: {time.size} samples, must be at least {MINIMUM_SAMPLES}")
+    check_stamps(path, time)
+    check_increasing(table, time)
+    uniform, notices = without_rounding(time)
+    check_uniform(table, uniform)
+    return Record(time=uniform, channels=channels, units=units, notices=(*table.notices, *notices))
+
+
+def time_file(run: Path) -> Path:
+    """Return the file of the time histories of a run: the path itself, or `time.npz` or `time.csv` in a folder.
+
+    Raises:
+        ConfigurationError: the folder contains neither.
+    """
+    if not run.is_dir():
+        return run
+    for name in ("time.npz", "time.csv"):
+        if (run / name).is_file():
+            return run / name
+    raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
+
+
+def extra(package: str, name: str, purpose: str) -> Any:
+    """Import an optional library.
+
+    Args:
+        package: package to import.
+        name: name of the extra that installs the package.
+        purpose: use of the package, for the message.
+
+    Raises:
+        MissingPartError: the library is not installed.
+    """
+    try:
+        return import_module(package)
+    except ImportError:
+        raise MissingPartError(
+            f"{purpose} needs {package}, which is not installed; install it with: pip install "
+            f"'vehicle-on-shaker[{name}]'"
+        ) from None
+
+
+def digest(path: Path) -> str:
+    """Return the SHA-256 digest of a file, hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,0 +1,71 @@
+"""Reject recognised but unsupported formats: the error names the format and an alternative for the export."""
+
+from __future__ import annotations
+
+from vehicle.errors import DataError
+from vehicle.signals.formats.signatures import Head
+
+SIGNATURES = {
+    b"|CF,": ("FAMOS", "UFF 58, MAT or CSV"),
+    b"<usi:tdm": ("TDM", "TDMS or CSV"),
+    b"DEWESOFT": ("Dewesoft", "UFF 58, MAT or MDF4"),
+    b"$OP2": ("Nastran OP2", "UFF 55 or CSV"),
+    b"CDF": ("netCDF of the classic form", "netCDF-4, as `nccopy -k nc4 IN.nc OUT.nc` does"),
+    b"LOGG": (
+        "a log of a CAN bus (Vector BLF)",
+        "MDF4 or ASC, as `python -m can.logconvert IN.blf OUT.asc` of python-can does, and give --dbc FILE with it",
+    ),
+    b"ULog\x01\x12\x35": ("PX4 ULog", "CSV, as `ulog2csv FILE` of pyulog does"),
+}
+"""First bytes of a file -> name of the format, and alternative for the export."""
+
+ENDINGS = {
+    ".tdm": SIGNATURES[b"<usi:tdm"],
+    ".dxd": SIGNATURES[b"DEWESOFT"],
+    ".d7d": SIGNATURES[b"DEWESOFT"],
+    ".op2": SIGNATURES[b"$OP2"],
+    ".bin": ("Catman or raw numbers", "MAT, MDF4 or CSV"),
+    ".tst": ("Catman", "MAT, MDF4 or CSV"),
+    ".sie": ("SoMat SIE", "RPC III or CSV"),
+    ".dac": ("nCode DAC", "RPC III or CSV"),
+    ".xls": ("Excel before 2007", "XLSX or CSV"),
+    ".lms": ("a Testlab project", "UFF 58 or MAT"),
+    ".pti": ("PULSE time", "UFF 58"),
+    ".atfx": ("ATFX", "UFF 58 or MAT"),
+    ".mp3": ("compressed sound", "WAV"),
+    ".flac": ("compressed sound", "WAV"),
+}
+"""File extension -> name of the format, and alternative, for binary files without a known signature."""
+
+EBML_SIGNATURE = b"\x1aE\xdf\xa3"
+TEXT_ENDINGS = (".csv", ".txt", ".asc")
+
+
+def refuse(head: Head) -> None:
+    """Raise the error for an unsupported format or binary data; return for a possible text file.
+
+    Args:
+        head: beginning of a file that no format of `vehicle.signals.formats.formats` recognises.
+
+    Raises:
+        DataError: a known but unsupported format, or binary data.
+    """
+    path, data, ending = head.path, head.data, head.path.suffix.lower()
+    if data.startswith(EBML_SIGNATURE):
+        if b"mide" in data[:64]:
+            raise DataError(
+                f"{path}: enDAQ IDE recording, not supported; export CSV from enDAQ Lab, or with Python: "
+                f"endaq.ide.to_pandas(endaq.ide.get_doc({path.name!r}).channels[8]).to_csv('{path.stem}.csv')"
+            )
+        raise DataError(f"{path}: film or another EBML file, not supported; use a measurement file")
+    for signature, (name, instead) in SIGNATURES.items():
+        if data.startswith(signature) or (signature == b"<usi:tdm" and signature in data):
+            raise DataError(f"{path}: {name}, not supported; export {instead}")
+    if ending in TEXT_ENDINGS:
+        return  # the text reader reports the position of the invalid byte
+    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        name, instead = ENDINGS.get(ending, ("of no known format", "UFF 58, MAT, RPC III, MDF4 or CSV"))
+        raise DataError(f"{path}: binary file, {name}, not supported; export {instead}")
+    if ending in ENDINGS and not data.isascii():
+        name, instead = ENDINGS[ending]
+        raise DataError(f"{path}: {name}, not supported; export {instead}")

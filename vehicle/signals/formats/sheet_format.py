@@ -1,0 +1,103 @@
+"""Read sheets of XLSX files as tables of a logger."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from vehicle.errors import DataError
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.logger_format import read_lines
+from vehicle.signals.formats.reader import digest, extra
+from vehicle.signals.formats.text import Text
+from vehicle.signals.formats.unpacked_size import require_archive
+
+LARGEST_SHEETS, FREE_SHEETS, DENSEST_SHEETS = 500e6, 20e6, 50.0
+"""Maximum size of the XML of a workbook, size at any compression ratio [byte], and maximum ratio above it [-]: a cell
+takes some 40 bytes of XML and 100 bytes of memory, and numbers of a sensor are compressed 4 to 10 to 1."""
+
+NO_VALUES = "formulas without saved values: open the file in a spreadsheet program and save it"
+"""Remark on the cells of formulas that another program wrote without computing them."""
+
+
+def read(path: Path) -> Measurement:
+    """Read the first sheet with a table of numbers.
+
+    Raises:
+        MissingPartError: openpyxl is not installed.
+        DataError: the file is damaged or has no table of numbers.
+    """
+    sheets = _sheets(path)
+    first_error: DataError | None = None
+    for title, cells in sheets.items():
+        body = "\n".join(_row(row) for row in cells)
+        notice = () if len(sheets) == 1 else (f"sheet {title!r} of {len(sheets)}",)
+        try:
+            measurement = read_lines(path, Text(body=body, notices=notice, sha256=digest(path)), "xlsx")
+        except DataError as error:
+            first_error = first_error or error
+            continue
+        empty = [not np.isfinite(channel.values).any() for channel in measurement.channels]
+        if not any(empty) or not _formulas(path, title):
+            return measurement
+        channels = tuple(
+            replace(channel, remark=NO_VALUES) if none else channel
+            for channel, none in zip(measurement.channels, empty, strict=True)
+        )
+        return replace(measurement, channels=channels)
+    if first_error is not None and any(_formulas(path, title) for title in sheets):
+        raise DataError(f"{first_error}; the sheet has {NO_VALUES}") from None
+    raise first_error or DataError(f"{path}: no sheet; save it again")
+
+
+def _formulas(path: Path, title: str) -> bool:
+    """Return True if a sheet has a formula whose value was not saved."""
+    values, formulas = _sheets(path)[title], _sheets(path, formulas=True)[title]
+    return any(
+        value is None and isinstance(formula, str) and formula.startswith("=")
+        for row, row_formulas in zip(values, formulas, strict=False)
+        for value, formula in zip(row, row_formulas, strict=False)
+    )
+
+
+def _sheets(path: Path, *, formulas: bool = False) -> dict[str, list[tuple[object, ...]]]:
+    """Return the rows of each sheet by sheet title: saved values, or formulas."""
+    openpyxl = extra("openpyxl", "xlsx", "an XLSX file")
+    with path.open("rb") as archive:
+        require_archive(path, archive, limit=LARGEST_SHEETS, freely=FREE_SHEETS, densest=DENSEST_SHEETS)
+    try:
+        with path.open("rb") as file:  # openpyxl rejects other file extensions
+            book = openpyxl.load_workbook(file, read_only=True, data_only=not formulas)
+            return {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in book.worksheets}
+    except Exception as error:  # openpyxl raises errors of any type for damaged archives
+        raise DataError(f"{path}: cannot be read as XLSX ({error}); save it again, or as CSV") from None
+
+
+def read_sheet_texts(path: Path) -> list[list[str]]:
+    """Read the cells of the first sheet as texts, numbers with all digits; skip empty rows.
+
+    Raises:
+        MissingPartError: openpyxl is not installed.
+        DataError: the file is damaged or has no sheet, or a formula without a saved value.
+    """
+    sheets = _sheets(path)
+    title = next(iter(sheets), None)
+    rows = [] if title is None else sheets[title]
+    if title is not None and _formulas(path, title):
+        raise DataError(f"{path}: {NO_VALUES}")
+    texts = [["" if cell is None else str(cell).strip() for cell in row] for row in rows]
+    return [row for row in texts if any(row)]
+
+
+def _row(cells: tuple[object, ...]) -> str:
+    """Join a row to text: numbers with all digits, other cells in quotes."""
+    return ";".join(
+        repr(float(cell))
+        if isinstance(cell, (int, float)) and not isinstance(cell, bool)
+        else ""
+        if cell is None
+        else f'"{cell}"'.replace(";", ",").replace("\n", " ")
+        for cell in cells
+    )

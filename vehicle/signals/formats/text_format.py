@@ -1,0 +1,294 @@
+"""Read and write tables as text: UTF-8, `#` comments, one header line, one row per time or frequency."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle.errors import DataError
+from vehicle.signals.formats.table import TIME, Header, Record, Table, Vector, Wanted
+from vehicle.signals.formats.text import LARGEST, Text, read_text
+
+ROWS_AT_ONCE = 4096
+"""Number of rows written at once, to limit the memory for the text of a long table."""
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?", re.ASCII)
+_SPREADSHEET_ERROR = re.compile(r"#(N/?A|NAME\?|VALUE!|DIV/0!|REF!|NUM!|NULL!)", re.IGNORECASE)
+_MISSING = re.compile(r"|nan|#?na|n/a|null|none|-|[+-]?inf(inity)?", re.IGNORECASE)
+
+
+def read(path: Path, wanted: Wanted) -> Table:
+    """Read a table with cells separated by commas, semicolons or tabs, with or without quotes.
+
+    NumPy parses many rows at once. If the result is not finite or has a wrong shape, the table is parsed cell by cell,
+    and errors name line and column.
+
+    Raises:
+        ConfigurationError: the file does not exist.
+        DataError: not text, no rows, a row with another number of cells, a non-numeric cell, an ambiguous decimal
+            comma, or a violated requirement of `wanted`.
+    """
+    text = read_text(path)
+    head, first = _first_line(text)
+    if not head:
+        raise DataError(f"{path}: only comments; needed are the columns {wanted.needed} in a header line and one row "
+                        "per sample")  # fmt: skip
+    delimiter = next((sign for sign in (";", "\t") if sign in first), ",")
+    header = Header(path=path, line=head, cells=tuple(_split(first, delimiter)), delimiter=delimiter)
+    key = wanted.key(header)
+    notices = list(text.notices)
+    if delimiter != ",":
+        notices.append(f"delimiter {delimiter!r} accepted; ',' is the usual one")
+    plain = _plain(text, header)
+    if plain is not None:
+        return Table(
+            header=header, key=key, values=plain[0], lines=plain[1], notices=tuple(notices), sha256=text.sha256
+        )
+    lines = text.lines
+    numbers = [n for n, line in enumerate(lines[head:], head + 1) if not _is_comment(line)]
+    if not numbers:
+        raise DataError(f"{path}:{head}: the file ends after the header; needed is one row per sample below it")
+    rows = [lines[n - 1] for n in numbers]
+    if delimiter != "," and any("," in row for row in rows):
+        rows = decimal_points(numbers, rows, header)
+        notices.append("decimal comma read as decimal point")
+    values = fast(rows, header)
+    if values is None:
+        values = careful(numbers, rows, header, key, wanted)
+    return Table(
+        header=header, key=key, values=values, lines=np.array(numbers), notices=tuple(notices), sha256=text.sha256
+    )
+
+
+def _first_line(text: Text) -> tuple[int, str]:
+    """Return number and content of the first line other than a comment; number 0 if there is none."""
+    for start, lines in text.pieces():
+        for number, line in enumerate(lines, start):
+            if not _is_comment(line):
+                return number, line
+    return 0, ""
+
+
+def _plain(text: Text, header: Header) -> tuple[Vector, NDArray[np.int64]] | None:
+    """Return the numbers below the header and their line numbers; None unless `fast` parses all rows."""
+    values, line_numbers = [], []
+    for start, lines in text.pieces():
+        numbers = [n for n, line in enumerate(lines, start) if n > header.line and not _is_comment(line)]
+        rows = [lines[n - start] for n in numbers]
+        if not rows:
+            continue
+        if header.delimiter != "," and any("," in row for row in rows):
+            return None
+        block = fast(rows, header)
+        if block is None:
+            return None
+        values.append(block)
+        line_numbers.append(np.array(numbers))
+    return (np.concatenate(values), np.concatenate(line_numbers)) if values else None
+
+
+def read_texts(path: Path) -> list[list[str]]:
+    """Read the cells of all rows as texts, the header first; keep commas within quotes.
+
+    Raises:
+        ConfigurationError: the file does not exist.
+        DataError: not a CSV text.
+    """
+    try:
+        rows = csv.reader(line for line in read_text(path).lines if not _is_comment(line))
+        return [[cell.strip() for cell in row] for row in rows]
+    except csv.Error as error:
+        raise DataError(f"{path}: cannot be read ({error})") from None
+
+
+def write_table(
+    path: Path, cells: Sequence[str], columns: Sequence[Vector], comments: Sequence[str] = (), formats: str = "%.9g"
+) -> None:
+    """Write a table in the format of `read`; undefined values (NaN) become empty cells.
+
+    Args:
+        path: file to write.
+        cells: column headers, including units.
+        columns: numbers of each column, (rows,).
+        comments: lines above the header.
+        formats: format of all numbers, or formats of the columns separated by commas.
+    """
+    cell_formats = formats.split(",") if "," in formats else [formats] * len(cells)
+    row = ",".join(cell_formats)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        file.writelines(f"{line}\n" for line in (*(f"# {comment}" for comment in comments), ",".join(cells)))
+        for first in range(0, len(columns[0]), ROWS_AT_ONCE):
+            table = np.column_stack([column[first : first + ROWS_AT_ONCE] for column in columns])
+            gaps = set(np.flatnonzero(np.isnan(table).any(axis=1)).tolist())
+            file.writelines(
+                ",".join(
+                    "" if value != value else number_format % value
+                    for number_format, value in zip(cell_formats, values, strict=True)
+                )
+                + "\n"
+                if index in gaps
+                else row % tuple(values) + "\n"
+                for index, values in enumerate(table.tolist())
+            )
+
+
+def write(path: Path, record: Record, frame: str) -> None:
+    """Write a record, one row per sample; see `vehicle.signals.formats.formats.write_record`."""
+    heads = [TIME, *(f"{name} [{record.units[name]}]" for name in record.channels)]
+    write_table(path, heads, [record.time, *record.channels.values()], [f"frame: {frame}"])
+
+
+def _is_comment(line: str) -> bool:
+    """Return True for a blank line or a comment; '#N/A' and other spreadsheet errors are data."""
+    text = line.strip()
+    return not text or (text[0] == "#" and not _SPREADSHEET_ERROR.match(text))
+
+
+def _split(row: str, delimiter: str) -> list[str]:
+    """Split a row into cells; strip blanks and quotes."""
+    return [cell.strip().strip('"').strip() for cell in row.split(delimiter)]
+
+
+def fast(rows: list[str], header: Header) -> Vector | None:
+    """Parse all numbers at once, (rows, columns); None unless all are finite and the number of columns is right.
+
+    Args:
+        rows: lines of text.
+        header: header with delimiter and number of columns.
+    """
+    try:
+        values = np.loadtxt(rows, delimiter=header.delimiter, comments=None, ndmin=2, dtype=np.float64)
+    except ValueError:
+        return None
+    whole = values.shape[1] == len(header.cells)
+    # The comparison is False for NaN.
+    return values if whole and (not values.size or -LARGEST <= values.min() <= values.max() <= LARGEST) else None
+
+
+def fast_with_gaps(rows: list[str], header: Header, key: int) -> Vector | None:
+    """Parse all numbers at once, (rows, columns), NaN for missing values; None if `careful` must parse the rows.
+
+    Infinite cells stay infinite: they are no missing values, and the user of the channel refuses them.
+
+    Args:
+        rows: lines of text.
+        header: header with delimiter and number of columns.
+        key: index of the column without missing values; -1 for none.
+    """
+    sign = re.escape(header.delimiter)
+    gap = re.compile(rf"(?:(?<=^)|(?<={sign}))[ ]*(?:#?na|n/a|null|none|-)?[ ]*(?=$|{sign})", re.IGNORECASE)
+    try:
+        filled = [gap.sub("nan", row) for row in rows]
+        values = np.loadtxt(filled, delimiter=header.delimiter, comments=None, ndmin=2, dtype=np.float64)
+    except ValueError:
+        return None
+    if values.shape[1] != len(header.cells) or (key >= 0 and not np.isfinite(values[:, key]).all()):
+        return None
+    return values
+
+
+def careful(numbers: list[int], rows: list[str], header: Header, key: int, wanted: Wanted) -> Vector:
+    """Parse numbers cell by cell, (rows, columns), NaN for missing values if `Wanted.missing` allows.
+
+    Args:
+        numbers: line number of each row.
+        rows: lines of text.
+        header: header of the table.
+        key: index of the column of times or frequencies; -1 for none.
+        wanted: requirements on the table.
+
+    Raises:
+        DataError: a non-numeric cell, or a row with another number of cells.
+    """
+    width = len(header.cells)
+    values: NDArray[np.float64] = np.full((len(rows), width), np.nan)
+    for index, (line, row) in enumerate(zip(numbers, rows, strict=True)):
+        cells = _split(row, header.delimiter)
+        if len(cells) != width:
+            raise _wrong_count(index, numbers, rows, header)
+        for column, cell in enumerate(cells):
+            number = float(cell) if _NUMBER.fullmatch(cell) else np.nan
+            if abs(number) <= LARGEST:
+                values[index, column] = number
+                continue
+            where = f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r}"
+            if np.isfinite(number) and wanted.missing != "mark":
+                raise DataError(f"{where} holds {cell!r}; allowed are numbers up to {LARGEST:g}; repair the cell")
+            if not (_MISSING.fullmatch(cell) or _SPREADSHEET_ERROR.match(cell) or not np.isnan(number)):
+                raise DataError(f"{where} holds {cell!r}; allowed is a number with a decimal point, such as -1.25e-4")
+            if column == key:
+                stamp = "time stamp" if header.cells[column].lower().startswith("time") else "frequency"
+                raise DataError(f"{where} holds {cell!r}; a {stamp} is never interpolated; repair or remove the row")
+            if wanted.missing == "empty":
+                if cell:
+                    raise DataError(f"{where} holds {cell!r}; allowed are finite numbers, or an empty cell where the "
+                                    "value is undefined")  # fmt: skip
+                continue
+            if wanted.missing == "mark":
+                if "inf" in cell.lower():
+                    values[index, column] = -np.inf if cell.startswith("-") else np.inf
+                continue
+            if not cell and index > 0 and _ends_here(rows[index:], column, header):
+                raise _different_length(where)
+            if wanted.missing == "refuse":
+                raise DataError(f"{where} holds {cell!r}; allowed are finite numbers; {wanted.remedy}")
+    return values
+
+
+def _ends_here(rows: list[str], column: int, header: Header) -> bool:
+    """Return True if no row has a value in the column."""
+    return not any(column < len(cells) and cells[column] for cells in (_split(row, header.delimiter) for row in rows))
+
+
+def _wrong_count(index: int, numbers: list[int], rows: list[str], header: Header) -> DataError:
+    width, cells = len(header.cells), _split(rows[index], header.delimiter)
+    where = f"{header.path}:{numbers[index]}:{min(len(cells), width) + (len(cells) > width)}"
+    if len(cells) < width and index > 0 and _ends_here(rows[index:], width - 1, header):
+        if index < len(rows) - 1:
+            return _different_length(f"{header.path}:{numbers[index]}:{width}: column {header.cells[-1]!r}")
+        return DataError(
+            f"{where}: the last row has {len(cells)} cells, the header {width}; the file is truncated; remove the row"
+        )
+    hint = "one cell per column"
+    if len(cells) < width and any(sign in rows[index] for sign in (";", "\t")):
+        hint = f"separate the cells by {header.delimiter!r} as in the header"
+    elif len(cells) > width and header.delimiter == ",":
+        hint = "with decimal commas the columns must be separated by ';', in the header too; 1,5 is ambiguous"
+    return DataError(f"{where}: row has {len(cells)} cells, the header {width}; {hint}")
+
+
+def _different_length(where: str) -> DataError:
+    return DataError(
+        f"{where} ends before the other columns: columns of different length, must be equal; export all columns over "
+        "the same time"
+    )
+
+
+def decimal_points(numbers: list[int], rows: list[str], header: Header) -> list[str]:
+    """Replace decimal commas by decimal points; reject ambiguous commas.
+
+    Args:
+        numbers: line number of each row.
+        rows: lines of text.
+        header: header of the table.
+
+    Raises:
+        DataError: a comma that may separate thousands.
+    """
+    pointed = next((n for n, row in zip(numbers, rows, strict=True) if "." in row), None)
+    for line, row in zip(numbers, rows, strict=True):
+        for column, cell in enumerate(_split(row, header.delimiter)):
+            if "," in cell and (pointed is not None or not _DECIMAL_COMMA.fullmatch(cell)):
+                other = f"; line {pointed} has a decimal point" if pointed is not None else ""
+                raise DataError(
+                    f"{header.path}:{line}:{column + 1}: column {header.cells[column]!r} holds {cell!r}{other}; a "
+                    "comma may be a decimal comma or separate thousands; write all numbers with a decimal point and no "
+                    "other sign"
+                )
+    return [row.replace(",", ".") for row in rows]

@@ -1,0 +1,217 @@
+"""Find the table in a text file: first line, delimiter, and data types of the columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Literal
+
+from vehicle.errors import DataError
+from vehicle.signals.formats.clock_text import is_clock
+from vehicle.signals.formats.heads import NUMBER, NUMBER_WITH_COMMA, cells_of
+
+TEXT_LINES = 400
+"""Maximum number of lines above the numbers."""
+
+AGREEING = 4
+"""Number of consistent lines that mark the beginning of the table."""
+
+SAMPLED = 200
+"""Number of rows, spread over the file, that determine the type of a column whose first cells are empty or texts."""
+
+SAME_SHAPE = 0.9
+"""Minimum share of consistent sampled rows in a table with text columns [-]."""
+
+LARGEST_KINDS = 64
+"""Maximum number of different texts of a column that distinguishes sources of rows; more are remarks."""
+
+DELIMITERS = (";", "\t", ",", "")
+
+Kind = Literal["number", "clock", "text", "missing", "other"]
+_MISSING = ("", "nan", "-", "na", "n/a", "#n/a", "null", "none")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TextTable:
+    """Position and layout of a table.
+
+    Attributes:
+        start: index of the first row.
+        delimiter: delimiter of the cells; "" for blanks.
+        kinds: type of each column: numbers, dates or clocks, or texts.
+    """
+
+    start: int
+    delimiter: str
+    kinds: tuple[Kind, ...]
+
+
+def find_table(path: Path, lines: Sequence[str]) -> TextTable:
+    """Find the table of numbers in a text: numbers only, else with dates and clocks, else with text columns.
+
+    Args:
+        path: measurement file, for messages.
+        lines: all lines of the file.
+
+    Raises:
+        DataError: no table.
+    """
+    for allowed in (("number",), ("number", "clock"), ("number", "clock", "text")):
+        for delimiter in DELIMITERS:
+            for start in range(min(TEXT_LINES, len(lines))):
+                kinds = _shape(lines, start, delimiter, allowed)
+                if kinds is not None:
+                    return TextTable(start=start, delimiter=delimiter, kinds=kinds)
+    for start in range(min(TEXT_LINES, len(lines))):
+        following = [line for line in lines[start : start + AGREEING] if line.strip()]
+        if len(following) > 2 and all(kinds_of(line, ";") == ["number"] for line in following):
+            return TextTable(start=start, delimiter=";", kinds=("number",))
+    raise DataError(
+        f"{path}: no table of numbers in the first {TEXT_LINES} lines; needed are rows of numbers in columns "
+        "separated by ';', tab, ',' or blanks, with a line of names and units above them"
+    )
+
+
+def _kind(cell: str, delimiter: str) -> Kind:
+    if NUMBER.fullmatch(cell) or (delimiter != "," and NUMBER_WITH_COMMA.fullmatch(cell)):
+        return "number"
+    if cell.lower() in _MISSING:
+        return "missing"
+    if cell[:1].isdigit() and is_clock(cell):
+        return "clock"
+    return "text" if any(sign.isalpha() for sign in cell) else "other"
+
+
+def kinds_of(row: str, delimiter: str) -> list[Kind]:
+    """Return the types of the cells of a row.
+
+    Args:
+        row: line of text.
+        delimiter: delimiter of the cells; "" for blanks.
+    """
+    return [_kind(cell, delimiter) for cell in cells_of(row, delimiter)]
+
+
+def _shape(lines: Sequence[str], start: int, delimiter: str, allowed: Sequence[str]) -> tuple[Kind, ...] | None:
+    """Return the column types of the table that begins at a line; None if no table begins there."""
+    if not lines[start].strip() or (delimiter and delimiter not in lines[start]):
+        return None
+    rows = [line for line in lines[start + 1 : start + 1 + AGREEING] if line.strip()]
+    parsed = _common([kinds_of(line, delimiter) for line in (lines[start], *rows)]) if delimiter else None
+    first = parsed[0] if parsed else kinds_of(lines[start], delimiter)
+    if len(first) < 2 or "number" not in first or not all(cell in (*allowed, "missing") for cell in first):
+        return None
+    if len(allowed) > 1 and allowed[-1] not in first:
+        return None
+    if len(rows) < 2:
+        return None
+    merged = first
+    for n, row in enumerate(rows, 1):
+        combined = _joined(merged, parsed[n] if parsed else kinds_of(row, delimiter))
+        if combined is None:
+            return None
+        merged = combined
+    if "text" in merged and not _goes_on(lines[start:], delimiter, merged):
+        return None
+    if not all(cell in (*allowed, "missing") for cell in merged):
+        return None
+    return tuple(merged)
+
+
+def _common(rows: list[list[Kind]]) -> list[list[Kind]]:
+    """Remove the cells of remarks, texts beyond the columns of the shortest row; return other rows unchanged."""
+    width = min(map(len, rows))
+    remarks = [cell for row in rows for cell in row[width:]]
+    return [row[:width] for row in rows] if remarks and set(remarks) <= {"text", "missing"} else rows
+
+
+def _joined(first: Sequence[Kind], second: Sequence[Kind]) -> list[Kind] | None:
+    """Combine the column types of two rows; None if they differ. A text column may contain clocks."""
+    if len(first) != len(second):
+        return None
+    combined: list[Kind] = []
+    for first_kind, second_kind in zip(first, second, strict=True):
+        if first_kind == second_kind or second_kind == "missing":
+            combined.append(first_kind)
+        elif first_kind == "missing":
+            combined.append(second_kind)
+        elif {first_kind, second_kind} == {"clock", "text"}:
+            combined.append("text")
+        else:
+            return None
+    return combined
+
+
+def _spread(lines: Sequence[str]) -> list[str]:
+    """Return an evenly spread sample of the non-blank lines, including the first and last lines."""
+    step = max(1, len(lines) // SAMPLED)
+    return [line for line in (*lines[:SAMPLED:4], *lines[::step], *lines[-3:]) if line.strip()]
+
+
+def _goes_on(lines: Sequence[str], delimiter: str, kinds: Sequence[Kind]) -> bool:
+    """Return True if at least `SAME_SHAPE` of the lines up to the end of the file have these column types."""
+    rows = _spread(lines)
+    cells = [_common([list(kinds), kinds_of(row, delimiter)])[-1] for row in rows]
+    good = sum(1 for row_kinds in cells if _joined(kinds, row_kinds) is not None)
+    return good >= SAME_SHAPE * len(rows)
+
+
+def settled_kinds(path: Path, rows: Sequence[str], table: TextTable, names: Sequence[str]) -> tuple[Kind, ...]:
+    """Determine the types of all columns, including columns whose first cells are empty.
+
+    Args:
+        path: measurement file, for messages.
+        rows: rows of the table.
+        table: position and layout of the table.
+        names: column names, for messages.
+
+    Raises:
+        DataError: rows of different sensors alternate in the table.
+    """
+    if all(column_kind == "number" for column_kind in table.kinds):
+        return table.kinds
+    sampled = [cells_of(row, table.delimiter) for row in _spread(rows)]
+    settled: list[Kind] = []
+    for column, settled_kind in enumerate(table.kinds):
+        cells = [row[column] for row in sampled if column < len(row)]
+        kinds = {_kind(cell, table.delimiter) for cell in cells} - {"missing"}
+        if settled_kind == "missing" and not kinds:  # a few rows may contain remarks
+            kinds = _kinds_of_column(rows, column, table.delimiter)
+        if "other" in kinds:
+            kinds = kinds - {"other"} | {"text"}
+        if settled_kind == "missing":
+            settled_kind = "number" if "number" in kinds or not kinds else "clock" if kinds == {"clock"} else "text"
+        elif (
+            settled_kind == "clock" and sum(_kind(cell, table.delimiter) == "text" for cell in cells) > len(cells) // 2
+        ):
+            settled_kind = "text"
+        settled.append(settled_kind)
+    _check_alternation(path, rows, settled, table.delimiter, names)
+    return tuple(settled)
+
+
+def _kinds_of_column(rows: Sequence[str], column: int, delimiter: str) -> set[Kind]:
+    """Return the types of the cells of a column in all rows, without missing cells."""
+    cells = (cells_of(row, delimiter) for row in rows)
+    return {_kind(row[column], delimiter) for row in cells if column < len(row) and row[column]} - {"missing"}
+
+
+def _check_alternation(
+    path: Path, rows: Sequence[str], kinds: Sequence[Kind], delimiter: str, names: Sequence[str]
+) -> None:
+    """Reject a table with alternating rows of different sensors, named in a text column."""
+    head = [cells_of(row, delimiter) for row in rows[:SAMPLED]]
+    for column, column_kind in enumerate(kinds):
+        texts = [row[column] for row in head if column < len(row)]
+        texts = [text for text in texts if text]  # a source has a name; a remark may be missing
+        different = sorted(set(texts))
+        changes = sum(1 for text, next_text in pairwise(texts) if text != next_text)
+        alternates = changes > max(1 + 0.1 * len(texts), 1.5 * len(different))  # excludes texts that change rarely
+        if column_kind == "text" and 1 < len(different) <= LARGEST_KINDS and alternates:
+            shown = ", ".join(map(repr, different[:4]))
+            raise DataError(
+                f"{path}: column {names[column]!r} alternates between {shown}: rows of different sources are in "
+                "one table; write one file per source"
+            )
