@@ -26,7 +26,7 @@ from vehicle.engines.reduced.linear_motion import (
     periodic_spectra,
     plate_inputs,
     run_inputs,
-    states,
+    state_spectra,
 )
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
@@ -181,20 +181,24 @@ def rms_errors(
         channels: record of the run; (n,) each.
         time: its times [s]; (n,).
     """
+    from scipy import fft
+
     interval = float(time[1] - time[0])
     every = max(int(1.0 / (interval * RATE)), 1)
     names = [name for name in second.channels if name in channels]
     if not names:
         return {}
     rows = [second.channels.index(name) for name in names]
-    length = round(WINDOW / (interval * every)) * every
+    parts = max(round(time.size * interval / WINDOW), 1)
+    length = -(-time.size // (parts * every)) * every
     sums, count = np.zeros((3, len(names))), 0
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
         spectra, samples = periodic_spectra(inputs(part), interval, every)
-        state = states(second.model, spectra, interval * every, samples)
+        spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
         linear = np.array([channels[name][part][::every] for name in names])
-        more = linear + second.response(second.forms.projection @ state, interval * every)[rows, : linear.shape[1]]
+        coordinates = fft.irfft(spectra, samples, axis=1)
+        more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
         sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
         count += linear.shape[1]
     forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
@@ -245,13 +249,14 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
     root, back = (root * usual) @ root.T, (root / usual) @ root.T
     shares, turn = np.linalg.eigh(root @ covariance @ root)
     shares = np.sqrt(np.maximum(shares, 0.0) / np.sum(shares))
-    turn, coordinates = back @ turn, turn.T @ root @ coordinates
-    first, other = np.triu_indices(len(usual))
+    kept = shares * shares[-1] > WEAK
+    shares, turn, coordinates = shares[kept], back @ turn[:, kept], turn[:, kept].T @ root @ coordinates
+    first, other = np.triu_indices(len(shares))
     strong = shares[first] * shares[other] > WEAK
     first, other = first[strong], other[strong]
     count, rows = len(usual), forms.forms.shape[2]
     turned = turn.T.astype(np.float32) @ forms.forms.reshape(count, -1)
-    turned = np.matmul(turn.T.astype(np.float32), turned.reshape(count, count, rows))[first, other]
+    turned = np.matmul(turn.T.astype(np.float32), turned.reshape(len(shares), count, rows))[first, other]
     turned[first != other] *= 2.0
     turned_coordinates = coordinates.astype(np.float32)
     return np.asarray(turned.T @ (turned_coordinates[first] * turned_coordinates[other]))
