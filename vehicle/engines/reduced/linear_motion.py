@@ -173,8 +173,8 @@ def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mappin
         channels: record with damper forces and velocities, and "law_<index>".
     """
     dampers = [
-        channels[f"damper_{wheel}_force"] - viscous * channels[f"damper_{wheel}_velocity"]
-        for wheel, viscous in zip(model.matrices.system.inputs, model.matrices.viscous, strict=False)
+        channels[f"{damper}_force"] - viscous * channels[f"{damper}_velocity"]
+        for damper, viscous in zip(model.matrices.damper_names, model.matrices.viscous, strict=True)
     ]
     laws = [channels[f"law_{index}"] for index in range(len(model.laws))]
     return np.vstack([*plates, *dampers, *laws])

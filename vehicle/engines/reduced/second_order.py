@@ -81,11 +81,10 @@ class SecondOrder:
         self.sliding = (0.5 * system.slide_rows @ model.modal).astype(np.complex64)
         self.shifts = (rows @ fit).astype(np.float32)
         self.friction = model.force.astype(np.complex64)
-        wheels = system.inputs
         self.channels = (
             *forms.channels,
-            *(f"tyre_{wheel}_force_z" for wheel in wheels),
-            *(f"damper_{wheel}_force" for wheel in wheels[: len(damping)]),
+            *(f"tyre_{wheel}_force_z" for wheel in system.inputs),
+            *(f"{damper}_force" for damper in matrices.damper_names),
         )
 
     def response(self, coordinates: Vector, interval: float) -> Vector:
@@ -114,9 +113,9 @@ class SecondOrder:
         # The excess of the dampers over the viscous constants of the poles.
         count, excess = len(self.damping), (self.damping - self.model.matrices.viscous)[:, None]
         shift, slide = _times(self.shifts, gaps), self.sliding
-        pairs = (slide[:, None] * self.friction.T[:count]).reshape(count**2, -1)
-        mobility = s * (pairs @ ahead + pairs.conj() @ back).reshape(count, count, -1)
-        velocity = s * (slide @ xi + slide.conj() @ mirrored + shift[-count:])
+        pairs = (slide[:, None] * self.friction.T[:count]).reshape(count**2, len(poles))
+        mobility = s * (pairs @ ahead + pairs.conj() @ back).reshape(count, count, len(at))
+        velocity = s * (slide @ xi + slide.conj() @ mirrored + shift[len(shift) - count :])
         coupling = np.eye(count) + np.moveaxis(mobility * excess, -1, 0)
         velocity = np.linalg.solve(coupling, velocity.T[:, :, None])[:, :, 0].T
         drag = (excess * velocity).astype(np.complex64)
@@ -130,7 +129,7 @@ class SecondOrder:
         result[:first, at] = s * s * (moved[:first] + points)
         stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
         result[first:end, at] = -stiffness * (moved[first:end] + tyres)
-        result[end:, at] = self.damping[:, None] * s * moved[-count:]
+        result[end:, at] = self.damping[:, None] * s * moved[len(moved) - count :]
         return np.asarray(fft.irfft(result, samples, axis=1))
 
 
@@ -157,8 +156,8 @@ def rms_errors_of(
     """
     damping = np.array(
         [
-            equivalent_damping(law, record[f"damper_{wheel}_velocity"], record[f"damper_{wheel}_force"])
-            for law, wheel in zip(dampers, model.matrices.system.inputs, strict=False)
+            equivalent_damping(law, record[f"{damper}_velocity"], record[f"{damper}_force"])
+            for law, damper in zip(dampers, model.matrices.damper_names, strict=True)
         ]
     )
 
