@@ -35,13 +35,16 @@ def summary_text(summary: RunSummary, output: Path) -> str:
     lines = [
         f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, plate RMS "
         f"{', '.join(moved)}; tyres {summary['tyre']}",
-        f"damper      slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
-        f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
-        f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
-        f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
-        f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
-        f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
     ]
+    if first:
+        lines += [
+            f"damper      slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
+            f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
+            f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
+            f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
+            f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
+            f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
+        ]
     for wheel, plate, peaks in _peaks(summary):
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
             if channel not in peaks:

@@ -53,6 +53,7 @@ def plain_matrices(
     return CarMatrices(
         system=system,
         dampers=dampers,
+        damper_names=("damper_fr", "damper_fl")[: len(dampers)],
         viscous=viscous,
         tyre_stiffness=tyre_stiffness,
         tyre_damping=tyre_damping,

@@ -25,7 +25,7 @@ def car_card(car: Any) -> str:
 
 def run_card(run: Any) -> str:
     """Return HTML of a `vehicle.runs.car.Run`."""
-    shares = {wheel: run.slip_share(wheel) for wheel in run.car.vehicle.wheels}
+    shares = {wheel: run.slip_share(wheel) for wheel in run.car.vehicle.damped_wheels}
     rows = {
         "signal": f"{Path(run.signal.source).name}, {run.signal.duration:g} s, "
         f"RMS {1e3 * run.signal.rms(run.wheel):.3g} mm at wheel {run.wheel}",

@@ -147,8 +147,13 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
     """
     recording, wheel, wheels = run.recording, run.wheel, wheels_of(run.recording)
     dampers = dampers_of(recording)
-    time, velocity = recording.time, recording[f"damper_{wheel if wheel in dampers else dampers[0]}_velocity"]
-    slip, side = run.car.model.vehicle.damper.slip_velocity, side_of(wheel, wheels)
+    time, side = recording.time, side_of(wheel, wheels)
+    slip = run.car.model.vehicle.damper.slip_velocity if dampers else 0.0
+    # Where nothing slips the plate is what is lively.
+    lively = (
+        f"damper_{wheel if wheel in dampers else dampers[0]}_velocity" if dampers else f"plate_{wheel}_displacement"
+    )
+    velocity = recording[lively]
     corner = {f"knuckle_{wheel}_acc_z": f"knuckle {side}", f"damper_top_{wheel}_acc_z": f"damper top {side}"}
     # label, scale from the unit of the channels to that of the label, legend text of each channel
     panels: tuple[tuple[str, float, dict[str, str]], ...] = (
@@ -165,6 +170,7 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
     panels = tuple(
         (unit, scale, {name: label for name, label in lines.items() if name in recording.channels})
         for unit, scale, lines in panels
+        if dampers or "damper" not in unit
     )
     start = liveliest(time, velocity, DETAIL)
     end = min(start + DETAIL, float(time[-1]))
@@ -172,9 +178,10 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
     caption = (
         f"{Path(run.signal.source).name}, {level_words(recording, wheel, run.signal.rms(wheel))} at the "
         f"{wheel_words(wheel, wheels)}; "
-        f"tyres {run.car.model.vehicle.driving.words}; dashed: slip velocity ±{1e3 * slip:g} mm/s, "
-        f"red: {side} damper in slip"
+        f"tyres {run.car.model.vehicle.driving.words}"
     )
+    if dampers:
+        caption += f"; dashed: slip velocity ±{1e3 * slip:g} mm/s, red: {side} damper in slip"
     size = (PAGE_WIDTH, PAGE_HEIGHT) if page else (15.0, 9.2)
     title = "" if page else "Main time histories"
     caption = wrapped(caption, size[0])
@@ -182,7 +189,9 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
         rows, each = len(panels) * (1.0,), len(dampers) * (1.0,)
         margins = (PAGE_HISTORY if page else HISTORY_MARGINS).above(caption)
         axes = placed_axes(figure, margins, widths=(2.0, 1.6), heights=rows, sharey="row")
-        if page:
+        if not dampers:
+            characteristics = np.zeros(0, dtype=object)
+        elif page:
             characteristics = placed_axes(figure, PAGE_DAMPERS.above(caption), widths=each)[0]
         else:
             characteristics = placed_axes(figure, DAMPER_MARGINS.above(caption), heights=each)[:, 0]
@@ -221,7 +230,7 @@ def plot_time(path: Path, run: RecordedRun, *, page: bool = False, others: Seque
         for axis in axes[-1]:
             axis.set_xlabel("time [s]")
         axes[0, 0].set_title("whole record: minimum to maximum")
-        axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} damper")
+        axes[0, 1].set_title(f"liveliest {end - start:.3g} s of the {side} {'damper' if dampers else 'plate'}")
         fast, strong = (
             _range([run, *others], [f"damper_{name}_{quantity}" for name in dampers], scale)
             for quantity, scale in (("velocity", 1e3), ("force", 1.0))

@@ -136,7 +136,7 @@ class Shot:
             hub_channel(vehicle.composition, run.wheel),
         )
         record = float(recording.time[-1])
-        self.slip = vehicle.damper.slip_velocity
+        self.slip = vehicle.damper.slip_velocity if self.dampers else 0.0
         if take.start is not None and not 0.0 <= take.start < record:
             raise ConfigurationError(f"film, start: found {take.start:g} s, the record goes from 0 to {record:g} s")
         excerpt = choose_excerpt(
@@ -242,8 +242,8 @@ class Shot:
             f"{Path(run.signal.source).name}: {level} under the {wheel}",
             f"{exaggerated} {scale}, {speed}",
             *road,
-            f"excerpt from {cut.start:.2f} s ({cut.reason}); SLIP: above {1e3 * self.slip:g} mm/s; tyres "
-            f"{self.vehicle.driving.words}",
+            f"excerpt from {cut.start:.2f} s ({cut.reason}); "
+            f"{f'SLIP: above {1e3 * self.slip:g} mm/s; ' if self.dampers else ''}tyres {self.vehicle.driving.words}",
         ]
 
     def _traces(self) -> list[Trace]:

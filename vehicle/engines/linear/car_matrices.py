@@ -47,6 +47,7 @@ class CarMatrices:
         system: matrices of `vehicle.engines.linear.system`; C contains the viscous part of the dampers, inputs are the
             wheels, outputs map u'' to the acceleration channels.
         dampers: velocity coordinates of the damper joints; (d,).
+        damper_names: names of the dampers, "damper_" and the wheel at a corner; an axle may have none.
         viscous: damping constants of the dampers [N s/m], softest settings of controlled ones; (d,).
         sensors: rows that map u' to the velocities along controlled dampers, on the wheel and on the body; (2 k, n).
         laws: nonlinear laws over displacement; their difference from the tangent is not in the matrices.
@@ -69,6 +70,7 @@ class CarMatrices:
 
     system: LinearSystem
     dampers: npt.NDArray[np.intp]
+    damper_names: tuple[str, ...]
     viscous: Vector
     sensors: Vector = field(default_factory=lambda: np.zeros((0, 0)))
     laws: tuple[DisplacementLaw, ...] = ()
@@ -132,6 +134,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
             **laws.system,
         ),
         dampers=dofs,
+        damper_names=rows.laws.dampers,
         **laws.car,
         sensors=_sensors(rows, data),
         one_sided=frozenset(

@@ -66,52 +66,50 @@ class Equations:
                 the reduced engine already.
         """
         u, v, a, branch, height, rate, joints = (part.T.copy() for part in motions)
+        x, y, z = (u[:, self.turning[:, axis]] for axis in range(3))
         for vector in (v, a):
             # Angular velocity of the rotation exp(theta) in axes of the body: theta' - theta x theta'/2 + ...
-            vector[:, self.turning] -= 0.5 * np.cross(u[:, self.turning], vector[:, self.turning])
-        omega = v @ self.hubs.reshape(-1, self.model.nv).T
-        return np.array(
-            [
-                self._at(*motion)
-                for motion in zip(
-                    u, v, a, branch, height, rate, joints, omega.reshape(len(u), *self.hubs.shape[:2]), strict=True
-                )
-            ]
-        ).T
-
-    def _at(
-        self,
-        u: Vector,
-        v: Vector,
-        a: Vector,
-        branch: Vector,
-        height: Vector,
-        rate: Vector,
-        joints: Vector,
-        omega: Vector,
-    ) -> Vector:
-        model, data, state = self.model, self.data, self.rows.state
-        data.qpos[:], data.qvel[:], data.time = self.start, v, 0.0
-        mujoco.mj_integratePos(model, data.qpos, u, 1.0)
-        data.mocap_pos[:, 2] = self.level + height
-        state.plate_velocity[:, 2], state.slope_velocity[:], state.last_time[0] = rate, 0.0, -1.0
-        state.turning[:, :3] = omega
-        state.branch_past[:], state.branch_past[self.present] = 0.0, branch
-        state.branch_force[:] = state.branch_past
-        mujoco.mj_fwdPosition(model, data)
-        mujoco.mj_fwdVelocity(model, data)
-        self.rows(model, data)
-        force = np.zeros(model.nv)
-        mujoco.mj_mulM(model, data, force, a)
-        force -= joints @ data.efc_J.reshape(-1, model.nv)[self.joints]
-        force -= data.qfrc_passive - data.qfrc_bias + data.qfrc_applied
-        rates, rolling, modes = state.rate.copy(), self.rows.layout.rolling, self.rows.layout.modes
+            p, q, r = (vector[:, self.turning[:, axis]] for axis in range(3))
+            vector[:, self.turning] -= 0.5 * np.stack([y * r - z * q, z * p - x * r, x * q - y * p], axis=2)
+        model, data, state, size = self.model, self.data, self.rows.state, len(u)
+        omega = (v @ self.hubs.reshape(-1, model.nv).T).reshape(size, *self.hubs.shape[:2])
+        position, level = np.tile(self.start, (size, 1)), self.level + height
+        branches = np.zeros((size, *self.present.shape))
+        branches[:, self.present] = branch
+        pulls = np.zeros((size, self.rows.layout.row_count))
+        pulls[:, self.joints] = joints
+        force, pull = np.zeros((2, size, model.nv))
+        gaps, points = np.zeros((size, len(self.joints))), np.zeros((size, *data.site_xpos.shape))
+        rates, turns = np.zeros((size, *state.rate.shape)), np.zeros((size, *data.xmat.shape))
+        deflections, headings = np.zeros((size, len(level[0]))), np.zeros((size, *state.heading[0].shape))
+        # Views of MuJoCo's arrays: to ask for one takes as long as to fill it.
+        qpos, qvel, mocap, sites, matrices = data.qpos, data.qvel, data.mocap_pos, data.site_xpos, data.xmat
+        passive, bias, applied, tyres = data.qfrc_passive, data.qfrc_bias, data.qfrc_applied, self.rows.layout.tyres
+        data.time, state.slope_velocity[:] = 0.0, 0.0
+        for k in range(size):
+            mujoco.mj_integratePos(model, position[k], u[k], 1.0)
+            qpos[:], qvel[:], mocap[:, 2] = position[k], v[k], level[k]
+            state.plate_velocity[:, 2], state.last_time[0], state.turning[:, :3] = rate[k], -1.0, omega[k]
+            state.branch_past[:] = state.branch_force[:] = branches[k]
+            mujoco.mj_fwdPosition(model, data)
+            mujoco.mj_fwdVelocity(model, data)
+            self.rows(model, data)
+            gaps[k] = data.efc_pos[self.joints]
+            mujoco.mj_mulJacTVec(model, data, pull[k], pulls[k])
+            mujoco.mj_mulM(model, data, force[k], a[k])
+            force[k] += bias
+            force[k] -= passive
+            force[k] -= applied
+            rates[k], headings[k], deflections[k] = state.rate, state.heading[0], state.residual[tyres, 2]
+            points[k], turns[k] = sites, matrices
+        rolling, modes = self.rows.layout.rolling, self.rows.layout.modes
         # At t = 0 the laws leave out the heading of rolling wheels.
-        rates[rolling.tyres, 1] += rolling.speeds * state.heading[0]
-        points = data.site_xpos[self.sites]
+        rates[:, rolling.tyres, 1] += rolling.speeds * headings
+        points = points[:, self.sites]
         if self.flexible:
-            turn = data.xmat[modes.body].reshape(3, 3)
-            points[self.flexible] += (self.shapes @ data.qpos[modes.positions]) @ turn.T
-        deflections = state.residual[self.rows.layout.tyres, 2]
-        gaps = data.efc_pos[self.joints]
-        return np.concatenate([force @ self.basis, gaps, rates[self.present], points.ravel(), deflections])
+            turn = turns[:, modes.body].reshape(size, 1, 3, 3)
+            points[:, self.flexible] += (
+                turn @ (self.shapes @ position[:, modes.positions].T).transpose(2, 0, 1)[..., None]
+            )[..., 0]
+        force = (force - pull) @ self.basis
+        return np.hstack([force, gaps, rates[:, self.present], points.reshape(size, -1), deflections]).T

@@ -182,15 +182,15 @@ def stop_rows(matrices: CarMatrices, dampers: Sequence[Damper]) -> LoadRows:
 
     Args:
         matrices: matrices of the car.
-        dampers: laws of the dampers, in the order of the inputs of the system.
+        dampers: laws of the dampers, in the order of `matrices.damper_names`.
     """
     names, static, displacement, law = [], [], [], []
-    for index, (wheel, damper) in enumerate(zip(matrices.system.inputs, dampers, strict=False)):
+    for index, (name, damper) in enumerate(zip(matrices.damper_names, dampers, strict=True)):
         if damper.stop is None:
             continue
         curve = Curve.through(damper.stop.displacement, damper.stop.force)
         below, force, above = curve.force(np.array([-DIFFERENCE_STEP, 0.0, DIFFERENCE_STEP]))
-        names.append(f"damper_{wheel}_stop_force")
+        names.append(f"{name}_stop_force")
         static.append(force)
         displacement.append((above - below) / (2.0 * DIFFERENCE_STEP) * matrices.system.slide_rows[index])
         law.append([float(element_law.element[:2] == (STOP, index)) for element_law in matrices.laws])

@@ -171,12 +171,11 @@ def _single_precision_factors(
         columns: indices of the driven plates.
         channels: names of the recorded channels; the force of a stop, part of that of its damper, is a load.
     """
-    wheels = models[0].matrices.system.inputs
-    forces = [f"damper_{wheel}_force" in channels for wheel in wheels]
+    forces = [f"{damper}_force" in channels for damper in models[0].matrices.damper_names]
     suitable = [
         car
         for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
-        if not any(law.controlled or (law.stop and force) for law, force in zip(laws, forces, strict=False))
+        if not any(law.controlled or (law.stop and force) for law, force in zip(laws, forces, strict=True))
         and np.min(np.abs(model.poles)) >= SLOWEST
     ]
     rolling, by_car = models[0].slope.shape[1] > 0, dict[int, CarFactors]()

@@ -108,7 +108,7 @@ class CarTable:
         count = len(sensors[0].poles)
         self.inputs, self.sums = cars[0].step.shape[1] - 1, d + g + count
         damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
-        node_count = max(len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car)
+        node_count = max((len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car), default=1)
         sizes = {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
         sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
         sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)

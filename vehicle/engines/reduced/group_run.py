@@ -137,11 +137,11 @@ class GroupRun:
         rows = {name: row for row, name in enumerate(position_names)}
         rows |= {name: levels + row for row, name in enumerate(tyre_wheels)}
         rows |= {name: levels + watched + row for row, name in enumerate(load_names)}
-        for index, wheel in enumerate(system.inputs[:count]):
-            names = f"damper_{wheel}_velocity", f"damper_{wheel}_force", f"friction_{index}"
+        for index, damper in enumerate(matrices.damper_names):
+            names = f"{damper}_velocity", f"{damper}_force", f"friction_{index}"
             rows |= {name: speeds + part * count + index for part, name in enumerate(names)}
         for k, index in enumerate(self.feedback.controlled.tolist()):
-            rows[f"damper_{system.inputs[index]}_coefficient"] = speeds + 3 * count + k
+            rows[f"{matrices.damper_names[index]}_coefficient"] = speeds + 3 * count + k
         curves = speeds + 3 * count + len(self.feedback.controlled)
         rows |= {f"law_{index}": curves + index for index in range(len(laws))}
         static_values = np.zeros((len(channels), self.cars.table.shape[1]))
@@ -193,8 +193,8 @@ class GroupRun:
         first_sample[speeds + 3 * count : curves] = 0.5 * self.feedback.settings["softest"][:, None]
         peaks = aligned_table(len(bodies) + 2 * watched, self.element)
         controls = [
-            (f"damper_{system.inputs[index]}", law.controlled)
-            for index, law in enumerate(self.dampers[0])
+            (damper, law.controlled)
+            for damper, law in zip(matrices.damper_names, self.dampers[0], strict=True)
             if law.controlled
         ]
         with controllers(self.feedback.settings, controls, self.timestep) as check:

@@ -95,8 +95,8 @@ def motion_rows(model: PoleModel) -> MotionRows:
     )
 
 
-def states(model: PoleModel, spectra: Complex, interval: float, samples: int) -> Vector:
-    """Return the state of the car over a period.
+def state_spectra(model: PoleModel, spectra: Complex, interval: float, samples: int) -> Complex:
+    """Return the state of the car over a period, as `numpy.fft.rfft` would; (states, lines).
 
     Args:
         model: the car.
@@ -105,21 +105,18 @@ def states(model: PoleModel, spectra: Complex, interval: float, samples: int) ->
         samples: samples of the period.
 
     Returns:
-        Re xi, Im xi and the inputs; (states, samples).
+        Spectra of Re xi, Im xi and the inputs: with X of xi at s and Y of its conjugate, (X + Y)/2 and (X - Y)/2i.
     """
-    from scipy import fft
-
     wheels, lines = len(model.matrices.system.inputs), spectra.shape[1]
     s = 2j * np.pi * np.arange(lines) / (samples * interval)
-    within = (s.imag > 0.0) & (s.imag <= 2.0 * np.pi * BAND)
-    plate_displacement, others = spectra[:wheels] * within, spectra[wheels:] * within
-    inputs, effects = np.vstack([plate_displacement, s * plate_displacement, others]), input_effects(model)
-    xi, poles = np.zeros((len(model.poles), samples), dtype=complex), model.poles[:, None]
-    at = np.flatnonzero(within)
-    xi[:, at] = (effects @ inputs[:, at]) / (s[at] - poles)
-    xi[:, -at] = (effects @ inputs[:, at].conj()) / (-s[at] - poles)
-    xi = fft.ifft(xi, axis=1, overwrite_x=True)
-    return np.vstack([xi.real, xi.imag, fft.irfft(inputs, samples, axis=1)])
+    at = np.flatnonzero((s.imag > 0.0) & (s.imag <= 2.0 * np.pi * BAND))
+    height, others = spectra[:wheels, at], spectra[wheels:, at]
+    inputs, effects = np.vstack([height, s[at] * height, others]), input_effects(model)
+    poles = model.poles[:, None]
+    ahead, back = (effects @ inputs) / (s[at] - poles), (effects.conj() @ inputs) / (s[at] - poles.conj())
+    result = np.zeros((2 * len(poles) + len(inputs), lines), dtype=complex)
+    result[:, at] = np.vstack([0.5 * (ahead + back), -0.5j * (ahead - back), inputs])
+    return result
 
 
 def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Complex, int]:
@@ -176,8 +173,8 @@ def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mappin
         channels: record with damper forces and velocities, and "law_<index>".
     """
     dampers = [
-        channels[f"damper_{wheel}_force"] - viscous * channels[f"damper_{wheel}_velocity"]
-        for wheel, viscous in zip(model.matrices.system.inputs, model.matrices.viscous, strict=False)
+        channels[f"{damper}_force"] - viscous * channels[f"{damper}_velocity"]
+        for damper, viscous in zip(model.matrices.damper_names, model.matrices.viscous, strict=True)
     ]
     laws = [channels[f"law_{index}"] for index in range(len(model.laws))]
     return np.vstack([*plates, *dampers, *laws])

@@ -59,7 +59,7 @@ def simulate_reduced(
         The recording, without poses and energy balance.
     """
     inputs = model.matrices.system.inputs
-    wheeled = wheel_channels(inputs, [f"damper_{wheel}" for wheel in inputs])
+    wheeled = wheel_channels(inputs, model.matrices.damper_names)
     asked = (*model.matrices.system.outputs, *wheeled) if channels is None else tuple(channels)
     # The force of a damper is that of its law and that of its stop.
     stops = stop_rows(model.matrices, dampers)

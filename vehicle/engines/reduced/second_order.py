@@ -26,7 +26,7 @@ from vehicle.engines.reduced.linear_motion import (
     periodic_spectra,
     plate_inputs,
     run_inputs,
-    states,
+    state_spectra,
 )
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms
@@ -81,11 +81,10 @@ class SecondOrder:
         self.sliding = (0.5 * system.slide_rows @ model.modal).astype(np.complex64)
         self.shifts = (rows @ fit).astype(np.float32)
         self.friction = model.force.astype(np.complex64)
-        wheels = system.inputs
         self.channels = (
             *forms.channels,
-            *(f"tyre_{wheel}_force_z" for wheel in wheels),
-            *(f"damper_{wheel}_force" for wheel in wheels[: len(damping)]),
+            *(f"tyre_{wheel}_force_z" for wheel in system.inputs),
+            *(f"{damper}_force" for damper in matrices.damper_names),
         )
 
     def response(self, coordinates: Vector, interval: float) -> Vector:
@@ -114,9 +113,9 @@ class SecondOrder:
         # The excess of the dampers over the viscous constants of the poles.
         count, excess = len(self.damping), (self.damping - self.model.matrices.viscous)[:, None]
         shift, slide = _times(self.shifts, gaps), self.sliding
-        pairs = (slide[:, None] * self.friction.T[:count]).reshape(count**2, -1)
-        mobility = s * (pairs @ ahead + pairs.conj() @ back).reshape(count, count, -1)
-        velocity = s * (slide @ xi + slide.conj() @ mirrored + shift[-count:])
+        pairs = (slide[:, None] * self.friction.T[:count]).reshape(count**2, len(poles))
+        mobility = s * (pairs @ ahead + pairs.conj() @ back).reshape(count, count, len(at))
+        velocity = s * (slide @ xi + slide.conj() @ mirrored + shift[len(shift) - count :])
         coupling = np.eye(count) + np.moveaxis(mobility * excess, -1, 0)
         velocity = np.linalg.solve(coupling, velocity.T[:, :, None])[:, :, 0].T
         drag = (excess * velocity).astype(np.complex64)
@@ -130,7 +129,7 @@ class SecondOrder:
         result[:first, at] = s * s * (moved[:first] + points)
         stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
         result[first:end, at] = -stiffness * (moved[first:end] + tyres)
-        result[end:, at] = self.damping[:, None] * s * moved[-count:]
+        result[end:, at] = self.damping[:, None] * s * moved[len(moved) - count :]
         return np.asarray(fft.irfft(result, samples, axis=1))
 
 
@@ -157,8 +156,8 @@ def rms_errors_of(
     """
     damping = np.array(
         [
-            equivalent_damping(law, record[f"damper_{wheel}_velocity"], record[f"damper_{wheel}_force"])
-            for law, wheel in zip(dampers, model.matrices.system.inputs, strict=False)
+            equivalent_damping(law, record[f"{damper}_velocity"], record[f"{damper}_force"])
+            for law, damper in zip(dampers, model.matrices.damper_names, strict=True)
         ]
     )
 
@@ -181,20 +180,24 @@ def rms_errors(
         channels: record of the run; (n,) each.
         time: its times [s]; (n,).
     """
+    from scipy import fft
+
     interval = float(time[1] - time[0])
     every = max(int(1.0 / (interval * RATE)), 1)
     names = [name for name in second.channels if name in channels]
     if not names:
         return {}
     rows = [second.channels.index(name) for name in names]
-    length = round(WINDOW / (interval * every)) * every
+    parts = max(round(time.size * interval / WINDOW), 1)
+    length = -(-time.size // (parts * every)) * every
     sums, count = np.zeros((3, len(names))), 0
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
         spectra, samples = periodic_spectra(inputs(part), interval, every)
-        state = states(second.model, spectra, interval * every, samples)
+        spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
         linear = np.array([channels[name][part][::every] for name in names])
-        more = linear + second.response(second.forms.projection @ state, interval * every)[rows, : linear.shape[1]]
+        coordinates = fft.irfft(spectra, samples, axis=1)
+        more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
         sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
         count += linear.shape[1]
     forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
@@ -245,13 +248,14 @@ def _products(forms: QuadraticForms, coordinates: Vector) -> npt.NDArray[np.floa
     root, back = (root * usual) @ root.T, (root / usual) @ root.T
     shares, turn = np.linalg.eigh(root @ covariance @ root)
     shares = np.sqrt(np.maximum(shares, 0.0) / np.sum(shares))
-    turn, coordinates = back @ turn, turn.T @ root @ coordinates
-    first, other = np.triu_indices(len(usual))
+    kept = shares * shares[-1] > WEAK
+    shares, turn, coordinates = shares[kept], back @ turn[:, kept], turn[:, kept].T @ root @ coordinates
+    first, other = np.triu_indices(len(shares))
     strong = shares[first] * shares[other] > WEAK
     first, other = first[strong], other[strong]
     count, rows = len(usual), forms.forms.shape[2]
     turned = turn.T.astype(np.float32) @ forms.forms.reshape(count, -1)
-    turned = np.matmul(turn.T.astype(np.float32), turned.reshape(count, count, rows))[first, other]
+    turned = np.matmul(turn.T.astype(np.float32), turned.reshape(len(shares), count, rows))[first, other]
     turned[first != other] *= 2.0
     turned_coordinates = coordinates.astype(np.float32)
     return np.asarray(turned.T @ (turned_coordinates[first] * turned_coordinates[other]))

@@ -126,7 +126,7 @@ class CarFactors:
     @property
     def coupling(self) -> float:
         """Return the largest total effect of other forces on a force, over the effect of the force on itself [-]."""
-        return float(np.max(self._effects.sum(axis=1) - 1.0))
+        return float(np.max(self._effects.sum(axis=1) - 1.0, initial=0.0))
 
     @property
     def _effects(self) -> Vector:
@@ -164,7 +164,7 @@ class CarFactors:
         order = np.roll(np.arange(len(self._effects)), len(self.laws))
         effects, count = self._effects[np.ix_(order, order)], 0
         error, iteration = np.ones(len(effects)), np.linalg.solve(np.tril(effects), np.triu(effects, 1))
-        while count < ITERATIONS[0] or (np.max(error) > accuracy and count < ITERATIONS[1]):
+        while count < ITERATIONS[0] or (np.max(error, initial=0.0) > accuracy and count < ITERATIONS[1]):
             error, count = iteration @ error, count + 1
         return count
 

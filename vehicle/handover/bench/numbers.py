@@ -103,7 +103,7 @@ def numbers(car: Car, drive: BenchDrive) -> BenchNumbers:
     """
     started = clock.thread_time()
     vehicle, drive = car.vehicle, drive.under(car)
-    wheels = [name for name in vehicle.wheels if f"damper_{name}_velocity" in vehicle.channels]
+    wheels = vehicle.damped_wheels
     seat = tuple(f"seat_acc_{axis}" for axis in AXES) if vehicle.seated else ()
     dampers = [f"damper_{wheel}_{quantity}" for wheel in wheels for quantity in ("velocity", "force")]
     over = drive.road is not None and "obstacle" in drive.road

@@ -116,6 +116,12 @@ class Vehicle:
         return tuple(wheel.name for wheel in self.composition.wheels)
 
     @property
+    def damped_wheels(self) -> tuple[str, ...]:
+        """Names of the wheels with a damper of their own, "damper_" and the name; an axle may have none."""
+        names = {damper.name for damper in self.composition.dampers}
+        return tuple(wheel for wheel in self.wheels if f"damper_{wheel}" in names)
+
+    @property
     def acceleration_channels(self) -> tuple[str, ...]:
         """Names of the recorded accelerations, in the order of the files."""
         return acceleration_channels(output.name for output in self.composition.outputs)

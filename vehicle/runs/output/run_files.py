@@ -232,7 +232,7 @@ def summarise(
     """
     statistics, static, vehicle = run.recording.statistics, run.car.static, run.car.vehicle
     energies, wheels = statistics.energies, vehicle.wheels
-    channels = vehicle.acceleration_channels
+    channels, dampers = vehicle.acceleration_channels, vehicle.damped_wheels
     motion_notice = what_moves([motion.motion for motion in responses]) if responses else ""
     body = rigid_body(vehicle.body)
     return {
@@ -257,11 +257,11 @@ def summarise(
             "road": None if run.road is None else dict(run.road),
         },
         "evaluated_s": [run.skip, run.signal.duration],
-        "slip_share": {wheel: run.slip_share(wheel) for wheel in wheels}
-        | {"slip_velocity": vehicle.damper.slip_velocity},
-        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in wheels},
-        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in wheels},
-        "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in wheels},
+        "slip_share": {wheel: run.slip_share(wheel) for wheel in dampers}
+        | ({"slip_velocity": vehicle.damper.slip_velocity} if dampers else {}),
+        "first_slip_s": {wheel: run.first_slip(wheel) for wheel in dampers},
+        "friction_saturated_share": {wheel: run.slip_share(wheel, SATURATED_VELOCITY) for wheel in dampers},
+        "first_friction_saturated_s": {wheel: run.first_slip(wheel, SATURATED_VELOCITY) for wheel in dampers},
         "saturated_velocity": SATURATED_VELOCITY,
         "peaks": _peaks(responses[0].response if responses else None, channels),
         "comfort": comfort_values(run),

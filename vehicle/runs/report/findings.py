@@ -51,7 +51,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
 
 
 def _dampers(summary: RunSummary) -> list[str]:
-    shares, limit = slip_shares(summary), 1e3 * summary["slip_share"]["slip_velocity"]
+    shares, limit = slip_shares(summary), 1e3 * summary["slip_share"].get("slip_velocity", 0.0)
     sentences = []
     for wheel, share in shares.items():
         side, first = side_of(wheel, shares), summary["first_slip_s"][wheel]

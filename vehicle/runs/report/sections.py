@@ -137,10 +137,12 @@ def time_figure(run: FinishedRun, runs: Sequence[FinishedRun] = ()) -> Markup:
     return tag("div", *title, figure, class_="whole")
 
 
-def dampers(run: FinishedRun) -> Markup:
-    """Return the table of slip, maximum velocity and maximum force of each damper."""
+def dampers(run: FinishedRun) -> Markup | None:
+    """Return the table of slip, maximum velocity and maximum force of each damper; None without dampers."""
     summary = run.summary
     share, first = summary["slip_share"], summary["first_slip_s"]
+    if not first:
+        return None
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     slip, limit = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
     heads = ("damper", f"time above {slip:g} mm/s", "first", f"time above {limit:g} mm/s", "first")

@@ -139,8 +139,7 @@ def ride_measure(vehicle: Vehicle, numbers: tuple[str, ...], skip: float) -> Rid
     Raises:
         ConfigurationError: the vehicle lacks a quantity.
     """
-    names = {damper.name for damper in vehicle.composition.dampers}
-    dampers = tuple(wheel for wheel in vehicle.wheels if f"damper_{wheel}" in names)
+    dampers = vehicle.damped_wheels
     has: dict[str, tuple[str, ...]] = dict.fromkeys((UNWEIGHTED, WEIGHTED), ("", *AXES))
     has["tyre_load"] = ("", *vehicle.wheels)
     has |= {"lowest_load": ("", *vehicle.wheels)} | dict.fromkeys(("travel", "slip_share"), ("", *dampers))

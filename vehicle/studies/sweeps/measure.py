@@ -11,6 +11,7 @@ import numpy as np
 
 from vehicle.engines.reduced.reduced_run import LONGEST_STEP
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES, CORNERS
 from vehicle.runs.car import SATURATED_VELOCITY, Run
 from vehicle.signals.analysis.ride_comfort import comfort_columns, comfort_units
@@ -58,7 +59,7 @@ STEP = LONGEST_STEP
 """Default of the maximum step of a measure [s]: that of a single run, so that both have the same comfort."""
 
 FRONT = tuple(CORNERS.values())[:2]
-"""Front wheels, which every car has."""
+"""Front wheels."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -111,10 +112,22 @@ class ComfortMeasure:
         # The waves are not in `units`, so in no table: they are for the error of the difference of two cars.
         numbers = comfort_columns(runs.timestep, rail, cushion, skip=self.skip)
         velocity = {wheel: runs[f"damper_{wheel}_velocity"] for wheel in self.wheels}
-        limit = runs.slip_velocity
+        limit = runs.slip_velocity if self.wheels else np.zeros(len(runs.vehicles))
         for share, above in (("slip_share", limit), ("saturated_share", np.full_like(limit, SATURATED_VELOCITY))):
             for wheel in self.wheels:
                 numbers[f"{share}_{wheel}"] = slip_shares(velocity[wheel][:, kept], above)
         for wheel in self.wheels:
             numbers[f"first_slip_{wheel}"] = first_slips(runs.time, velocity[wheel], limit)
         return numbers
+
+
+def comfort_measure(vehicle: Vehicle, skip: float) -> ComfortMeasure:
+    """Return the measure of a vehicle: its front dampers, those behind if it has none in front.
+
+    Args:
+        vehicle: the vehicle.
+        skip: excluded time at the beginning [s].
+    """
+    damped = vehicle.damped_wheels
+    wheels = tuple(wheel for wheel in FRONT if wheel in damped) or damped
+    return ComfortMeasure(skip=skip, wheels=wheels, seat=vehicle.seated)

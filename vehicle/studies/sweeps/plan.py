@@ -20,7 +20,7 @@ from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_evaluation import reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
 from vehicle.studies.sweeps.dispatcher import Notice
-from vehicle.studies.sweeps.measure import BatchMeasure, ComfortMeasure, Measure
+from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
 from vehicle.studies.sweeps.sweep import Progress
 from vehicle.studies.sweeps.sweep import sweep as run_cases
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
@@ -124,7 +124,7 @@ def plan_sweep(
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
         cases=cases,
-        measure=ComfortMeasure(skip=start, seat=car.vehicle.seated) if measure is None else measure,
+        measure=comfort_measure(car.vehicle, start) if measure is None else measure,
         skip=start,
         notes=(*body_rules(car.vehicle, paths), *idle),
     )
