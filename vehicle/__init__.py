@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from vehicle.errors import OutputError as OutputError
     from vehicle.errors import SimulationError as SimulationError
     from vehicle.errors import VehicleError as VehicleError
+    from vehicle.model.laws.law_by_address import register_law as register_law
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
     from vehicle.runs.car.car import Car as Car
     from vehicle.runs.car.car_data import CarData as CarData
@@ -125,6 +126,7 @@ _MODULES = {
     "read": "vehicle.signals.records.reader",
     "read_measured": "vehicle.signals.records.measured",
     "read_signal": "vehicle.signals.excitation.signal_file",
+    "register_law": "vehicle.model.laws.law_by_address",
     "replicate_drive": "vehicle.studies.replication.drive_search",
     "road": "vehicle.runs.car.road",
     "save_car": "vehicle.runs.output.saved_car",
