@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from vehicle.errors import VehicleError as VehicleError
     from vehicle.handover.fmu.fmu_file import write_fmu as write_fmu
     from vehicle.handover.page.report_file import write_report as write_report
+    from vehicle.model.laws.law_by_address import register_law as register_law
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
     from vehicle.runs.car.car import Car as Car
     from vehicle.runs.car.car_data import CarData as CarData
@@ -124,6 +125,7 @@ _MODULES = {
     "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",
     "read_signal": "vehicle.signals.excitation.signal_file",
+    "register_law": "vehicle.model.laws.law_by_address",
     "replicate_drive": "vehicle.studies.replication.drive_search",
     "road": "vehicle.runs.car.road",
     "save_car": "vehicle.runs.output.saved_car",

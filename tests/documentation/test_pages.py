@@ -15,6 +15,7 @@ from vehicle.drawing.rendering.backend import film_available
 from vehicle.model.parameters.paths import value_of
 
 NEEDS = {
+    "docs/howto/add/own-law.md": ("cffi",),
     "docs/python.md": ("pymoo", "pandas"),
     "docs/tutorials/study.md": ("pymoo",),
     "docs/tutorials/thirty-minutes.md": ("asammdf",),
@@ -124,7 +125,7 @@ def test_every_command_has_a_page():
 @pytest.mark.parametrize("page", pages())
 def test_blocks_are_of_known_languages_and_closed(page):
     text = (ROOT / page).read_text(encoding="utf-8")
-    known = {"console", "python", "diff", "toml", "csv", "text", "sh", ""}
+    known = {"console", "python", "diff", "c", "toml", "csv", "text", "sh", ""}
     assert {match[2] for match in BLOCK.finditer(text)} <= known, "write a language of this list behind the fence"
     assert "```" not in BLOCK.sub("", text)
     for block in blocks(page, "sh"):

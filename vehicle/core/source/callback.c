@@ -76,6 +76,7 @@ void NAME(rewrite)(Simulation *simulation, void *data) {
   local_axes(o, e, s);
   headings(o, e, s);
   control(o, e, s);
+  keep_speeds(o, e, s);
   advance_sliders(o, e, s);
   advance_rubber(o, e, s);
   advance_branches(o, c, s);

@@ -48,6 +48,30 @@ static void control(const Now *o, const Layout *e, State *s) {
   s->steps.at[0] += 1.0;
 }
 
+/* Keep the velocities of the dampers by address at the present time and at the last one. */
+static void keep_speeds(const Now *o, const Layout *e, State *s) {
+  const double last = s->last_time.at[0];
+  for (int64_t k = 0; k < e->own.dampers.n[0]; k++) {
+    double *speed = ROW(s->speeds, k), now = o->f->qvel.at[e->dampers.dofs.at[e->own.dampers.at[k]]];
+    if (o->time != last) speed[1] = last >= 0.0 ? speed[0] : now;
+    speed[0] = now;
+  }
+}
+
+/* Dampers by address, F(x, v) = D v + R(x, v): R is explicit, its slope in the row of the viscous force, centred like
+ * it; the slope is that from v to the velocity half a step later, extrapolated from the last step: second order. */
+static void own_dampers(const Now *o, const Layout *e, const Weights *c, State *s) {
+  const Dampers *p = &e->dampers;
+  for (int64_t k = 0; k < e->own.dampers.n[0]; k++) {
+    const OwnLaw *law = e->own.laws.at + k;
+    const int64_t n = e->own.dampers.at[k], row = p->rows.at[n];
+    const double *speed = ROW(s->speeds, k), x = o->f->qpos.at[p->places.at[n]];
+    double change = 0.5 * (speed[0] - speed[1]), slope = own_slope(law, x, speed[0], &change);
+    s->explicit.at[row] = -own_force(law, x, speed[0]);
+    o->D[row] = larger(0.5 * c->timestep * (law->viscous + slope), EMPTY_ROW);
+  }
+}
+
 /* Advance the Jenkins elements of the dampers over the completed step, with the limits of its rows. */
 static void advance_sliders(const Now *o, const Layout *e, State *s) {
   const Presliding *p = &e->presliding;
@@ -104,6 +128,7 @@ static void dampers(const Now *o, const Layout *e, const Weights *c, State *s) {
     const int64_t n = e->controls.dampers.at[k];
     o->D[p->rows.at[n]] = larger(0.5 * h * s->coefficient.at[n], EMPTY_ROW);
   }
+  own_dampers(o, e, c, s);
   for (int64_t n = 0; n < p->valves.n[0]; n++) {
     const int64_t row = AT(p->valves, n, 0), damper = AT(p->valves, n, 1);
     o->D[row] = c->valve_impedance.at[n];
@@ -121,8 +146,8 @@ static void dampers(const Now *o, const Layout *e, const Weights *c, State *s) {
   }
 }
 
-/* Add the forces of bump stops and decoupler seats, and the known part of the Jenkins elements; after
- * generalised_forces. */
+/* Add the forces of bump stops and decoupler seats, of dampers by address, and the known part of the Jenkins elements;
+ * after generalised_forces. */
 static void joint_forces(const Now *o, const Layout *e, State *s) {
   const Tables *t = &e->tables;
   for (int64_t k = 0; k < t->kinds.n[0]; k++) {
@@ -133,6 +158,9 @@ static void joint_forces(const Now *o, const Layout *e, State *s) {
     o->f->qfrc_applied.at[dof] -=
         curve_force(s->stretch.at[k], ROW(t->edges, k), ROW(t->slopes, k), ROW(t->offsets, k));
   }
+  for (int64_t k = 0; k < e->own.dampers.n[0]; k++)
+    o->f->qfrc_applied.at[e->dampers.dofs.at[e->own.dampers.at[k]]] +=
+        s->explicit.at[e->dampers.rows.at[e->own.dampers.at[k]]];
   const Presliding *p = &e->presliding;
   for (int64_t k = 0; k < p->rows.n[0]; k++)
     o->f->qfrc_applied.at[e->dampers.dofs.at[p->dampers.at[k]]] += s->explicit.at[p->rows.at[k]];

@@ -62,6 +62,19 @@ static inline double call_law(double call, double first, double second) {
   return ((LawByAddress *)(uintptr_t)c->function)((void *)(uintptr_t)c->memory, first, second);
 }
 
+/* Force of a damper by address beyond its line, F(x, v) - D v [N]. */
+static inline double own_force(const OwnLaw *law, double x, double v) {
+  LawByAddress *function = (LawByAddress *)(uintptr_t)law->function;
+  return function((void *)(uintptr_t)law->memory, x, v) - law->viscous * v;
+}
+
+/* Its slope from v to the velocity v + *change that is expected; a change below 1e-6 m/s becomes that. At least -D: a
+ * force that falls with the velocity is explicit. */
+static inline double own_slope(const OwnLaw *law, double x, double v, double *change) {
+  if (absolute(*change) < 1e-6) *change = 1e-6;
+  return larger((own_force(law, x, v + *change) - own_force(law, x, v)) / *change, -law->viscous);
+}
+
 /* Coefficient c that a control law demands, from the velocities of both ends along the damper [N s/m]. */
 static inline double demanded(const Setting *law, double body, double wheel) {
   if (law->controller > 0.0) return smaller(larger(call_law(law->controller, body, wheel), law->softest), law->firmest);

@@ -14,14 +14,14 @@
 #define REAL double /* number type of the march: double or float, see vector.h */
 #endif
 
-/* Arrays in C order: address of the first number, numbers of rows, columns, ... `Records` and `Settings` hold records;
+/* Arrays in C order: address of the first number, numbers of rows, columns, ... Others than those of numbers hold records;
  * `Lanes` has rows of one 32-byte vector, aligned; `Reals` numbers of the type of the march. */
 #define ARRAY(name, type, dimensions) \
   typedef struct { _Alignas(8) type *at; int64_t n[dimensions]; } name;
 #define EACH_ARRAY(A) \
   A(Vector, double, 1) A(Table, double, 2) A(Tables3, double, 3) A(Index, int64_t, 1) A(Indices, int64_t, 2) \
   A(Words, uint32_t, 1) A(Records, DamperLaw, 1) A(RecordTable, DamperLaw, 2) A(Settings, Setting, 1) \
-  A(Lanes, void, 1) A(Reals, REAL, 2)
+  A(OwnLaws, OwnLaw, 1) A(Lanes, void, 1) A(Reals, REAL, 2)
 
 /* ---- laws, see laws.h ---- */
 
@@ -43,6 +43,10 @@
 
 /* A law by address: double function(void *memory, double first, double second). */
 #define CALL_FIELDS(F) F(int64_t, function) F(int64_t, memory)
+
+/* Force of a damper by address: double function(void *memory, double x, double v), in place of its curve.
+ * viscous: D [N s/m], its slope at rest, which is in the linear system; timestep: h [s] of the march. */
+#define OWN_LAW_FIELDS(F) F(int64_t, function) F(int64_t, memory) F(double, viscous) F(double, timestep)
 
 /* Controller FMU, see controller.c. call: its step, with the address of this record; then addresses of its functions and
  * instance; status of the last call; finished readings; period: T [s]; coefficient: c [N s/m]; measured: values of the five sensors; sources: index among these of
@@ -76,7 +80,7 @@
  * of samples. changes: changes of the poles from sample to sample, or empty. y: outputs of past samples and of a block.
  * peaks: squares of rotations, minimum and maximum of the watched levels. owners: damper of each group; sides: dampers
  * with a side force; laws: of dampers with a friction limit that varies, or empty; controlled, settings, memory:
- * controlled dampers. rates: z' at the beginning, mean z', z, V tan(beta) - z' of each step; plate_z: z of the samples
+ * controlled dampers; own, own_laws: dampers with a law by address. rates: z' at the beginning, mean z', z, V tan(beta) - z' of each step; plate_z: z of the samples
  * and their differences. positions, levels, rotations: weights of outputs in tiles; tyre_of: level of the tyre of each
  * law; wanted: row of each channel; offset: static values (channels, lanes); weights: of the second difference; cars:
  * row of each lane in out, (channels, cars, samples). */
@@ -85,7 +89,8 @@
   F(int64_t, tyres) F(int64_t, plate_inputs) F(int64_t, step) F(int64_t, first) F(int64_t, loads) \
   F(int64_t, watched) F(int64_t, check_every) F(int64_t, always) F(int64_t, dampers) F(Lanes, table) \
   F(Lanes, poles) F(Lanes, x) F(Lanes, changes) F(Lanes, y) F(Lanes, peaks) F(Index, owners) F(Index, sides) \
-  F(RecordTable, laws) F(Index, controlled) F(Settings, settings) F(Table, memory) F(Reals, rates) \
+  F(RecordTable, laws) F(Index, controlled) F(Settings, settings) F(Table, memory) F(Index, own) \
+  F(OwnLaws, own_laws) F(Reals, rates) \
   F(Reals, plate_z) F(Lanes, positions) F(Lanes, levels) F(Lanes, rotations) F(Index, tyre_of) F(Index, wanted) \
   F(Table, offset) F(Reals, weights) F(Index, cars) F(Tables3, out)
 
@@ -130,6 +135,8 @@
 #define CONTROLS_FIELDS(F) \
   F(Index, dampers) F(Settings, laws) F(Indices, sites) F(Table, shapes) F(Indices, dofs)
 
+#define OWN_DAMPERS_FIELDS(F) F(Index, dampers) F(OwnLaws, laws)
+
 #define TABLES_FIELDS(F) \
   F(Index, kinds) F(Index, elements) F(Index, axes) F(Vector, at) F(Table, edges) F(Table, slopes) \
   F(Table, offsets)
@@ -154,7 +161,7 @@
 
 #define LAYOUT_FIELDS(F) \
   F(Bushings, bushings) F(RubberFriction, rubber) F(Rotations, rotations) F(Springs, springs) \
-  F(Dampers, dampers) F(Presliding, presliding) F(SideForces, sides) F(Controls, controls) F(Tables, tables) \
+  F(Dampers, dampers) F(Presliding, presliding) F(SideForces, sides) F(Controls, controls) F(OwnDampers, own) F(Tables, tables) \
   F(Modes, modes) F(ModalSpace, space) F(Rolling, rolling) F(RoundTyres, round) F(Fluids, fluids) \
   F(Indices, joints) F(Index, tyres) F(Indices, reach) F(int64_t, row_count) F(int64_t, velocity_count)
 
@@ -170,7 +177,7 @@
   F(Vector, stretch) F(Table, deflection) F(Table, modal) F(Vector, modal_force) F(Vector, modal_rate) \
   F(Vector, modal_pull) F(Table, heading) F(Table, turning) F(Table, slope) F(Vector, push) F(Table, contact) \
   F(Table, rubber) F(Table, slider) F(Vector, stroke) F(Vector, limit) F(Vector, coefficient) F(Table, sensed) \
-  F(Table, past) F(Vector, steps)
+  F(Table, past) F(Vector, steps) F(Table, speeds)
 
 #define SOLUTION_FIELDS(F) \
   F(int64_t, size) F(Indices, inertia) F(Indices, groups) F(Index, columns) F(Indices, singles) \
@@ -207,13 +214,14 @@
 
 /* All records, each after those that it contains; arrays stand between the laws and the others. */
 #define EACH_LAW(S) \
-  S(DamperLaw, DAMPER_LAW_FIELDS) S(Setting, SETTING_FIELDS) S(Call, CALL_FIELDS)
+  S(DamperLaw, DAMPER_LAW_FIELDS) S(Setting, SETTING_FIELDS) S(Call, CALL_FIELDS) S(OwnLaw, OWN_LAW_FIELDS)
 #define EACH_RECORD(S) \
   S(Controller, CONTROLLER_FIELDS) S(Sections, SECTIONS_FIELDS) S(March, MARCH_FIELDS) \
   S(SparseRows, SPARSE_ROWS_FIELDS) S(Ticket, TICKET_FIELDS) S(Fields, FIELDS_FIELDS) \
   S(Bushings, BUSHINGS_FIELDS) S(RubberFriction, RUBBER_FRICTION_FIELDS) S(Rotations, ROTATIONS_FIELDS) \
   S(Springs, SPRINGS_FIELDS) S(Dampers, DAMPERS_FIELDS) S(Presliding, PRESLIDING_FIELDS) \
-  S(SideForces, SIDE_FORCES_FIELDS) S(Controls, CONTROLS_FIELDS) S(Tables, TABLES_FIELDS) \
+  S(SideForces, SIDE_FORCES_FIELDS) S(Controls, CONTROLS_FIELDS) S(OwnDampers, OWN_DAMPERS_FIELDS) \
+  S(Tables, TABLES_FIELDS) \
   S(Modes, MODES_FIELDS) S(ModalSpace, MODAL_SPACE_FIELDS) S(Rolling, ROLLING_FIELDS) \
   S(RoundTyres, ROUND_TYRES_FIELDS) S(Fluids, FLUIDS_FIELDS) S(Layout, LAYOUT_FIELDS) \
   S(Weights, WEIGHTS_FIELDS) S(State, STATE_FIELDS) S(Solution, SOLUTION_FIELDS) \

@@ -43,6 +43,25 @@ static void control(const March *job) {
   }
 }
 
+/* Forces of the dampers by address, F(x, v) = D v + R(x, v): D is in the poles, R acts with the mean of both ends of the
+ * step. At its end R is the line through the velocities v and v' that are expected there, extrapolated from the last
+ * step: second order, exact for a line. x is a sensor. A law by address runs for one car, in double precision. */
+static void own_laws(const March *job) {
+  const Sections *r = &job->rows;
+  V *t = table_of(job);
+  int64_t first = r->sensors + job->tyres + 2 * (job->controlled.n[0] + job->sides.n[0]), nodes = r->pieces + 1;
+  for (int64_t k = 0; k < job->own.n[0]; k++) {
+    const OwnLaw *law = job->own_laws.at + k;
+    int64_t i = job->own.at[k];
+    double x = (double)t[first + k][0], v = (double)t[r->velocity + i][0], change = v - (double)t[r->earlier + i][0];
+    double end = x + law->timestep * (v + 0.5 * change), slope = own_slope(law, end, v, &change);
+    double force = own_force(law, end, v);
+    V *node = t + r->law + 3 * nodes * i;
+    t[r->hold + i] = all((REAL)(0.5 * own_force(law, x, v)));
+    for (int64_t n = 0; n < nodes; n++) node[3 * n + 1] = all((REAL)(0.5 * (force + slope * ((double)node[3 * n][0] - v))));
+  }
+}
+
 /* Friction limits of a damper of each car at its velocity; those of eight Stribeck laws are computed at once. */
 static V limits_at(V velocity, const DamperLaw *law, int64_t lanes) {
   double speed[LANES], value[LANES];
@@ -93,6 +112,7 @@ static void set_inputs(const March *job, const REAL *rate) {
   slope_forces(job, rate, row + 2 * m);
   for (int64_t k = 0; k < job->plate_inputs; k++) row[2 * m + job->tyres + k] = all(rate[2 * m + k]);
   control(job);
+  own_laws(job);
   friction_limits(job);
 }
 

@@ -36,7 +36,7 @@ import numpy as np
 from vehicle.engines.kinematics.axle_curves import design_slopes, opposite_rates, position_rate
 from vehicle.engines.kinematics.axle_statics import AxlePosition, AxleStatics
 from vehicle.engines.simulation.car_model import CarModel
-from vehicle.model.laws.damper import damper_curve
+from vehicle.model.laws.damper import viscous_law
 from vehicle.model.parameters.composition import PlacedDamper, PlacedWheel
 
 DAMPER_VELOCITY = 0.1
@@ -176,7 +176,7 @@ def axle_dampers(car: CarModel, axle: str) -> list[PlacedDamper]:
 
 def damper_constant(damper: PlacedDamper) -> float:
     """Return the secant constant of a damper at `DAMPER_VELOCITY`, mean of bump and rebound [N s/m]."""
-    rebound, bump = damper_curve(damper.law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
+    rebound, bump = viscous_law(damper.law).force(np.array([DAMPER_VELOCITY, -DAMPER_VELOCITY]))
     return float(rebound - bump) / (2.0 * DAMPER_VELOCITY)
 
 

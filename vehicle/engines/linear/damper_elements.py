@@ -87,6 +87,7 @@ def slider_elements(rows: Rows) -> SliderElements:
     for damper in dampers:
         steepness[damper] = 0.5 * np.max(e.pieces[e.valves[:, 1] == damper, 0], initial=0.0)
     steepness[rows.layout.controls.dampers] = np.inf
+    steepness[rows.layout.own.dampers] = np.inf
     return SliderElements(
         rows=np.eye(rows.model.nv)[e.dofs[dampers]],
         dampers=dampers,

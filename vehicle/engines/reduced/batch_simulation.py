@@ -82,9 +82,9 @@ def simulate_batch(
 ) -> BatchRuns:
     """Simulate a batch of cars of one topology on the same plates with the reduced engine.
 
-    The values of a car are bitwise independent of the other cars. Cars with controlled or strongly coupled dampers,
-    with a pole near zero, or with a stop in a recorded damper force are simulated one at a time in double precision:
-    the bits of `simulate_reduced` at the same step.
+    The values of a car are bitwise independent of the other cars. Cars with controlled or strongly coupled dampers
+    or a law by address, with a pole near zero, or with a stop in a recorded damper force are simulated one at a time in
+    double precision: the bits of `simulate_reduced` at the same step.
 
     Args:
         models: pole models of the cars, with the same wheels, dampers, bodies and channels.
@@ -175,7 +175,9 @@ def _single_precision_factors(
     suitable = [
         car
         for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
-        if not any(law.controlled or (law.stop and force) for law, force in zip(laws, forces, strict=True))
+        if not any(
+            law.controlled or law.function or (law.stop and force) for law, force in zip(laws, forces, strict=True)
+        )
         and np.min(np.abs(model.poles)) >= SLOWEST
     ]
     rolling, by_car = models[0].slope.shape[1] > 0, dict[int, CarFactors]()

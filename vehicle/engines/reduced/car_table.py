@@ -44,8 +44,9 @@ def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
     curve, record = damper_curve(damper), pack(damper)
     full = 0.5 * np.pi / damper.smoothing
     base_slope, end_segments = curve.least_slope, ((-BEYOND, curve.slopes[0]), (BEYOND, curve.slopes[-1]))
-    # The curve of a controlled damper changes in each step.
-    ends = [end for end, slope in end_segments if slope > base_slope or damper.controlled]
+    # The curve of a controlled damper, and the line for a law by address, change in each step.
+    changing = damper.controlled is not None or damper.function is not None
+    ends = [end for end, slope in end_segments if slope > base_slope or changing]
     nodes = np.unique(np.concatenate([curve.knots, ends, [-full, full]]))
     excess_force = curve.force(nodes) - curve.force(0.0) - base_slope * nodes
     if damper.friction_law == "presliding":

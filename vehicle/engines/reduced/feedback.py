@@ -1,4 +1,4 @@
-"""Inputs of a step that depend on the motion at its beginning: loads of rolling tyres on slopes, controlled dampers.
+"""Inputs of a step that depend on the motion at its beginning: tyre loads on slopes, controlled dampers, own laws.
 
 A rolling tyre pushes its wheel centre along x by F_z tan(beta) (`vehicle/core/source/rolling.h`). The poles
 contain the effect of the static load F_0 on the slope z'/V, as a force b z' of the velocity of the plate. The current
@@ -27,13 +27,14 @@ import numpy.typing as npt
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import tyre_outputs
 from vehicle.model.laws.control_laws import NUMBERS, RING, in_steps, pack
+from vehicle.model.laws.law_by_address import RECORD, law_by_address
 from vehicle.model.parameters.force_elements import Damper
 
 Vector = npt.NDArray[np.float64]
 
 
 class Feedback(NamedTuple):
-    """Rolling tyres on slopes and controlled dampers of a car, which act by its sensors.
+    """Rolling tyres on slopes, controlled dampers and dampers by address of a car, which act by its sensors.
 
     Attributes:
         tyres: number of driven plates whose tyre loads act on the slope.
@@ -41,6 +42,8 @@ class Feedback(NamedTuple):
         controlled: indices of the k controlled dampers.
         settings: their records of `vehicle.model.laws.control_laws`; (k,).
         memory: states of their laws, with delayed settings; (k, ...).
+        own: indices of the dampers with a law by address; (j,).
+        own_laws: their records of `vehicle.model.laws.law_by_address`; (j,).
         owners: index of the damper of each group of Jenkins elements; (g,).
         sides: indices of the dampers whose friction limit depends on their side force; (k,).
     """
@@ -50,6 +53,8 @@ class Feedback(NamedTuple):
     controlled: npt.NDArray[np.int64]
     settings: npt.NDArray[Any]
     memory: Vector
+    own: npt.NDArray[np.int64]
+    own_laws: npt.NDArray[Any]
     owners: npt.NDArray[np.int64]
     sides: npt.NDArray[np.int64]
 
@@ -66,8 +71,8 @@ def sensor_outputs(
         tyre_load: static tyre loads [N] by wheel; None if no current loads act on the slopes.
 
     Returns:
-        F_z/F_0 - 1 of the driven tyres, velocities of wheel and body at each controlled damper [m/s], then side forces
-        without their static values [N].
+        F_z/F_0 - 1 of the driven tyres, velocities of wheel and body at each controlled damper [m/s], side forces
+        without their static values [N], then displacements of the dampers by address [m].
     """
     inputs = model.matrices.system.inputs
     rates = np.zeros((0, len(model.poles)), dtype=np.complex128)
@@ -77,6 +82,9 @@ def sensor_outputs(
     if sides.dampers.size:
         forces = sides.displacement @ model.modal + sides.velocity @ (model.modal * model.poles)
         rates = np.concatenate([rates, forces + sides.branch @ model.branch])
+    own = [index for index, damper in enumerate(dampers) if damper.function is not None]
+    if own:
+        rates = np.concatenate([rates, model.matrices.system.slide_rows[own] @ model.modal])
     no_plates = np.zeros((len(rates), len(inputs)))
     velocities = Outputs(poles=rates, height=no_plates, velocity=no_plates)
     if tyre_load is None:
@@ -93,18 +101,21 @@ def sensor_outputs(
     )
 
 
-def sensor_laws(model: PoleModel, columns: Sequence[int], tyre_load: Mapping[str, float] | None) -> Vector:
+def sensor_laws(
+    model: PoleModel, dampers: Sequence[Damper], columns: Sequence[int], tyre_load: Mapping[str, float] | None
+) -> Vector:
     """Return the contributions of the forces g of the laws over displacement to the sensors of a car; (sensors, laws).
 
     Args:
-        model, columns, tyre_load: see `sensor_outputs`.
+        model, dampers, columns, tyre_load: see `sensor_outputs`.
     """
     inputs, matrices = model.matrices.system.inputs, model.matrices
     loads = [] if tyre_load is None else [(tyre, tyre_load[inputs[tyre]]) for tyre in columns]
     tyres = [[-1.0 / load if law.plate == tyre else 0.0 for law in model.laws] for tyre, load in loads]
     others = np.zeros((len(matrices.sensors), len(model.laws)))
     shape = (-1, len(model.laws))
-    return np.concatenate([np.reshape(tyres, shape), others, matrices.sides.laws.reshape(shape)])
+    own = np.zeros((sum(damper.function is not None for damper in dampers), len(model.laws)))
+    return np.concatenate([np.reshape(tyres, shape), others, matrices.sides.laws.reshape(shape), own])
 
 
 def feedback_at_rest(
@@ -127,12 +138,15 @@ def feedback_at_rest(
     settings = in_steps(np.reshape(numbers, (-1, NUMBERS)), timestep)
     memory = np.zeros((len(controlled), RING + 1 + int(np.max(settings["lag"], initial=0.0))))
     memory[:] = settings["softest"][:, None]
+    own = [(index, damper.function) for index, damper in enumerate(dampers) if damper.function is not None]
     return Feedback(
         tyres=tyres,
         plate_inputs=plate_inputs,
         controlled=np.array(controlled, dtype=np.int64),
         settings=settings,
         memory=memory,
+        own=np.array([index for index, _ in own], dtype=np.int64),
+        own_laws=np.array([law_by_address(name).record(timestep) for _, name in own], dtype=RECORD),
         owners=owners,
         sides=sides,
     )

@@ -105,8 +105,8 @@ class GroupRun:
                 sensors,
                 [model.matrices.sides.static for model in models],
                 [
-                    sensor_laws(model, columns, static if present_load else None)
-                    for model, static in zip(models, tyre_load, strict=True)
+                    sensor_laws(model, laws, columns, static if present_load else None)
+                    for model, laws, static in zip(models, dampers, tyre_load, strict=True)
                     if model.laws
                 ],
             ),

@@ -18,6 +18,7 @@ Index = npt.NDArray[np.int64]
 Indices = npt.NDArray[np.int64]
 Records = npt.NDArray[Any]
 Settings = npt.NDArray[Any]
+Laws = npt.NDArray[Any]
 
 
 class Bushings(NamedTuple):
@@ -168,6 +169,18 @@ class Controls(NamedTuple):
     dofs: Indices
 
 
+class OwnDampers(NamedTuple):
+    """Dampers with a law by address, k of the w dampers.
+
+    Attributes:
+        dampers: indices among the dampers; (k,).
+        laws: records of `vehicle.model.laws.law_by_address`; (k,).
+    """
+
+    dampers: Index
+    laws: Laws
+
+
 class Tables(NamedTuple):
     """Nonlinear laws over displacement (`vehicle.model.laws.curve`), t of them: F(at + x) - F(at) in place of K x.
 
@@ -308,8 +321,8 @@ class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
-        bushings, rubber, rotations, springs, dampers, presliding, sides, controls, tables, modes, space, rolling,
-            round, fluids: records of the elements.
+        bushings, rubber, rotations, springs, dampers, presliding, sides, controls, own, tables, modes, space,
+            rolling, round, fluids: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -324,6 +337,7 @@ class Layout(NamedTuple):
     presliding: Presliding
     sides: SideForces
     controls: Controls
+    own: OwnDampers
     tables: Tables
     modes: Modes
     space: ModalSpace

@@ -8,11 +8,12 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from vehicle.engines.simulation.element_records import Layout, RubberFriction, Tables, Vector
+from vehicle.engines.simulation.element_records import Layout, OwnDampers, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
 from vehicle.model.laws.damper import unpack
+from vehicle.model.laws.law_by_address import RECORD, LawByAddress, law_by_address
 from vehicle.names import AXES
 
 Numbers = Mapping[str, Vector]
@@ -88,12 +89,16 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
 
     Returns:
         Layout, with operating points of curves at zero displacement.
+
+    Raises:
+        ConfigurationError: a law by address is not registered in this process.
     """
     laws, present = laws_of(names, numbers), laws_of(names, numbers)[:, 6:9] > 0.0
     stiffness, rubber = laws[:, 0:3].copy(), _rubber(names, numbers)
     np.add.at(stiffness, (rubber.elements, rubber.axes), rubber.stiffness)
     rolling = [numbers[f"rolling/{name}"] for name in names.bushings if f"rolling/{name}" in numbers]
     rolling_numbers = np.reshape(rolling, (-1, 5)).astype(float)
+    own = _own_laws(names, numbers)
     controls = [numbers[f"control/{name}"] for name in names.dampers if f"control/{name}" in numbers]
     return layout._replace(
         bushings=layout.bushings._replace(
@@ -125,6 +130,10 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             dampers=_true_indices(f"control/{name}" in numbers for name in names.dampers),
             laws=in_steps(np.reshape(controls, (-1, NUMBERS)), timestep),
         ),
+        own=OwnDampers(
+            dampers=_integers([index for index, _ in own]),
+            laws=np.array([law.record(timestep) for _, law in own], dtype=RECORD),
+        ),
         tables=_tables(names, numbers),
         rolling=layout.rolling._replace(
             speeds=rolling_numbers[:, 0].copy(),
@@ -147,6 +156,21 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             ),
         ),
     )
+
+
+def _own_laws(names: LawNames, numbers: Numbers) -> list[tuple[int, LawByAddress]]:
+    """Return the dampers with a law by address, and these laws.
+
+    Raises:
+        ConfigurationError: a law is not registered in this process.
+    """
+    fields = [(index, f"function/{name}/") for index, name in enumerate(names.dampers)]
+    return [
+        (index, law_by_address(field.removeprefix(start)))
+        for index, start in fields
+        for field in numbers
+        if field.startswith(start)
+    ]
 
 
 def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:

@@ -19,6 +19,7 @@ from vehicle.engines.simulation.element_records import (
     Layout,
     ModalSpace,
     Modes,
+    OwnDampers,
     Rolling,
     Rotations,
     RoundTyres,
@@ -37,6 +38,7 @@ from vehicle.engines.simulation.law_arrays import (
 )
 from vehicle.model.assembly.element_numbers import FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
+from vehicle.model.laws.law_by_address import RECORD
 
 
 def numeric(model: mujoco.MjModel, name: str) -> Vector | None:
@@ -132,6 +134,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
         presliding=presliding_rows(model, law, dampers, int(first_rows[-1])),
         sides=side_forces(model, law, numbers, ends),
         controls=_controls(model, [name for name in law.dampers if f"control/{name}" in numbers], modes),
+        own=OwnDampers(whole_numbers([]), np.zeros(0, dtype=RECORD)),
         tables=tables_through([]),
         modes=_modes(
             model, [name for name in balls if numeric(model, f"shape/{name}") is not None], ends, rows_of, modal

@@ -279,6 +279,7 @@ def _at_rest(layout: Layout) -> State:
     longest = RING + 1 + int(np.max(layout.controls.laws["lag"], initial=0.0))
     controls, dampers = len(layout.controls.dampers), len(layout.dampers.dofs)
     shapes |= {"coefficient": (dampers,), "sensed": (2 * controls, 2), "past": (controls, longest), "steps": (1,)}
+    shapes |= {"speeds": (len(layout.own.dampers), 2)}
     shapes |= {"rubber": (4, len(layout.rubber.elements))}
     shapes |= {"slider": (2, len(layout.presliding.rows)), "stroke": (dampers,), "limit": (dampers,)}
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}

@@ -78,6 +78,7 @@ class State(NamedTuple):
         sensed: velocities at the sensors in the middle of the last two steps [m/s], latest first; (2 k, 2).
         past: memory of the controlled dampers, see `vehicle.model.laws.control_laws`; (k, ...).
         steps: index of the present step; (1,).
+        speeds: velocities [m/s] of the dampers by address at the present time and at the last one; (k, 2).
     """
 
     plate_velocity: Table
@@ -114,6 +115,7 @@ class State(NamedTuple):
     sensed: Table
     past: Table
     steps: Vector
+    speeds: Table
 
 
 class SparseRows(NamedTuple):

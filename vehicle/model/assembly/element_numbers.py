@@ -94,12 +94,15 @@ def spring_numbers(spring: PlacedSpring) -> Numbers:
 
 
 def damper_numbers(placed: PlacedDamper) -> Numbers:
-    """Return the numbers of a damper: stop, steeper segments of the curve, presliding, control, actuator."""
+    """Return the numbers of a damper: stop, steeper segments of the curve, presliding, control, function, actuator."""
     numbers, (segments, elements, control, actuator) = _table(placed.name, placed.law.stop), _packed(placed.law)
     for number, segment in enumerate(segments):
         numbers[f"law/valve/{placed.name}" + (f"/{number}" if number else "")] = segment
     if control is not None:
         numbers[f"control/{placed.name}"] = control
+    if placed.law.function is not None:
+        # The name is in that of the field, because a field has numbers only.
+        numbers[f"function/{placed.name}/{placed.law.function}"] = np.ones(1)
     if elements.size:
         numbers[f"presliding/{placed.name}"] = elements.ravel()
     numbers[f"actuator/{placed.name}"] = actuator

@@ -4,7 +4,8 @@
 
 with the friction of `vehicle.model.laws.friction` and the curve F_c of `vehicle.model.laws.curve`: linear, degressive,
 or a table. For a controlled damper, F_c is the force of its softest setting; `vehicle.model.laws.control_laws` computes
-the remainder.
+the remainder. For a law by address (`vehicle.model.laws.law_by_address`), F_c is its tangent at rest; the engines call
+the function for the remainder.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
-from vehicle.model.laws.law import Constant, Parallel
+from vehicle.model.laws.law import Constant, ForceLaw, Parallel
+from vehicle.model.laws.law_by_address import law_by_address
 from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
 
 RECORD = np.dtype(
@@ -70,7 +72,15 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
 
 
 def damper_curve(damper: Damper) -> Curve:
-    """Return force over velocity without friction and gas; for a controlled damper, of its softest setting."""
+    """Return force over velocity without friction and gas.
+
+    For a controlled damper it is that of its softest setting, for a law by address the tangent at rest.
+
+    Raises:
+        ConfigurationError: the law by address is not registered in this process.
+    """
+    if damper.function is not None:
+        return Curve.line(law_by_address(damper.function).viscous)
     if damper.controlled is not None:
         return Curve.line(damper.controlled.minimum_damping)
     if damper.viscous_law == "table":
@@ -98,11 +108,16 @@ def unpack(parameters: npt.ArrayLike) -> npt.NDArray[Any]:
     return np.reshape(np.array(parameters, dtype=np.float64), -1).view(RECORD)
 
 
+def viscous_law(damper: Damper) -> ForceLaw:
+    """Return force over velocity without friction and gas as in `damper_curve`, but a law by address whole."""
+    return damper_curve(damper) if damper.function is None else law_by_address(damper.function)
+
+
 def damper_law(damper: Damper) -> Parallel:
     """Return the total force of a damper as a law of arrays, with friction in the smooth form."""
     record, law = pack(damper), FRICTION[damper.friction_law]
     friction = law(**{entry.name: float(record[entry.name]) for entry in dataclasses.fields(law)})
-    return Parallel(laws=(damper_curve(damper), Constant(value=-damper.gas_force), friction))
+    return Parallel(laws=(viscous_law(damper), Constant(value=-damper.gas_force), friction))
 
 
 def _friction_laws() -> dict[str, type[Friction]]:

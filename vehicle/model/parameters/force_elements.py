@@ -289,7 +289,8 @@ class Damper:
     rod. Presliding friction has the limit Fd, and below it springs with sliders over the stroke in place of the line:
     on first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
     that curve (`vehicle.model.laws.presliding`); the smoothing has no effect.
-    Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law.
+    Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law,
+    and so does a function of the user's own, F(x, v).
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
@@ -308,6 +309,9 @@ class Damper:
     )
     gas_force: float = quantity(
         "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
+    )
+    function: str | None = quantity(
+        "-", "name of a law of the user's own (`vehicle.register_law`), which replaces the viscous law", default=None
     )
     stop: ForceTable | None = None
     control: SemiActiveDamper | None = None
@@ -353,6 +357,11 @@ class Damper:
                 if getattr(self, name) is None:
                     raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
         self._check_presliding()
+        if self.function is not None and self.controlled is not None:
+            raise ConfigurationError(
+                f"Damper.function: found {self.function!r} together with control.law = {self.controlled.law}; both "
+                "replace the viscous law: remove one of both"
+            )
         if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "

@@ -28,7 +28,9 @@ def idle_parameters(vehicle: Vehicle, overrides: Iterable[str]) -> tuple[str, ..
         off[f"{path}.smoothing"] = (presliding, f"{path}.friction_law = coulomb or stribeck")
         passive = law.controlled is None
         off[f"{path}.viscous"] = (not passive, f"{path}.control.law = passive")
-        if passive and law.viscous_law == "table":
+        if law.function is not None:
+            off[f"{path}.viscous"] = (True, f"{path}.viscous_law without {path}.function")
+        elif passive and law.viscous_law == "table":
             off[f"{path}.viscous"] = (True, f"{path}.viscous_law = linear or degressive")
         for name in (entry.name for entry in dataclasses.fields(SemiActiveDamper) if entry.name != "law"):
             off[f"{path}.control.{name}"] = (passive, f"{path}.control.law = skyhook or another law")
