@@ -121,12 +121,10 @@ def test_cams_on_a_periodic_road_know_no_first_position():
     tyre = TyreEnvelope.of(next(iter(CAM_SETS.values())), radius=0.3, patch=0.12)
     road = IsoRoad(level=CLASSES["E"], seed=1, track=TRACK, envelope=tyre)
     steps, step, later = 4000, 0.02, 1500
-    for first, second in zip(
-        road.contact(0.0, step, steps, "right", 40.0),
-        road.contact(later * step, step, steps, "right", 40.0),
-        strict=True,
-    ):
-        np.testing.assert_allclose(np.roll(first, -later), second, atol=1e-9 * np.max(np.abs(first)))
+    first, second = (road.contact(start, step, steps, "right", 40.0) for start in (0.0, later * step))
+    assert first[1] is not None and second[1] is not None
+    for before, after in ((first[0], second[0]), (first[1], second[1])):
+        np.testing.assert_allclose(np.roll(before, -later), after, atol=1e-9 * np.max(np.abs(before)))
 
 
 def test_the_slope_of_cams_is_that_of_the_road_that_rises():
