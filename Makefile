@@ -22,7 +22,7 @@ shaker: setup
 	fi
 
 test: setup .stamps/for-tests check
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 check: setup
 	$(BIN)/ruff format --check .

@@ -80,6 +80,9 @@ def test_mtvv_of_a_short_burst():
         2.0 * np.sqrt(1 - np.exp(-0.5)), rel=1e-9, unit="m/s2",
         source="standard: ISO 2631-1:1997, 6.3.1, exponential average",
     )  # fmt: skip
+    for time in (0.125, 2.0):
+        grown = 2.0 * np.sqrt(1.0 - np.exp(-0.5 / time))
+        assert mtvv(STEP, burst, average="exponential", integration_s=time) == pytest.approx(grown, rel=1e-9)
     # another integration time
     validated(
         "Comfort, ISO 2631", "MTVV of a burst of 0.5 s, integration time 0.25 s", mtvv(STEP, burst, integration_s=0.25),

@@ -10,6 +10,7 @@ from tests.validation import foreign, validated
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import CLASSES
 from vehicle.signals.excitation.iso_road import IsoRoad, Side, drive, isotropic_coherence
+from vehicle.signals.excitation.tyre_envelope import CAM_SETS, TyreEnvelope
 
 SPEED, TRACK = 20.0, 1.49
 
@@ -113,6 +114,27 @@ def test_the_contact_patch_takes_out_waves_of_its_own_length():
         np.abs(np.sinc(0.2 * n[band])), abs=1e-9, source="closed form: sinc(n a)",
     )  # fmt: skip
     assert np.min(ratio) < 1e-9  # a wave of 0.2 m is not felt
+
+
+def test_cams_on_a_periodic_road_know_no_first_position():
+    """The cams reach over the ends of the period: a later start is the same road, turned."""
+    tyre = TyreEnvelope.of(next(iter(CAM_SETS.values())), radius=0.3, patch=0.12)
+    road = IsoRoad(level=CLASSES["E"], seed=1, track=TRACK, envelope=tyre)
+    steps, step, later = 4000, 0.02, 1500
+    first, second = (road.contact(start, step, steps, "right", 40.0) for start in (0.0, later * step))
+    assert first[1] is not None and second[1] is not None
+    for before, after in ((first[0], second[0]), (first[1], second[1])):
+        np.testing.assert_allclose(np.roll(before, -later), after, atol=1e-9 * np.max(np.abs(before)))
+
+
+def test_the_slope_of_cams_is_that_of_the_road_that_rises():
+    """On waves far longer than the tyre, V tan(beta) w + w' z is the rate of the height, in the rise too."""
+    tyre = TyreEnvelope.of(next(iter(CAM_SETS.values())), radius=0.3, patch=0.12)
+    road = IsoRoad(level=CLASSES["C"], seed=2, track=TRACK, highest=0.1, envelope=tyre)
+    signal = drive(road, speed=SPEED, wheels={"fr": (0.0, "right")}, duration=12.0)
+    rate = np.gradient(signal.displacement["fr"], signal.timestep)
+    # The cams are 0.1 m apart and 0.5 m long on waves of 10 m: second order in their ratio.
+    np.testing.assert_allclose(signal.slope_velocity["fr"], rate, atol=0.01 * np.max(np.abs(rate)))
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,9 @@ from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.rigid_part import Part
-from vehicle.model.parameters.toml_file import build, type_hints
+from vehicle.model.parameters.toml_file import build
 from vehicle.names import AXES
 
 T = TypeVar("T")

@@ -32,7 +32,7 @@ from vehicle.model.parameters.hardpoints import LARGEST_M
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.optional_keys import WITH_FILES
 from vehicle.model.parameters.placed_elements import spring_kind
-from vehicle.model.parameters.quantity import NAME_PATTERN
+from vehicle.model.parameters.quantity import NAME_PATTERN, type_hints
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
@@ -226,7 +226,7 @@ def _reference(parameters: type, complete: bool = True) -> Schema:
 
 def _table(parameters: type[Any], complete: bool = True) -> Schema:
     """Return the schema of a parameter class; complete: fields without a default are required."""
-    hints = typing.get_type_hints(parameters)
+    hints = type_hints(parameters)  # type: ignore[arg-type]
     fields = dataclasses.fields(parameters)
     properties = {entry.name: _field(hints[entry.name], entry, complete) for entry in fields}
     needed = [

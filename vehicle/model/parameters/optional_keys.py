@@ -15,6 +15,7 @@ from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount,
 from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import is_zero_vector
+from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
 from vehicle.names import AXES, SIDE_SIGN
 
@@ -70,7 +71,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
 
 def _keys(parameters: type[Any], *, everything: bool) -> Iterator[str]:
     """Yield the keys of a parameter class that have a default, or all keys; inner tables key by key, zeros by axis."""
-    hints = typing.get_type_hints(parameters)
+    hints = type_hints(parameters)  # type: ignore[arg-type]
     if parameters in WITH_FILES:
         yield "curve"
     for entry in dataclasses.fields(parameters):

@@ -152,6 +152,7 @@ def _check_number(path: str, number: Any, metadata: Any) -> None:
     raise ConfigurationError(f"{path}: found {number!r} {unit}, must be at most {maximum!r}{why}")
 
 
+@functools.cache
 def field_quantity(parameters: type[Any], path: str) -> Mapping[str, Any]:
     """Return the declaration of a field, see `quantity`; an empty mapping if the path does not exist.
 
@@ -166,7 +167,7 @@ def field_quantity(parameters: type[Any], path: str) -> Mapping[str, Any]:
         if dataclasses.is_dataclass(inner) and key in (
             fields := {entry.name: entry for entry in dataclasses.fields(inner)}
         ):
-            declared, inner = fields[key].metadata, typing.get_type_hints(inner)[key]
+            declared, inner = fields[key].metadata, type_hints(inner)[key]  # type: ignore[arg-type]
             if typing.get_origin(inner) is not Mapping:
                 # For an optional table, continue with its class.
                 inner = next((entry for entry in typing.get_args(inner) if dataclasses.is_dataclass(entry)), inner)
@@ -177,3 +178,9 @@ def field_quantity(parameters: type[Any], path: str) -> Mapping[str, Any]:
         else:
             return {}
     return declared
+
+
+@functools.cache
+def type_hints(parameters: type[Any]) -> dict[str, Any]:
+    """Return the types of the fields of a dataclass; cached, because every override and every sweep needs them."""
+    return typing.get_type_hints(parameters)

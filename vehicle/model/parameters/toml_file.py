@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.quantity import NAME_PATTERN, field_quantity
+from vehicle.model.parameters.quantity import NAME_PATTERN, field_quantity, type_hints
 
 T = TypeVar("T")
 
@@ -128,7 +128,7 @@ def write_text(instance: Any, header: str = "", describe: Callable[[str], Mappin
         The text; `build(type(instance), tomllib.loads(text))` returns an equal object.
     """
     lines = [f"# {line}".rstrip() for line in header.splitlines()]
-    declared = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))
+    declared = getattr(instance, "quantity_of", lambda path: field_quantity(type(instance), path))  # type: ignore[arg-type]
     _write(as_table(instance), "", lines, describe or declared)
     return "\n".join(lines).strip() + "\n"
 
@@ -247,9 +247,3 @@ def _fields(parameters: type[Any]) -> dict[str, dataclasses.Field[Any]]:
 def _parts_of(hint: Any) -> tuple[Any, tuple[Any, ...]]:
     """Return origin and arguments of a generic type; cached, see `type_hints`."""
     return typing.get_origin(hint), typing.get_args(hint)
-
-
-@functools.cache
-def type_hints(parameters: type[Any]) -> dict[str, Any]:
-    """Return the types of the fields of a dataclass; cached, because a sweep needs them thousands of times."""
-    return typing.get_type_hints(parameters)

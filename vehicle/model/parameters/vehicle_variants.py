@@ -14,7 +14,8 @@ from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.paths import meant, parsed_value, value_at
 from vehicle.model.parameters.plausible import require_body, require_parts
-from vehicle.model.parameters.toml_file import build, type_hints
+from vehicle.model.parameters.quantity import type_hints
+from vehicle.model.parameters.toml_file import build
 from vehicle.model.parameters.vehicle import Solver, Vehicle
 from vehicle.model.parameters.whole_body import body_moves, followers
 from vehicle.names import AXES, SIDE_SIGN

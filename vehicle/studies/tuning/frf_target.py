@@ -19,6 +19,8 @@ from vehicle.signals.analysis.response_name import PLATE, ResponseName, plates_o
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.formats.frf_file import FrfData, frf_data
 from vehicle.signals.records.counterpart import SAME_MOTION
+from vehicle.signals.records.frf_file import FrfData, frf_data
+from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
 
 Vector = npt.NDArray[np.float64]
@@ -124,7 +126,7 @@ class FrfTarget:
             return self.estimated(model)
         if self.signal is None:
             return np.array([self._of_matrices(model, name) for name in self.data.names])
-        return self.estimated(self.run(model))
+        return self.estimated(fast_run(model, self.signal, self.recorded))
 
     def _of_matrices(self, car: Car, name: ResponseName) -> Complex:
         """Return an FRF of the linear car, (m,): sum of a_p H_p over the plates p of its input."""

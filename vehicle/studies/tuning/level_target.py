@@ -150,7 +150,7 @@ class LevelTarget:
 
     def response(self, model: Car | Run) -> Complex:
         """Return the FRFs of the classes without delays, for a run, or for a car with the reduced engine, (rows, m)."""
-        run = model if isinstance(model, Run) else self.run(model)
+        run = model if isinstance(model, Run) else self.histories.fast(model, self.recorded)
         histories = np.array([run[name] for name in _fitted(self.histories, self.reference)])
         length = round(self.window / self.histories.record.step)
         x, y = (_spectra(part, self.starts, self.lines, length) for part in (run[self.reference][None], histories))

@@ -18,6 +18,8 @@ from vehicle.signals.analysis.time_shift import time_shift
 from vehicle.signals.excitation.signal import MINIMUM_SAMPLES, Signal
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.counterpart import SAME_MOTION
+from vehicle.signals.records.table import Record
+from vehicle.studies.tuning.fast_run import fast_run
 from vehicle.studies.tuning.response_delays import ResponseDelays
 from vehicle.studies.tuning.road_car import RoadCar
 
@@ -113,8 +115,15 @@ class RecordTarget:
             engine: engine of the run.
             channels: recorded channels; those of the record by default.
         """
-        driven = car if self.road is None else self.road.variant(car)
-        return driven.run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
+        return self._driven(car).run(self.signal, engine=engine, channels=tuple(channels) or self.recorded)
+
+    def fast(self, car: Car, channels: Sequence[str] = ()) -> Run:
+        """Return the run of a step of the fit, see `fast_run`; arguments as for `run`."""
+        return fast_run(self._driven(car), self.signal, tuple(channels) or self.recorded)
+
+    def _driven(self, car: Car) -> Car:
+        """Return a car on the road, if there is one."""
+        return car if self.road is None else self.road.variant(car)
 
     def response(self, model: Car | Run) -> Vector:
         """Return filtered histories of a run of the signal, or of a car by the reduced engine; (channels, n).
@@ -123,7 +132,7 @@ class RecordTarget:
             DataError: the run has other sampling times than the data.
         """
         names, time = self.recorded, self.record.time
-        run = model if isinstance(model, Run) else self.run(model)
+        run = model if isinstance(model, Run) else self.fast(model)
         if run.time.size != time.size or abs(run.time[-1] - time[-1]) > 1e-6:
             raise DataError(
                 f"{self.name}: {time.size} samples to {time[-1]:g} s, the model gives {run.time.size} to "
