@@ -3,6 +3,7 @@
 # make check    format, lint and types only
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
 # make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
+# make lowest   smoke tests with the lowest versions of the dependencies
 # make docs     build the documentation -> docs/_build/html/index.html
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -11,7 +12,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize faults docs setup mjcf benchmark clean
+.PHONY: shaker test check core core-sanitize faults docs setup setup-tests mjcf benchmark lowest clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -23,8 +24,10 @@ shaker: setup
 
 test: setup .stamps/for-tests check
 	$(BIN)/python -m pytest -n 2 --dist loadfile
+test: setup-tests .stamps/for-tests check
+	$(BIN)/python -m pytest -n 2
 
-check: setup
+check: setup-tests
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
@@ -32,22 +35,28 @@ check: setup
 core: setup
 	$(BIN)/python tools/core.py
 
-core-sanitize: setup
+core-sanitize: setup-tests
 	$(BIN)/python tools/core_sanitized.py
 
-docs: setup
+docs: setup-tests
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
 
 mjcf: setup
 	$(BIN)/python -m vehicle mjcf --force
 
-faults: setup
+faults: setup-tests
 	$(BIN)/python -m tests.faults
 
-benchmark: setup
+benchmark: setup-tests
 	$(BIN)/python -m tests.benchmarks.speed
 
+lowest: .stamps/system
+	@bash tools/lowest.sh "$(PYTHON)" build/lowest
+
+# What the job needs; what tests and checks need, the job included.
 setup: .stamps/system .stamps/python
+
+setup-tests: .stamps/system .stamps/python-tests
 
 # The off-screen OpenGL library; without root it is only named, and films are left out.
 .stamps/system: tools/system-libraries.sh
@@ -65,6 +74,11 @@ setup: .stamps/system .stamps/python
 	@mkdir -p .stamps
 	@bash tools/environment.sh "$(PYTHON)" $(VENV)
 	@touch $@
+
+.stamps/python-tests: constraints.txt pyproject.toml tools/environment.sh
+	@mkdir -p .stamps
+	@bash tools/environment.sh "$(PYTHON)" $(VENV) tests
+	@touch .stamps/python $@
 
 clean:
 	rm -rf $(VENV) .stamps runs build docs/_build *.egg-info .pytest_cache .mypy_cache .ruff_cache

@@ -44,6 +44,7 @@ from vehicle.signals.formats.formats import TABLES, WRITTEN
 if TYPE_CHECKING:
     from vehicle.signals.excitation.signal import Signal
     from vehicle.signals.records.choice import Choice
+    from vehicle.signals.records.run_summary import RunSummary
 
 
 def parser() -> Parser:
@@ -218,6 +219,13 @@ def _job(options: argparse.Namespace) -> None:
             page = report_page([finished], progress, trial=trial, author=options.author, project=options.project)
             path.write_text(page, encoding="utf-8")
 
+        def print_numbers(summary: RunSummary) -> None:
+            from vehicle.runs.report.general_notices import without_general
+
+            if not options.quiet:
+                own = without_general(summary["notices"], car.vehicle)
+                print(summary_text({**summary, "notices": own}), flush=True)
+
         summary = write_run(
             folder,
             run,
@@ -229,11 +237,10 @@ def _job(options: argparse.Namespace) -> None:
             measured=measured,
             report=None if report_name is None else (report_name, make_report),
             command=shlex.join(["python", "-m", "vehicle.shaker", *options.words]),
+            tell=print_numbers,
         )
     if not options.quiet:
-        from vehicle.runs.report.general_notices import without_general
-
-        print(summary_text({**summary, "notices": without_general(summary["notices"], car.vehicle)}, output))
+        print(f"files       {output}: {', '.join(summary['files'].values())}")
 
 
 def plate_signal(options: argparse.Namespace, wheel: str, choice: Choice | None) -> Signal:

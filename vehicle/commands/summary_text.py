@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vehicle.names import side_of
@@ -18,13 +17,8 @@ def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = "
     return last.join(word for word in (", ".join(texts[:-1]), texts[-1]) if word)
 
 
-def summary_text(summary: RunSummary, output: Path) -> str:
-    """Return the printed summary of a run.
-
-    Args:
-        summary: content of `summary.json`.
-        output: folder of the run.
-    """
+def summary_text(summary: RunSummary) -> str:
+    """Return the printed numbers and notes of a run from the content of its `summary.json`."""
     share, first = summary["slip_share"], summary["first_slip_s"]
     load = summary["static"]["tyre_load_n"]
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
@@ -61,7 +55,6 @@ def summary_text(summary: RunSummary, output: Path) -> str:
     ]
     lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
     lines += [f"note        {text}" for text in summary["notices"]]
-    lines.append(f"files       {output}: {', '.join(summary['files'].values())}")
     return "\n".join(lines)
 
 

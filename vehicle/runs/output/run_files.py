@@ -92,6 +92,7 @@ def write_run(
     measured: Measured | None = None,
     report: tuple[Path, Callable[[Path], None]] | None = None,
     command: str = "",
+    tell: Callable[[RunSummary], None] | None = None,
 ) -> RunSummary:
     """Write all files of a finished run.
 
@@ -106,6 +107,7 @@ def write_run(
         measured: measurement to compare with the run.
         report: path of the report and the function that writes it from the other files.
         command: command line that makes this run, for the summary.
+        tell: function that is called with the summary before the film and the report, which take the longest.
 
     Returns:
         The content of `summary.json`.
@@ -149,9 +151,7 @@ def write_run(
     if figures:
         write_whole(folder / "time.png", lambda path: plot_time(path, run))
     if video is not None:
-        name, make = video
-        write_whole(folder / name if name.parent == Path() else name, make)
-        files["video"] = str(name)
+        files["video"] = str(video[0])
     beside = None
     if measured is not None:
         from vehicle.runs.output.comparison_files import write_beside
@@ -169,8 +169,9 @@ def write_run(
         command=command,
     )
     write_json(folder / SUMMARY_FILE, summary)
-    if report is not None:
-        name, make = report
+    if tell is not None:
+        tell(summary)
+    for name, make in filter(None, (video, report)):
         write_whole(folder / name if name.parent == Path() else name, make)
     return summary
 
