@@ -4,6 +4,8 @@
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
 # make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
 # make lowest   smoke tests with the lowest versions of the dependencies
+# make laptop   a folder for Windows without installation -> build/vehicle-for-windows.zip
+# make test-windows   the commands with CPython for Windows under wine, compared with this system
 # make docs     build the documentation -> docs/_build/html/index.html
 SHELL := /bin/bash
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -12,7 +14,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize faults docs setup setup-tests mjcf benchmark lowest clean
+.PHONY: shaker test check core core-sanitize faults docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -45,6 +47,20 @@ mjcf: setup
 	$(BIN)/python -m vehicle mjcf --force
 
 faults: setup-tests
+# uv resolves the packages of another system than this one.
+.stamps/windows: tools/system-libraries.sh tools/windows_folder.py pyproject.toml constraints.txt | setup
+	@bash tools/system-libraries.sh windows
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
+	@touch $@
+
+laptop: setup .stamps/windows
+	$(BIN)/python tools/windows_folder.py build/vehicle-for-windows --zip build/vehicle-for-windows.zip
+
+test-windows: setup .stamps/windows
+	$(BIN)/python tools/windows_folder.py "build/under wine ü/vehicle" --for-wine
+	$(BIN)/python -m tests.windows "build/under wine ü/vehicle"
+
+faults: setup
 	$(BIN)/python -m tests.faults
 
 benchmark: setup-tests

@@ -34,7 +34,7 @@ WINGS = {
 DATA = {"inputs", "templates", "vehicles"}
 """Rooms that hold no modules."""
 
-BELOW = EVERYWHERE | {"replacement", "threads", "version"}
+BELOW = EVERYWHERE | {"machine", "replacement", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what pip cannot, on Debian, as root: the off-screen OpenGL library (OSMesa) and the venv module; with the
 # word "tests" what tests alone need: Chromium, its driver and Poppler, which open and print the report, and CalculiX,
-# which makes bodies.
+# which makes bodies; with the word "windows" wine, which runs the program with CPython for Windows.
 set -u
 PATH=$PATH:/sbin:/usr/sbin
 wanted=()
@@ -11,6 +11,9 @@ if [ "${1:-}" = tests ]; then
   [ -x /usr/bin/chromedriver ] || wanted+=(chromium-driver)
   command -v pdftoppm >/dev/null || wanted+=(poppler-utils)
   command -v ccx >/dev/null || wanted+=(calculix-ccx)
+elif [ "${1:-}" = windows ]; then
+  without="without wine the program for Windows cannot be tried here"
+  command -v wine >/dev/null || wanted+=(wine64 wine)
 else
   without="without libosmesa6 there are no films"
   ldconfig -p 2>/dev/null | grep -q 'libOSMesa\.so' || wanted+=(libosmesa6)

@@ -39,22 +39,30 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
         shutil.copy(ROOT / name, source / name)
     here.mkdir()
     # Offline, with the setuptools of this environment.
-    build = [*INSTALL[:-3], "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", str(tmp_path), str(source)]
+    sdist = f"from setuptools import build_meta; build_meta.build_sdist({str(tmp_path)!r})"
+    subprocess.run([sys.executable, "-c", sdist], cwd=source, check=True, capture_output=True, timeout=HANG)
+    (packed,) = tmp_path.glob("*.tar.gz")
+    build = [*INSTALL[:-3], "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir", str(tmp_path), str(packed)]
     build[build.index("install")] = "wheel"
     subprocess.run(build, cwd=here, check=True, capture_output=True, timeout=HANG)
     (wheel,) = tmp_path.glob("*.whl")
     subprocess.run([*INSTALL, "--target", str(installed), str(wheel)], cwd=here, check=True, timeout=HANG)
-    names = zipfile.ZipFile(wheel).namelist()
+    archive = zipfile.ZipFile(wheel)
+    names = archive.namelist()
     # Every file, data too: a pattern of package-data that fits no file says nothing.
     shipped = {path.relative_to(source).as_posix() for path in (source / "vehicle").rglob("*") if path.is_file()}
     assert {"vehicle/py.typed", "vehicle/signals/inputs/low.csv"} <= shipped
     assert shipped <= set(names), shipped - set(names)
+    assert [name for name in shipped if archive.read(name) != (source / name).read_bytes()] == []
+    before = _contents(installed)
+
+    without_home = {name: value for name, value in os.environ.items() if name not in ("HOME", "XDG_CACHE_HOME")}
 
     def run(*arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [str(installed / "bin" / "vehicle"), *arguments],
             cwd=here,
-            env={**os.environ, "PYTHONPATH": str(installed)},
+            env=without_home | {"PYTHONPATH": str(installed)},
             capture_output=True,
             text=True,
             timeout=HANG,
@@ -74,3 +82,9 @@ def test_the_wheel_runs_in_an_empty_folder(tmp_path):
     done = run("shaker", "--input", "low.csv", "--engine", "reduced", "--report", "--quiet")
     assert done.returncode == 0 and done.stderr == "", done.stderr
     assert {"summary.json", "frf.csv", "report.html"} <= {path.name for path in (here / "runs" / "low").iterdir()}
+    assert _contents(installed) == before  # an installation that cannot be written serves as well
+
+
+def _contents(folder: Path) -> dict[str, float]:
+    """Return the time of change of each file in a folder, without compiled Python."""
+    return {str(path): path.stat().st_mtime for path in folder.rglob("*") if path.is_file() and path.suffix != ".pyc"}

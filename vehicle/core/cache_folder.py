@@ -14,7 +14,7 @@ from pathlib import Path
 def cache_folder() -> Path:
     """Return the first folder that can be written: $XDG_CACHE_HOME or ~/.cache, a private one in the temporary folder.
 
-    Without any of them it is a new temporary folder.
+    Under Windows it is %LOCALAPPDATA%. Without any of them it is a new temporary folder.
     """
     folder = next((folder for folder in _candidates() if _writable(folder)), None)
     return Path(tempfile.mkdtemp(prefix="vehicle-")) if folder is None else folder
@@ -23,6 +23,9 @@ def cache_folder() -> Path:
 def _candidates() -> list[Path]:
     """Return candidate folders, preferred first."""
     candidates = []
+    if os.name == "nt":
+        local = os.environ.get("LOCALAPPDATA", "")  # of this user alone
+        return [Path(local) / "vehicle"] if Path(local).is_absolute() else []
     named = os.environ.get("XDG_CACHE_HOME", "")
     home = Path(os.path.expanduser("~"))  # noqa: PTH111 - Path.home() raises where there is none
     if Path(named).is_absolute():

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
-
 import numpy as np
 
 from vehicle.digits import number
 from vehicle.engines.simulation.recording import Energies, Recording
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.machine import physical_memory
 
 LARGEST = 1e8
 """Maximum value of a channel: forces of cars are below 1e6 N, accelerations below 1e5 m/s2."""
@@ -40,7 +39,7 @@ def require_samples(samples: float, channels: int) -> None:
             f"solver.record_rate: the signal ends after {number(samples, 2)} of an interval between two recorded "
             "samples, needed is 1; give a longer signal"
         )
-    needed, there = 8.0 * samples * channels, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed, there = 8.0 * samples * channels, physical_memory()
     if needed > 0.5 * there:
         raise ConfigurationError(
             f"solver.record_rate: {channels} channels of {samples:.3g} samples need {needed / 1e9:.3g} GB, allowed is "

@@ -135,7 +135,7 @@ def check_output(path: Path, *, force: bool, protect: tuple[Path, ...] = (), cha
             f"--output {path}: a killed command left finished rows there; continue it with --resume, give --force to "
             "delete them, or another folder"
         )
-    if folder.is_mount():
+    if os.path.ismount(folder):
         raise ConfigurationError(f"--output {path}: is the root of a file system; give a folder in it")
     parent = next(parent for parent in folder.parents if parent.exists())
     if not os.access(parent, os.W_OK) or not parent.is_dir():

@@ -77,17 +77,21 @@ def folder_lock(folder: Path) -> Iterator[None]:
             os.ftruncate(descriptor, 0)
             os.write(descriptor, f"{os.getpid()}\n".encode())
         except OSError as error:
-            if descriptor >= 0:
+            if descriptor >= 0 and os.name != "nt":
                 with suppress(OSError):
                     path.unlink()
             raise OutputError(f"{folder}: cannot be written: {error.strerror}; choose another --output") from None
         try:
             yield
         finally:
+            if os.name == "nt":  # an open file cannot be removed there; nor one that another process locks from here on
+                os.close(descriptor)
+                descriptor = -1
             try:
                 path.unlink(missing_ok=True)
             except OSError as error:
-                say(f"{path}: the lock is left ({error.strerror}); the next command there removes it")
+                if os.name != "nt":  # there, the process that has opened it meanwhile removes it
+                    say(f"{path}: the lock is left ({error.strerror}); the next command there removes it")
     finally:
         if descriptor >= 0:
             with suppress(OSError):

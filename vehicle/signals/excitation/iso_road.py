@@ -13,7 +13,6 @@ exactly that of the class on every line; only the phases are random.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
@@ -23,6 +22,7 @@ import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError
+from vehicle.machine import physical_memory
 from vehicle.signals.analysis.road_level import REFERENCE
 from vehicle.signals.excitation.band import positive, samples_of
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -222,7 +222,7 @@ def drive(
     """
     positive("speed", speed, "m/s")
     steps = samples_of(duration, rate)
-    needed, memory = 8.0 * steps * (3 * len(wheels) + COPIES), os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed, memory = 8.0 * steps * (3 * len(wheels) + COPIES), physical_memory()
     if needed > 0.5 * memory:
         raise ConfigurationError(
             f"duration {duration:g} s at {rate:g} Hz: {steps:.3g} samples of {len(wheels)} wheels need "

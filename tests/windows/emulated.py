@@ -1,0 +1,74 @@
+"""Processes: of this system, and of CPython for Windows under wine."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+LONGEST = 1200.0
+"""Time after which a command counts as hung [s]."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """A process that ended: exit code, and what it printed on both channels."""
+
+    code: int
+    text: str
+
+
+def here(arguments: Sequence[str], folder: Path) -> Ended:
+    """Run the program of this check-out with the Python of this process."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+    return _run([sys.executable, "-m", "vehicle", *arguments], folder, environment)
+
+
+class Windows:
+    """CPython for Windows in a folder of `tools/windows_folder.py`, under wine."""
+
+    def __init__(self, folder: Path) -> None:
+        self.python = folder / "python" / "python.exe"
+        if not self.python.is_file():
+            sys.exit(f"{self.python} is missing; make it with: python tools/windows_folder.py {folder} --for-wine")
+        unset = {"DISPLAY", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MUJOCO_GL", "PYTHONPATH"}
+        self.environment = {name: value for name, value in os.environ.items() if name not in unset} | {
+            "WINEPREFIX": str(folder.parent / "wine-prefix"),
+            "WINEARCH": "win64",
+            "WINEDEBUG": "-all",
+            "WINEDLLOVERRIDES": "mscoree=d;mshtml=d;ucrtbase=n,b",
+            "PYTHONUTF8": "1",
+        }
+
+    def start(self, arguments: Sequence[str], folder: Path) -> subprocess.Popen[str]:
+        """Start python.exe with arguments; input and output are pipes, since wine has no console here."""
+        return _start(["wine", str(self.python), *arguments], folder, self.environment)
+
+    def run(self, arguments: Sequence[str], folder: Path) -> Ended:
+        """Run python.exe to its end."""
+        return _ended(self.start(arguments, folder))
+
+
+def _start(command: Sequence[str], folder: Path, environment: dict[str, str]) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        encoding="utf-8", errors="replace",
+    )  # fmt: skip
+
+
+def _ended(process: subprocess.Popen[str]) -> Ended:
+    try:
+        text, _ = process.communicate("", LONGEST)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        text, _ = process.communicate()
+        return Ended(-1, f"{text}\nhung: no end in {LONGEST:g} s")
+    return Ended(process.returncode, text)
+
+
+def _run(command: Sequence[str], folder: Path, environment: dict[str, str]) -> Ended:
+    return _ended(_start(command, folder, environment))
