@@ -14,7 +14,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize faults docs setup mjcf benchmark clean
+.PHONY: shaker test check core core-sanitize faults docs setup setup-tests mjcf benchmark lowest laptop test-windows clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -24,10 +24,8 @@ shaker: setup
 	  $(BIN)/python -m vehicle.shaker --input $(INPUT) --report --force; \
 	fi
 
-test: setup .stamps/for-tests check
-	$(BIN)/python -m pytest -n 2 --dist loadfile
 test: setup-tests .stamps/for-tests check
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 check: setup-tests
 	$(BIN)/ruff format --check .
@@ -46,21 +44,20 @@ docs: setup-tests
 mjcf: setup
 	$(BIN)/python -m vehicle mjcf --force
 
-faults: setup-tests
 # uv resolves the packages of another system than this one.
-.stamps/windows: tools/system-libraries.sh tools/windows_folder.py pyproject.toml constraints.txt | setup
+.stamps/windows: tools/system-libraries.sh tools/windows_folder.py pyproject.toml constraints.txt | setup-tests
 	@bash tools/system-libraries.sh windows
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt uv
 	@touch $@
 
-laptop: setup .stamps/windows
+laptop: setup-tests .stamps/windows
 	$(BIN)/python tools/windows_folder.py build/vehicle-for-windows --zip build/vehicle-for-windows.zip
 
-test-windows: setup .stamps/windows
+test-windows: setup-tests .stamps/windows
 	$(BIN)/python tools/windows_folder.py "build/under wine ü/vehicle" --for-wine
 	$(BIN)/python -m tests.windows "build/under wine ü/vehicle"
 
-faults: setup
+faults: setup-tests
 	$(BIN)/python -m tests.faults
 
 benchmark: setup-tests
