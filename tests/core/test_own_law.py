@@ -7,14 +7,14 @@ import ctypes
 import numpy as np
 import pytest
 
+from scenarios.signals.random_road import random_road
 from tests.documentation.pages import blocks
 from vehicle import Car, Road, register_law
 from vehicle.engines.reduced.batch_simulation import COARSE_STEP, simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.errors import ConfigurationError, SimulationError
+from vehicle.handover.fmu.fmu_file import write_fmu
 from vehicle.model.laws.law_by_address import law_by_address
-from vehicle.runs.fmu.fmu_file import write_fmu
-from vehicle.signals.excitation.random_road import random_road
 
 ROAD = Road("C", speed=80.0, duration=1.5)
 PLATES = random_road(rms=5e-3, seed=3, wheel="fr", duration=1.5)
