@@ -41,6 +41,7 @@ ROOMS: dict[str, set[str]] = {
     "digits": set(),
     "errors": set(),
     "names": set(),
+    "machine": set(),
     "replacement": set(),
     "threads": set(),
     "version": set(),
@@ -48,13 +49,13 @@ ROOMS: dict[str, set[str]] = {
     "analysis": {"threads"},
     "formats": {"analysis"},
     "records": {"analysis", "formats"},
-    "excitation": {"analysis", "formats", "records", "replacement"},
+    "excitation": {"analysis", "formats", "machine", "records", "replacement"},
     "parameters": {"formats"},
     "laws": {"core", "formats", "parameters"},
     "flexbody": {"analysis", "formats", "parameters", "replacement"},
     "shapes": set(),
     "assembly": {"flexbody", "laws", "parameters", "shapes"},
-    "simulation": {"assembly", "core", "excitation", "flexbody", "laws", "parameters"},
+    "simulation": {"assembly", "core", "excitation", "flexbody", "laws", "machine", "parameters"},
     "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
     "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
     "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
@@ -85,7 +86,7 @@ ROOMS: dict[str, set[str]] = {
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
     | {"threads", "tuning", "version"},
-    "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "mounts", "optimisation"}
+    "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "laws", "mounts", "optimisation"}
     | {"output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},

@@ -93,7 +93,7 @@ BAD: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "one slope too many": (
         {"presliding_force": (0.5, 1.0), "presliding_slope": (1.0, 0.5, 0.2)},
-        "Damper.presliding_slope: found 3 numbers for 2 of presliding_force; set a slope for each, 1 to 8 in all",
+        "Damper.presliding_slope: found 3 numbers for 2 of presliding_force; set a slope for each, 1 to 8",
     ),
     "an end below the limit": (
         {"presliding_force": (0.5, 0.9), "presliding_slope": (1.0, 0.5)},

@@ -288,9 +288,8 @@ class Damper:
     With a side force coefficient the limit of every law grows by it times the transverse force of the mounts of the
     rod. Presliding friction has the limit Fd, and below it springs with sliders over the stroke in place of the line:
     on first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
-    that curve (`vehicle.model.laws.presliding`); the smoothing has no effect.
-    Parameters of a law that is not chosen are optional. A control law other than "passive" replaces the viscous law,
-    and so does a function of the user's own, F(x, v).
+    that curve (`vehicle.model.laws.presliding`); the smoothing has no effect. Parameters of a law that is not chosen
+    are optional. A control law other than "passive", or a function of the user's own, replaces the viscous law.
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
@@ -311,7 +310,7 @@ class Damper:
         "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
     )
     function: str | None = quantity(
-        "-", "name of a law of the user's own (`vehicle.register_law`), which replaces the viscous law", default=None
+        "-", "name of a viscous law of the user's own, `vehicle.register_law`", default=None
     )
     stop: ForceTable | None = None
     control: SemiActiveDamper | None = None
@@ -358,10 +357,8 @@ class Damper:
                     raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
         self._check_presliding()
         if self.function is not None and self.controlled is not None:
-            raise ConfigurationError(
-                f"Damper.function: found {self.function!r} together with control.law = {self.controlled.law}; both "
-                "replace the viscous law: remove one of both"
-            )
+            both = f"found {self.function!r} together with control.law = {self.controlled.law}"
+            raise ConfigurationError(f"Damper.function: {both}; both replace the viscous law: remove one of them")
         if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
@@ -383,14 +380,10 @@ class Damper:
         """
         ends, slopes = self.presliding_force, self.presliding_slope
         if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
-            raise ConfigurationError(
-                f"Damper.presliding_slope: found {len(slopes)} numbers for {len(ends)} of presliding_force; set a "
-                f"slope for each, 1 to {MAX_SLIDERS} in all"
-            )
-        for name, values, falling, shape in (
-            ("force", ends, ends[::-1], "rise to 1"),
-            ("slope", slopes, slopes, "fall from 1"),
-        ):
+            found = f"found {len(slopes)} numbers for {len(ends)} of presliding_force"
+            raise ConfigurationError(f"Damper.presliding_slope: {found}; set a slope for each, 1 to {MAX_SLIDERS}")
+        orders = ("force", ends, ends[::-1], "rise to 1"), ("slope", slopes, slopes, "fall from 1")
+        for name, values, falling, shape in orders:
             if falling[0] != 1.0 or any(after >= value for value, after in itertools.pairwise(falling)):
                 raise ConfigurationError(f"Damper.presliding_{name}: found {list(values)}, must {shape}")
 
