@@ -12,6 +12,8 @@ suppress_warnings = ["myst.header"]  # sources without sections on the generated
 
 html_theme = "furo"
 html_title = "A complete car on the shaker"
+html_static_path = ["_static"]
+html_css_files = ["wrap.css"]
 html_show_copyright = False
 html_show_sourcelink = False
 html_copy_source = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -34,12 +35,13 @@ WINGS = {
 DATA = {"inputs", "templates", "vehicles"}
 """Rooms that hold no modules."""
 
-BELOW = EVERYWHERE | {"machine", "replacement", "threads", "version"}
+BELOW = EVERYWHERE | {"handed_down", "machine", "replacement", "threads", "version"}
 """Modules that stand below all wings."""
 
 ROOMS: dict[str, set[str]] = {
     "digits": set(),
     "errors": set(),
+    "handed_down": set(),
     "names": set(),
     "machine": set(),
     "replacement": set(),
@@ -61,7 +63,7 @@ ROOMS: dict[str, set[str]] = {
     "reduced": {"core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "rendering": {"analysis", "assembly", "kinematics", "parameters", "shapes", "simulation", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},
-    "car": {"analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
+    "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
     | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
     "comparison": {"analysis", "car", "formats", "linear", "records", "rendering", "threads"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "parameters"}
@@ -86,8 +88,8 @@ ROOMS: dict[str, set[str]] = {
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
     | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
     | {"threads", "tuning", "version"},
-    "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "laws", "mounts", "optimisation"}
-    | {"output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
+    "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "handed_down", "laws", "mounts"}
+    | {"optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
     "__main__": {"commands", "core", "version"},
     **{name: {"commands"} for name in OLDER},
 }
@@ -161,10 +163,69 @@ def imported(path):
     return found
 
 
+def of_package(name):
+    return name.partition(".")[0] == "vehicle"
+
+
+def dotted(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+NAMES = {dotted(path) for path in modules()}
+"""Dotted names of the package and of all its modules."""
+
+
+def named(path, text=None):
+    """Return the modules that a file names in strings, and may import: whole names, as in a table, and patterns.
+
+    Of a pattern, as f"vehicle.model.laws.{name}", the file has the names; if it has none, all modules match.
+    """
+    tree = ast.parse(text or path.read_text(encoding="utf-8"), filename=str(path))
+    texts = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    found = {text for text in texts if text in NAMES and text.count(".") > 1}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in IMPORTERS:
+            found |= NAMES & {str(word.value) for word in node.args[:1] if isinstance(word, ast.Constant)}
+        if isinstance(node, ast.JoinedStr):
+            pattern = "".join(_part(part, path) for part in node.values)
+            matching = (
+                {name for name in NAMES if re.fullmatch(pattern, name)} if pattern.startswith("vehicle") else set()
+            )
+            listed = {name for name in matching if {(last := name.rpartition(".")[2]), last.replace("_", "-")} & texts}
+            found |= listed or matching
+    return found
+
+
+IMPORTERS = {"import_module", "__import__", "find_spec", "run_module"}
+
+
+def _part(part, path):
+    """Return a regular expression for a part of an f-string."""
+    if isinstance(part, ast.Constant):
+        return re.escape(str(part.value))
+    return re.escape(dotted(path.parent)) if "__package__" in ast.dump(part) else r"\w+"
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ('TABLE = {"tune": "vehicle.studies.tuning.car_fit"}', {"vehicle.studies.tuning.car_fit"}),
+        ('import_module("vehicle").save_run', {"vehicle"}),
+        ('"fit-mount", "fmu", f"vehicle.commands.{name}"', {"vehicle.commands.fit_mount", "vehicle.commands.fmu"}),
+        ('f"vehicle.engines.{name}"', {f"vehicle.engines.{room}" for room in WINGS["engines"]}),
+        ('"wave_format", f"{__package__}.{name}"', {"vehicle.signals.formats.wave_format"}),
+        ('"vehicle", f"the vehicle.{x}", "vehicle.toml", "python -m vehicle.shaker"', set()),
+    ],
+)
+def test_names_in_strings_are_seen(text, names):
+    assert named(PACKAGE / "signals" / "formats" / "example.py", text) == names
+
+
 def test_imports_are_those_of_the_table():
     found: dict[str, set[str]] = {}
     for path in modules():
-        targets = {unit_named(name) for name, _ in imported(path) if name.startswith("vehicle.")}
+        names = {name for name, _ in imported(path)} | named(path)
+        targets = {unit_named(name) for name in names if of_package(name)}
         found.setdefault(unit_of(path), set()).update(targets - {unit_of(path)} - EVERYWHERE)
     assert all(not found.pop(wing) for wing, rooms in WINGS.items() if rooms), "a wing itself imports nothing"
     assert set(found) == set(ROOMS), "a new room needs its line in this table and in design"
@@ -175,7 +236,8 @@ def test_imports_are_those_of_the_table():
 def test_studies_stand_above_the_package():
     studies = [path for path in sorted((ROOT / "scenarios").rglob("*.py")) if path.name != "__main__.py"]
     assert len(studies) > 20, "the studies were not found"
-    found = {unit_named(name) for path in studies for name in modules_of(path) if name.startswith("vehicle.")}
+    names = {name for path in studies for name in [*modules_of(path), *named(path)]}
+    found = {unit_named(name) for name in names if of_package(name)}
     assert found - EVERYWHERE == STUDIES, f"new {found - EVERYWHERE - STUDIES}, unused {STUDIES - found}"
     below = {path for path in modules() if any(name.split(".")[0] == "scenarios" for name, _ in imported(path))}
     assert not below
@@ -224,18 +286,33 @@ def needed_modules(path, names):
     return names & {*single, *(f"{base}.{name}" if f"{base}.{name}" in names else base for base, name in pairs)}
 
 
+def needs():
+    """Return each module with those that it imports, also by name."""
+    return {dotted(path): (needed_modules(path, NAMES) | named(path)) - {dotted(path)} for path in modules()}
+
+
+def reached_from(starts, needed):
+    """Return the modules that these import, and those that they import in turn."""
+    waiting = list(starts)
+    reached: set[str] = set()
+    while waiting:
+        fresh = needed[waiting.pop()] - reached
+        reached |= fresh
+        waiting += fresh
+    return reached
+
+
+def test_a_command_or_a_public_name_reaches_every_module():
+    """What only studies use belongs to `scenarios`."""
+    starts = {"vehicle", "vehicle.__main__", *(f"vehicle.{name}" for name in OLDER)}
+    reached = starts | reached_from(starts, needs())
+    packages = {dotted(path) for path in modules() if path.name == "__init__.py"}
+    assert NAMES - reached - packages == set()
+
+
 def test_no_import_circle_is_larger_than_two_modules():
-    paths = {
-        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): path for path in modules()
-    }
-    needed = {name: needed_modules(path, set(paths)) - {name} for name, path in paths.items()}
-    reached: dict[str, set[str]] = {}
-    for name in needed:
-        waiting, reached[name] = [name], set()
-        while waiting:
-            fresh = needed[waiting.pop()] - reached[name]
-            reached[name] |= fresh
-            waiting += fresh
+    needed = needs()
+    reached = {name: reached_from([name], needed) for name in needed}
     circles = {frozenset(other for other in reached[name] if name in reached[other]) for name in needed}
     assert [sorted(circle) for circle in circles if len(circle) > 2] == []
 

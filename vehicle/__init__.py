@@ -39,8 +39,11 @@ Names are imported at their first use; `help(vehicle.sweep)` prints the document
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from vehicle.handed_down import HANDED
 
 if TYPE_CHECKING:
     from vehicle.errors import ConfigurationError as ConfigurationError
@@ -83,8 +86,10 @@ if TYPE_CHECKING:
     from vehicle.studies.replication.drive_files import save_drive as save_drive
     from vehicle.studies.replication.drive_search import FoundDrive as FoundDrive
     from vehicle.studies.replication.drive_search import replicate_drive as replicate_drive
+    from vehicle.studies.sweeps.indices import SobolIndices as SobolIndices
     from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
     from vehicle.studies.sweeps.plan import sweep as sweep
+    from vehicle.studies.sweeps.sobol_sweep import sobol as sobol
     from vehicle.studies.sweeps.sweep_table import SweepTable as SweepTable
     from vehicle.studies.tuning.car_fit import tune as tune
     from vehicle.studies.tuning.fit_result import TuningResult as TuningResult
@@ -110,6 +115,7 @@ _MODULES = {
     "Run": "vehicle.runs.car.run",
     "Signal": "vehicle.signals.excitation.signal",
     "SimulationError": "vehicle.errors",
+    "SobolIndices": "vehicle.studies.sweeps.indices",
     "SweepTable": "vehicle.studies.sweeps.sweep_table",
     "TuningResult": "vehicle.studies.tuning.fit_result",
     "VehicleError": "vehicle.errors",
@@ -134,6 +140,7 @@ _MODULES = {
     "save_run": "vehicle.runs.output.saved_run",
     "shipped_cars": "vehicle.model.parameters.shipped",
     "shipped_inputs": "vehicle.signals.excitation.input_files",
+    "sobol": "vehicle.studies.sweeps.sobol_sweep",
     "sweep": "vehicle.studies.sweeps.plan",
     "tune": "vehicle.studies.tuning.car_fit",
     "write_fmu": "vehicle.handover.fmu.fmu_file",
@@ -152,6 +159,14 @@ def __getattr__(name: str) -> Any:
     value = getattr(import_module(_MODULES[name]), name)
     globals()[name] = value
     return value
+
+
+def _handed(name: str) -> Callable[..., Any]:
+    """Return a public function that is imported at its first call."""
+    return lambda *given, **options: __getattr__(name)(*given, **options)
+
+
+HANDED |= {name: _handed(name) for name in ("load_run", "save_car", "save_run", "write_report")}
 
 
 def __dir__() -> list[str]:

@@ -16,7 +16,7 @@ from tests.model.laws.controller_files import controller_fmu
 from vehicle.core.library import core
 from vehicle.model.laws.control_laws import in_steps, pack
 from vehicle.model.laws.controller_fmu import Controller, read_controller
-from vehicle.signals.formats.reader import digest
+from vehicle.signals.formats.file_digest import digest
 
 CALLS, SERIES = 2_000, 100
 

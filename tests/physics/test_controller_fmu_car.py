@@ -15,7 +15,7 @@ from vehicle.errors import ConfigurationError, SimulationError
 from vehicle.handover.fmu.fmu_file import write_fmu
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.formats.reader import digest
+from vehicle.signals.formats.file_digest import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)

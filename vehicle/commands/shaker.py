@@ -150,7 +150,7 @@ def _job(options: argparse.Namespace) -> None:
     _check_numbers(options)
     output = output_folder_of(options, Path("runs") / stem, protect=inputs)
     if "h5" in options.formats:
-        from vehicle.signals.formats.reader import extra
+        from vehicle.signals.formats.optional_library import extra
 
         extra("h5py", "hdf5", "--format h5")
     engine, reason = _engine(options)
@@ -289,7 +289,7 @@ def _controller_overrides(options: argparse.Namespace) -> list[str]:
         ConfigurationError: no damper of the car has limits of its coefficient, or there is nothing to trust.
     """
     from vehicle.model.parameters.vehicle import load_vehicle
-    from vehicle.signals.formats.reader import digest
+    from vehicle.signals.formats.file_digest import digest
 
     vehicle = load_vehicle(options.vehicle, options.overrides)
     controls = {damper.path: control for damper in vehicle.composition.dampers if (control := damper.law.control)}

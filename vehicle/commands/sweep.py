@@ -29,6 +29,7 @@ from vehicle.commands.options import (
 from vehicle.commands.parser import Parser
 
 if TYPE_CHECKING:
+    from vehicle.model.parameters.ranges import Range
     from vehicle.studies.sweeps.case_table import Combinations
 
 
@@ -50,6 +51,13 @@ def parser() -> Parser:
         type=Path,
         metavar="FILE.csv",
         help="columns are parameter paths, rows are variations; or the table.csv of another sweep",
+    )
+    parser.add_argument(
+        "--sobol",
+        type=int,
+        metavar="N",
+        help="Sobol indices of comfort with N base points, a power of two; each parameter is uniform between the "
+        "bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
     vehicle_options(parser)
     engine_option(parser, "auto")
@@ -74,6 +82,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.differences import DIFFERENCES
     from vehicle.studies.sweeps.executors import executor_factory
     from vehicle.studies.sweeps.plan import plan_sweep
+    from vehicle.studies.sweeps.sobol_sweep import SOBOL, comfort_indices, index_lines, sobol_changes, write_indices
     from vehicle.studies.sweeps.store import ROWS
     from vehicle.studies.sweeps.sweep_page import sweep_page
     from vehicle.studies.sweeps.sweep_picture import PICTURE, can_be_drawn, draw_ranked
@@ -82,7 +91,16 @@ def _job(options: argparse.Namespace) -> None:
 
     if bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
-    changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
+    if options.sobol is not None and (options.table or options.report is not None):
+        raise ConfigurationError(
+            "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
+        )
+    ranges = [] if options.sobol is None else ranges_of(options.vary)
+    changes: Combinations | RowChanges
+    if ranges:
+        changes = sobol_changes(ranges, options.sobol)
+    else:
+        changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
     make = executor_factory(options.executor, options.jobs)
@@ -100,7 +118,10 @@ def _job(options: argparse.Namespace) -> None:
             progress=ProgressLine("sweep     ", enabled=not options.quiet, runs=len(plan.cases)),
             notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
         )
-        cars = ranked_cars(table)
+        indices = comfort_indices(table, ranges) if ranges else None
+        if indices is not None:
+            write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
+        cars = None if ranges else ranked_cars(table)
         drawn = cars is not None and can_be_drawn(cars)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         if cars is not None and drawn:
@@ -113,6 +134,7 @@ def _job(options: argparse.Namespace) -> None:
     if not options.quiet:
         more = "" if report is None else f"{report}, "
         more += f"{PICTURE}, " if drawn else ""
+        more += f"{SOBOL}, " if ranges else ""
         more += f"{DIFFERENCES} (comfort against the first car), " if (output / DIFFERENCES).exists() else ""
         print(
             f"{output}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
@@ -120,6 +142,8 @@ def _job(options: argparse.Namespace) -> None:
         )
         if cars is not None:
             print("\n".join(ranking_lines(cars)))
+        if indices is not None:
+            print("\n".join(index_lines(indices)))
         for case, reason in table.failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if table.failed and not options.allow_failed:
@@ -146,6 +170,22 @@ def every_combination(texts: Sequence[str]) -> Combinations:
             raise ConfigurationError(f"--vary {variation.path}: given twice; list all its values in one option")
         columns[variation.path] = [f"{variation.path}={value}" for value in variation.listed()]
     return Combinations(list(columns.values()))
+
+
+def ranges_of(texts: Sequence[str]) -> list[Range]:
+    """Return the ranges of `--vary PATH=LOW:HIGH`.
+
+    Raises:
+        ConfigurationError: an option has no bounds, or a path occurs twice.
+    """
+    from vehicle.errors import ConfigurationError
+    from vehicle.model.parameters.ranges import parsed_variation
+
+    ranges = [parsed_variation("--vary", text).range() for text in texts]
+    paths = [each.path for each in ranges]
+    if twice := next((path for path in paths if paths.count(path) > 1), ""):
+        raise ConfigurationError(f"--vary {twice}: given twice; give its bounds once")
+    return ranges
 
 
 main = command(parser, _job)

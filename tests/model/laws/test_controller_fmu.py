@@ -21,7 +21,7 @@ from tools.controller_library import FOLDER, digests
 from vehicle.errors import ConfigurationError, DataError, SimulationError
 from vehicle.model.laws.control_laws import PRESENT, act, at_rest, demanded, in_steps, pack
 from vehicle.model.laws.controller_fmu import NOT_FINITE, TERMINATED, Controller, controllers, read_controller
-from vehicle.signals.formats.reader import digest
+from vehicle.signals.formats.file_digest import digest
 
 if sys.platform != "linux":
     pytest.skip("the library of the tests is for Linux", allow_module_level=True)

@@ -11,7 +11,7 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError, OutputError
 from vehicle.handover.bench.guard import Guard
-from vehicle.signals.formats.reader import extra
+from vehicle.signals.formats.optional_library import extra
 
 HOST = "127.0.0.1"
 """Address on which the page is served: this machine alone."""

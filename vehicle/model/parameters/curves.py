@@ -190,8 +190,8 @@ def _points(file: Path, path: str, key: str) -> dict[str, Any]:
     """Return the columns of a file by their keys: the abscissa and "force"."""
     # Imported here: parameters are read without numpy, tables are not.
     from vehicle.signals.formats.named_columns import named_columns
-    from vehicle.signals.formats.reader import read_table
     from vehicle.signals.formats.table import Wanted
+    from vehicle.signals.formats.table_file import read_table
 
     heads = {key: HEADS[key], "force": "force [N]"}
     needed = " and ".join(map(repr, heads.values()))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -27,6 +26,7 @@ from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
+from vehicle.handed_down import HANDED
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
@@ -162,7 +162,7 @@ class Car:
 
     def save(self, file: Path | str, *, force: bool = False) -> Path:
         """Write the car as a vehicle file, from which `Car.load` makes the same car; see `vehicle.save_car`."""
-        path: Path = import_module("vehicle").save_car(self, file, force=force)
+        path: Path = HANDED["save_car"](self, file, force=force)
         return path
 
     def show(self) -> CarData:

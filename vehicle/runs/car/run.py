@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -19,6 +18,7 @@ from vehicle.drawing.notebook.run_spectra import RunSpectra, with_display
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
+from vehicle.handed_down import HANDED
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND
@@ -73,7 +73,7 @@ class Run:
     @classmethod
     def load(cls, folder: Path | str) -> Run:
         """Read a saved run from its folder; see `vehicle.load_run`."""
-        run: Run = _public("load_run")(folder)
+        run: Run = HANDED["load_run"](folder)
         return run
 
     @property
@@ -231,7 +231,7 @@ class Run:
 
     def save(self, folder: Path | str, *, force: bool = False) -> Path:
         """Write the folder of the command `shaker`; see `vehicle.save_run`."""
-        path: Path = _public("save_run")(self, folder, force=force)
+        path: Path = HANDED["save_run"](self, folder, force=force)
         return path
 
     def report(self, file: Path | str, *, force: bool = False, author: str = "", project: str = "") -> Path:
@@ -247,7 +247,7 @@ class Run:
         """
         with TemporaryDirectory() as folder:
             saved = self.save(Path(folder) / Path(file).stem)
-            path: Path = _public("write_report")([saved], file, force=force, author=author, project=project)
+            path: Path = HANDED["write_report"]([saved], file, force=force, author=author, project=project)
         return path
 
     def film(self, file: Path | str, take: Take | None = None, *, progress: Progress | None = None) -> Path:
@@ -312,8 +312,3 @@ class Run:
         self.car.vehicle.require_wheels((wheel,))
         limit = self.car.vehicle.damper.slip_velocity if velocity is None else velocity
         return self.recording[f"damper_{wheel}_velocity"], limit
-
-
-def _public(name: str) -> Any:
-    """Return a function of `vehicle` from a higher package; the import is at the call, not with this module."""
-    return getattr(import_module("vehicle"), name)

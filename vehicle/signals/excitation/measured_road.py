@@ -23,8 +23,9 @@ from vehicle.signals.formats.channel import uniform_axis
 from vehicle.signals.formats.crg_format import read_surface, road_words
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.named_columns import named_columns
-from vehicle.signals.formats.reader import read_record, read_table
+from vehicle.signals.formats.reader import read_record
 from vehicle.signals.formats.table import Header, Vector, Wanted, name_and_unit
+from vehicle.signals.formats.table_file import read_table
 
 NEEDED = "'distance [m]', 'left [m]' and 'right [m]' ([mm] is accepted for the heights)"
 TRACKS = {

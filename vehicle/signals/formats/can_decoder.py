@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.can_frames import BusLog, Frames, Source
 from vehicle.signals.formats.channel import Channel
-from vehicle.signals.formats.reader import extra
+from vehicle.signals.formats.optional_library import extra
 
 SHOWN = 6
 """Maximum number of identifiers in a message."""

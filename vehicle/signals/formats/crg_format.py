@@ -10,7 +10,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import ROAD_PROFILE, Channel, Measurement, check_length, uniform_axis
-from vehicle.signals.formats.reader import digest
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.table import Vector
 
 WIDTHS = {"LRFI": 10, "LDFI": 20}

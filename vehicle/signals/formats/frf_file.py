@@ -14,8 +14,8 @@ from vehicle.errors import DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
 from vehicle.signals.analysis.motion_response import MotionResponse
 from vehicle.signals.analysis.response_name import ResponseName, parsed_name
-from vehicle.signals.formats.reader import read_table
 from vehicle.signals.formats.table import Header, Table, Vector, Wanted, key_column
+from vehicle.signals.formats.table_file import read_table
 from vehicle.signals.formats.text_format import write_table
 
 SUFFIXES = ("_magnitude", "_phase [deg]", "_coherence")

@@ -13,11 +13,12 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, even_step, uniform_axis
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.heads import TIME_NAME, split_head
 from vehicle.signals.formats.matlab_format import channels_of
+from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.formats.packed_values import unpacked
 from vehicle.signals.formats.pandas_frames import frame_channels
-from vehicle.signals.formats.reader import digest, extra
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked

@@ -13,9 +13,9 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, even_step, uniform_axis
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.matlab_elements import COMPRESSED, MATRIX, check_matrix, object_name
 from vehicle.signals.formats.matlab_structures import columns_of, is_structure, structure_channels
-from vehicle.signals.formats.reader import digest
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio, find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked

@@ -11,8 +11,9 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import epoch_seconds
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.heads import TIME_NAME, split_head
-from vehicle.signals.formats.reader import digest, extra
+from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
-from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.formats.channel import Measurement
 from vehicle.signals.formats.clock import check_increasing, check_stamps, check_uniform, without_rounding
-from vehicle.signals.formats.formats import BY_NAME, recognised_format
-from vehicle.signals.formats.table import TIME, Record, Table, Vector, Wanted, key_column, name_and_unit
+from vehicle.signals.formats.formats import recognised_format
+from vehicle.signals.formats.table import TIME, Record, Vector, Wanted, key_column, name_and_unit
+from vehicle.signals.formats.table_file import read_table
 
 MINIMUM_SAMPLES = 3
 """Minimum number of samples of a record: two give the step, the third shows that the step is uniform."""
@@ -55,7 +53,7 @@ def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
         Channels with names, units and times; `read(file)["Seat Z"]` is one of them.
 
     Raises:
-        ConfigurationError, DataError, MissingPartError: see `read_record`.
+        ConfigurationError, DataError: see `read_record`.
     """
     return read_record(time_file(Path(file)), databases)
 
@@ -63,26 +61,6 @@ def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
 def is_table(path: Path) -> bool:
     """Return True for a file in a table format; also for a missing file, which `read_table` reports."""
     return not path.is_file() or bool(recognised_format(path).table)
-
-
-def read_table(path: Path, wanted: Wanted) -> Table:
-    """Read a table from an archive of arrays or a text file.
-
-    Args:
-        path: table file.
-        wanted: requirements on the columns.
-
-    Raises:
-        ConfigurationError: the file does not exist.
-        DataError: bad data; the message names line and column.
-    """
-    try:
-        with path.open("rb") as file:
-            archive = file.read(2) == b"PK"
-    except OSError:
-        archive = False  # the text reader reports the error
-    table: Table = BY_NAME["npz" if archive else "csv"].function("table", "read")(path, wanted)
-    return table
 
 
 def read_columns(path: Path, needed: str = "'time [s]' and '<channel> [<unit>]'") -> Record:
@@ -126,29 +104,3 @@ def time_file(run: Path) -> Path:
         if (run / name).is_file():
             return run / name
     raise ConfigurationError(f"{run}: holds no time.npz or time.csv; give the folder of a run, or a file")
-
-
-def extra(package: str, name: str, purpose: str) -> Any:
-    """Import an optional library.
-
-    Args:
-        package: package to import.
-        name: name of the extra that installs the package.
-        purpose: use of the package, for the message.
-
-    Raises:
-        MissingPartError: the library is not installed.
-    """
-    try:
-        return import_module(package)
-    except ImportError:
-        raise MissingPartError(
-            f"{purpose} needs {package}, which is not installed; install it with: pip install "
-            f"'vehicle-on-shaker[{name}]'"
-        ) from None
-
-
-def digest(path: Path) -> str:
-    """Return the SHA-256 digest of a file, hexadecimal."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

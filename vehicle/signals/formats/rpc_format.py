@@ -17,7 +17,7 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, uniform_axis
-from vehicle.signals.formats.reader import digest
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.text import LARGEST
 
 RECORD, BLOCK = 128, 512

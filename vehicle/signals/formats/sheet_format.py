@@ -9,8 +9,9 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.logger_format import read_lines
-from vehicle.signals.formats.reader import digest, extra
+from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.formats.text import Text
 from vehicle.signals.formats.unpacked_size import require_archive
 

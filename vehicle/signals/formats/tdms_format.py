@@ -13,7 +13,8 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import OVER_ANGLE, OVER_DISTANCE, Channel, Measurement, clock_step, uniform_axis
-from vehicle.signals.formats.reader import digest, extra
+from vehicle.signals.formats.file_digest import digest
+from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.formats.units import find_unit
 
 AXES = {"displacement": OVER_DISTANCE, "angle": OVER_ANGLE}

@@ -14,8 +14,8 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
+from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.geometry import ModeShape
-from vehicle.signals.formats.reader import digest
 from vehicle.signals.formats.uff_blocks import BEGIN, END, Block, text_of
 from vehicle.signals.formats.uff_function import read_function
 from vehicle.signals.formats.uff_geometry import Nodes, Units, read_units

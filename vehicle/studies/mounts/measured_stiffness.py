@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.errors import DataError
-from vehicle.signals.formats.reader import read_table
 from vehicle.signals.formats.table import Header, Table, Wanted, name_and_unit
+from vehicle.signals.formats.table_file import read_table
 
 Vector = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]

@@ -132,3 +132,14 @@ def digest(parts: object) -> str:
     """Return a short digest of plain data; equal data have equal digests."""
     text = json.dumps(parts, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:20]
+
+
+def changes(case: Case) -> dict[str, str]:
+    """Return parameter path to value text; the last value of a repeated path."""
+    return {path: value for path, _, value in [text.partition("=") for text in case.overrides]}
+
+
+def parameter_cells(case: Case, paths: Sequence[str]) -> list[str]:
+    """Return the value text of each path in a case; empty for a parameter that the case does not modify."""
+    changed = changes(case)
+    return [changed.get(path, "") for path in paths]

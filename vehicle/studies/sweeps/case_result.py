@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypedDict
 
 from vehicle.studies.sweeps.case import Case
 
@@ -89,3 +89,12 @@ def result_of(line: bytes) -> Result:
         reason=str(row["reason"]),
         seconds=float(row["seconds"]),
     )
+
+
+class Row(TypedDict):
+    """Row of a case: its values as texts with all digits."""
+
+    values: dict[str, str]
+    engine: str
+    reason: str
+    seconds: str

@@ -22,7 +22,8 @@ from vehicle.signals.analysis.comfort_error import WAVES, difference_error
 from vehicle.signals.analysis.ride_comfort import ERROR, UNWEIGHTED, WAVE_NAMES
 from vehicle.signals.excitation.road_drive import RoadDrive
 from vehicle.studies.sweeps.case import Case, Input
-from vehicle.studies.sweeps.sweep_table import Row, SweepTable
+from vehicle.studies.sweeps.case_result import Row
+from vehicle.studies.sweeps.sweep_table import SweepTable
 
 DIFFERENCES = "differences.csv"
 """Name of the file in the folder of a sweep."""

@@ -12,16 +12,16 @@ from vehicle.runs.report.markup import Markup, folded, joined, shortened, table,
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
+from vehicle.studies.sweeps.case import parameter_cells
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
-from vehicle.studies.sweeps.sweep_ranking import RankedCars, ranked_cars
-from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
+from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars
 
 MOST_ROWS = 2000
 """Maximum number of runs in the table of all runs; `table.csv` has all."""
 
 
 def sweep_page(
-    results: SweepTable,
+    results: SweptCases,
     name: str,
     *,
     caption: str,
@@ -103,7 +103,7 @@ def _cars(cars: RankedCars) -> Markup:
     return shortened(f"{len(rows)} cars in the order of comfort", heads, rows, text_columns=count)
 
 
-def _runs(results: SweepTable) -> Markup:
+def _runs(results: SweptCases) -> Markup:
     paths = results.paths()
     heads = ["input", *paths, *(f"{name} [{unit}]" for name, unit in results.units.items()), "engine"]
     rows: list[list[str]] = []
@@ -124,7 +124,7 @@ def _runs(results: SweepTable) -> Markup:
     )
 
 
-def _repeating(cars: RankedCars | None, results: SweepTable, command: str, notes: Sequence[str]) -> Markup:
+def _repeating(cars: RankedCars | None, results: SweptCases, command: str, notes: Sequence[str]) -> Markup:
     parts: list[object] = [tag("p", text) for text in notes]
     if command:
         parts.append(tag("pre", command))

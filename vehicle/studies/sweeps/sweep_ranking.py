@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,8 @@ from vehicle.model.parameters.parameter_list import value_text
 from vehicle.model.parameters.paths import unit_of_override, values_of_override
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_PREFIX, SEAT_VALUE, UNWEIGHTED, WEIGHTED
-from vehicle.studies.sweeps.sweep_table import SweepTable, parameter_cells
+from vehicle.studies.sweeps.case import Case, parameter_cells
+from vehicle.studies.sweeps.case_result import Row
 
 Vector = npt.NDArray[np.float64]
 
@@ -26,6 +28,35 @@ ROUNDING = 1e-6
 
 SHOWN = 12
 """Maximum number of cars in the printed table."""
+
+
+class SweptCases(Protocol):
+    """Cases of a sweep with their results, as `SweepTable` holds them."""
+
+    @property
+    def cases(self) -> Sequence[Case]:
+        """Cases in the order of the rows."""
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name of each value to its unit."""
+
+    @property
+    def made(self) -> Mapping[str, Any]:
+        """Data that the rows depend on."""
+
+    @property
+    def failed(self) -> list[tuple[Case, str]]:
+        """Failed cases with their error messages."""
+
+    def column(self, name: str) -> Vector:
+        """Return the values of a column, NaN for a failed run; (cases,)."""
+
+    def paths(self) -> list[str]:
+        """Return all modified parameter paths."""
+
+    def rows(self) -> Iterator[Row]:
+        """Return the rows with numbers as texts of all digits."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -86,7 +117,7 @@ class RankedCars:
             return None
 
 
-def ranked_cars(table: SweepTable) -> RankedCars | None:
+def ranked_cars(table: SweptCases) -> RankedCars | None:
     """Return the cars of a sweep in the order of comfort; None for another measure, or if every car has a failed run.
 
     Args:

@@ -9,9 +9,8 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
-from typing import Any, TextIO, TypedDict
+from typing import Any, TextIO
 
 import numpy as np
 import numpy.typing as npt
@@ -22,24 +21,16 @@ from vehicle.runs.output.folder import check_file, write_text
 from vehicle.signals.formats.formats import recognised_format
 from vehicle.signals.formats.sheet_format import read_sheet_texts
 from vehicle.signals.formats.text_format import read_texts
-from vehicle.studies.sweeps.case import Case
-from vehicle.studies.sweeps.case_result import Result
+from vehicle.studies.sweeps.case import Case, parameter_cells
+from vehicle.studies.sweeps.case_result import Result, Row
 from vehicle.studies.sweeps.store import StoredRows
+from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
 
 INPUT, ENGINE, REASON = "input", "engine", "failed because"
 """Heads of the columns without unit."""
 
 CONSTANTS = {"NaN": "nan", "Infinity": "inf", "-Infinity": "-inf"}
 """Constants of JSON to the texts of Python."""
-
-
-class Row(TypedDict):
-    """Row of a case: its values as texts with all digits."""
-
-    values: dict[str, str]
-    engine: str
-    reason: str
-    seconds: str
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -108,9 +99,8 @@ class SweepTable:
 
     def __str__(self) -> str:
         """Return the cars in the order of comfort, as the console shows them; without comfort, the line of `repr`."""
-        ranking = _later("sweep_ranking")
-        cars = ranking.ranked_cars(self)
-        return repr(self) if cars is None else "\n".join(ranking.ranking_lines(cars))
+        cars = ranked_cars(self)
+        return repr(self) if cars is None else "\n".join(ranking_lines(cars))
 
     def plot(self, ax: Any = None) -> Any:
         """Plot comfort over the varied parameters: a line for one, a map for two, parallel axes for more.
@@ -124,7 +114,9 @@ class SweepTable:
         Raises:
             ConfigurationError: fewer than two cars have comfort values, or a varied value is no number.
         """
-        return _later("sweep_picture").plotted(_later("sweep_ranking").ranked_cars(self), ax)
+        from vehicle.studies.sweeps.sweep_picture import plotted
+
+        return plotted(ranked_cars(self), ax)
 
     def report(self, file: Path | str, *, force: bool = False, author: str = "", project: str = "") -> Path:
         """Write the report of the sweep as one HTML file: best and base car, picture, tables.
@@ -138,11 +130,13 @@ class SweepTable:
             ConfigurationError: another ending, or a file that exists without `force`.
             OutputError: the file cannot be written.
         """
+        from vehicle.studies.sweeps.sweep_page import sweep_page
+
         path = Path(file)
         check_file(path, ending=".html", force=force)
         evaluated = f"evaluated from {self.made.get('evaluated_from_s') or 0:g} s on"
         name = ", ".join(self.made.get("vehicles", ("car",)))
-        page = _later("sweep_page").sweep_page(self, name, caption=evaluated, author=author, project=project)
+        page = sweep_page(self, name, caption=evaluated, author=author, project=project)
         write_text(path, page)
         return path
 
@@ -157,11 +151,6 @@ class SweepTable:
             MissingPartError: pandas is not installed.
         """
         return table_frame(self.text())
-
-
-def _later(name: str) -> Any:
-    """Return a module of this package that imports this module; it is imported at the call."""
-    return import_module(f"vehicle.studies.sweeps.{name}")
 
 
 class _Returned:
@@ -193,17 +182,6 @@ class TableWriter:
         numbers = "".join([f"{values.get(name, '')}," for name in self.names])
         begin = self._texts.writerow([case.source.name, *parameters, ""])[:-1]
         self._file.write(f"{begin}{numbers}{self._texts.writerow([row['engine'], row['reason']])}")
-
-
-def changes(case: Case) -> dict[str, str]:
-    """Return parameter path to value text; the last value of a repeated path."""
-    return {path: value for path, _, value in [text.partition("=") for text in case.overrides]}
-
-
-def parameter_cells(case: Case, paths: Sequence[str]) -> list[str]:
-    """Return the value text of each path in a case; empty for a parameter that the case does not modify."""
-    changed = changes(case)
-    return [changed.get(path, "") for path in paths]
 
 
 def read_variations(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:

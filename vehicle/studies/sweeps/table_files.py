@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TextIO
 
 from vehicle.runs.output.folder import whole_file, write_json
+from vehicle.studies.sweeps.case import parameter_cells
 from vehicle.studies.sweeps.differences import DIFFERENCES, DifferencesWriter, has_differences
-from vehicle.studies.sweeps.sweep_table import SweepTable, TableWriter, parameter_cells
+from vehicle.studies.sweeps.sweep_table import SweepTable, TableWriter
 
 
 def write_table(table: SweepTable, folder: Path, computed: str) -> None:

@@ -1,0 +1,12 @@
+"""Functions of higher packages that methods of `Car` and `Run` call: `vehicle/__init__.py` hands them down.
+
+`run.save` writes files, `run.report` a page. Both are made in packages that import the car, which imports none of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+HANDED: dict[str, Callable[..., Any]] = {}
+"""Public name to function: `load_run`, `save_car`, `save_run`, `write_report`."""

@@ -1,0 +1,139 @@
+"""Sobol indices of the comfort of a car: a sweep at the points of the sample, and the indices with their intervals."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from vehicle.errors import DataError
+from vehicle.model.parameters.ranges import Range
+from vehicle.runs.car import Car
+from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
+from vehicle.studies.sweeps.case_table import RowChanges
+from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
+from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sweep import Progress
+from vehicle.studies.sweeps.sweep_inputs import Source
+from vehicle.studies.sweeps.sweep_ranking import SweptCases
+
+SOBOL = "sobol.csv"
+"""Name of the file in the folder of a sweep."""
+
+QUANTITIES = (f"{SEAT_PREFIX}{WEIGHTED}", f"{SEAT_PREFIX}{UNWEIGHTED}", WEIGHTED, UNWEIGHTED)
+"""Columns of comfort that may have indices; those on the cushion of a seat first."""
+
+
+def sobol(
+    car: Car,
+    vary: Mapping[str, tuple[float, float]],
+    inputs: Source | Sequence[Source],
+    *,
+    base: int = 256,
+    engine: str = "auto",
+    skip: float | None = None,
+    jobs: int = 1,
+    folder: Path | None = None,
+    progress: Progress | None = None,
+) -> dict[str, SobolIndices]:
+    """Return the Sobol indices of comfort, the mean over all inputs, for parameters uniform between bounds.
+
+    S1: share of the variance that a parameter explains alone; ST: with all its interactions. It takes
+    base (p + 2) runs on each input, p the number of parameters. As `sweep`, a script must call this function below
+    `if __name__ == "__main__":`.
+
+    Args:
+        car: car loaded by `Car.load`; its overrides apply to every run.
+        vary: path to lower and upper bound, in the unit of the parameter.
+        inputs: files or names of shipped ones, roads, signals; one or several.
+        base: number of base points, a power of two.
+        engine: as in `Car.run`.
+        skip: start of the evaluation [s], as in `sweep`.
+        jobs: number of processes; the indices do not depend on it.
+        folder: existing folder in which finished rows are stored, for the next call to reuse; None stores no rows.
+        progress: called with the finished fraction.
+
+    Returns:
+        Name of the comfort value, as "weighted", to its indices (`first`, `total`) and the half widths of their 95 %
+        intervals (`first_error`, `total_error`), each (p,).
+
+    Raises:
+        ConfigurationError: bounds that do not ascend, `base` is no power of two, and as in `sweep`.
+        DataError: half of the base points have a failed run, or no parameter changes the comfort.
+        MissingPartError: SALib is not installed.
+
+    Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
+    """
+    ranges = [Range(path=path, low=low, high=high) for path, (low, high) in vary.items()]
+    plan = plan_sweep(car, sobol_changes(ranges, base), inputs, engine=engine, skip=skip)
+    return comfort_indices(plan.run(jobs=jobs, folder=folder, progress=progress), ranges)
+
+
+def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:
+    """Return the variations at the points of the sample, equal in every call, so that a sweep can be resumed.
+
+    Args:
+        ranges: parameters with bounds.
+        base: number of base points, a power of two.
+
+    Raises:
+        ConfigurationError: `base` is no power of two.
+        MissingPartError: SALib is not installed.
+    """
+    return RowChanges([each.path for each in ranges], sobol_sample(ranges, base).tolist())
+
+
+def comfort_indices(table: SweptCases, ranges: Sequence[Range]) -> dict[str, SobolIndices]:
+    """Return the indices of each comfort value of a sweep over `sobol_changes`, the mean over all inputs.
+
+    Args:
+        table: the table.
+        ranges: the parameters.
+
+    Raises:
+        DataError: half of the base points have a failed run, or no parameter changes the comfort.
+    """
+    inputs = len({id(case.source) for case in table.cases})
+    names = [name for name in QUANTITIES if name in table.units]
+    try:
+        # The inputs vary slowest.
+        means = [table.column(name).reshape(inputs, -1).mean(axis=0) for name in names]
+        return {name: sobol_indices(ranges, mean) for name, mean in zip(names, means, strict=True)}
+    except DataError as error:
+        raise DataError(f"--sobol: {error}") from None
+
+
+def write_indices(path: Path, indices: Mapping[str, SobolIndices]) -> None:
+    """Write a row for each comfort value and parameter, the largest total index first.
+
+    Args:
+        path: CSV file.
+        indices: see `comfort_indices`.
+    """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["value", "parameter", *(f"{name} [-]" for name in ("S1", "S1_95", "ST", "ST_95"))])
+        for name, each in indices.items():
+            columns = (each.first, each.first_error, each.total, each.total_error)
+            for i in (-each.total).argsort():
+                rows.writerow([name, each.paths[i], *(f"{column[i]:.6g}" for column in columns)])
+
+
+def index_lines(indices: Mapping[str, SobolIndices]) -> list[str]:
+    """Return the table of the first comfort value as text, the largest total index first.
+
+    Args:
+        indices: see `comfort_indices`.
+    """
+    name, each = next(iter(indices.items()))
+    width = max(len("parameter"), *map(len, each.paths))
+    lines = [f"{'parameter':<{width}}  {'S1':>6} {'+-':>6}  {'ST':>6} {'+-':>6}"]
+    for i in (-each.total).argsort():
+        first, total = (each.first[i], each.first_error[i]), (each.total[i], each.total_error[i])
+        lines.append(f"{each.paths[i]:<{width}}  {first[0]:6.3f} {first[1]:6.3f}  {total[0]:6.3f} {total[1]:6.3f}")
+    left = f"; {each.left_out} of {each.base} base points have a failed run and are left out" if each.left_out else ""
+    return [
+        *lines,
+        f"shares of the variance of {name!r}: S1 of the parameter alone, ST with all its interactions; +-: half width",
+        f"of the 95 % interval, from {each.scramblings} independent samples{left}",
+    ]
