@@ -49,10 +49,10 @@ FAULTS = (
     Fault("vehicle/model/laws/control_laws.py", "np.maximum(-wheel * way, 0.0)", "np.maximum(wheel * way, 0.0)", "model/laws"),
     Fault("vehicle/model/laws/maxwell.py", "self.branch_stiffness / (2.0 * np.sqrt(", "self.branch_stiffness / (2.1 * np.sqrt(", "model/laws/test_maxwell.py"),
     Fault("vehicle/model/laws/friction.py", "steep * (limit + fall)", "steep * limit", "model/laws engines/lumped"),
-    Fault("vehicle/model/flexbody/mass_properties.py", "np.atleast_2d(self.cog - cog)", "np.atleast_2d(0.0 * cog)", "model/flexbody"),
-    Fault("vehicle/model/flexbody/sources/body_units.py", "np.sqrt(3.0 * mass *", "np.sqrt(30.0 * mass *", "model/flexbody"),
+    Fault("vehicle/model/flexbody/mass_properties.py", "np.atleast_2d(self.cog - cog)", "np.atleast_2d(0.0 * cog)", "model/flexbody/test_body_units.py"),
+    Fault("vehicle/model/flexbody/sources/body_units.py", "np.sqrt(3.0 * mass *", "np.sqrt(30.0 * mass *", "model/flexbody/test_body_units.py"),
     Fault("vehicle/model/parameters/ranges.py", "(high - low) * index / (count - 1)", "(high - low) * index / count", "model/parameters/test_ranges.py studies/sweeps/test_sweep_command.py"),
-    Fault("vehicle/model/shapes/surface.py", "np.linalg.norm(np.diff(p, axis=0), axis=1) ** 0.5", "np.linalg.norm(np.diff(p, axis=0), axis=1)", "model/shapes"),
+    Fault("vehicle/model/shapes/surface.py", "np.linalg.norm(np.diff(p, axis=0), axis=1) ** 0.5", "np.linalg.norm(np.diff(p, axis=0), axis=1)", "model/shapes/test_surface.py model/shapes"),
     Fault("vehicle/model/assembly/element_numbers.py", "part.numbers.mass * (x**2 + y**2)", "part.numbers.mass * x**2", "model/assembly engines/simulation physics/test_channel_sums.py physics/test_rolling_tyre.py"),
     # engines
     Fault("vehicle/engines/linear/step_map.py", "beta * ((e - 2.0) * e + 1.0)", "beta * ((e - 2.0) * e + 1.1)", "engines/linear/test_step_map.py engines/linear/test_step_error.py"),

@@ -26,6 +26,7 @@ from scenarios.claims import (
     spread_claim,
 )
 from scenarios.study import STUDIES, lumped_study, main_of, study_parser
+from scenarios.verdict import verdict
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
 from vehicle.runs.output.folder import check_study, study_folder, write_text
 from vehicle.runs.output.written_files import MARKER
@@ -105,6 +106,13 @@ def test_both_counts_of_the_rows_with_an_interval():
         "3 of 3 predicted rows agree; in addition 1 fitted (0 agree), 1 duplicate (1 agree); of 3 rows with a printed "
         "interval our value is inside in 1, not contradicted at 5 % in 2"
     )
+
+
+def test_a_verdict_holds_at_both_ends_of_the_interval():
+    for holds in (lambda value: value > 1.0, lambda value: value < 3.0):  # either end may decide
+        assert verdict(holds, 2.0, 0.4) is True
+        assert verdict(holds, 2.0, 0.6) is None
+    assert verdict(lambda value: value > 4.0, 2.0, 0.4) is False
 
 
 def test_a_verdict_that_the_seeds_turn_is_undecided():

@@ -11,7 +11,7 @@ from vehicle.engines.simulation.standing import require_body_modes
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.mass_difference import require_unit_of_mass, vehicle_lines
 from vehicle.model.flexbody.mass_properties import MassProperties
-from vehicle.model.flexbody.sources.body_units import require_first_mode, require_mass, units_of
+from vehicle.model.flexbody.sources.body_units import require_first_mode, require_level, require_mass, units_of
 from vehicle.runs.car import Car
 
 NEWTON = {("m", "kg"): 1.0, ("mm", "t"): 1.0, ("in", "lbf s2/in"): 4.4482216152605}
@@ -42,6 +42,29 @@ def test_another_unit_of_mass_is_refused_with_its_option(mass, length, unit, say
     with pytest.raises(DataError, match="another unit of mass") as caught:
         require_mass(mass, 813.0, units_of(length, unit))
     assert says in str(caught.value)
+
+
+def test_the_scale_of_shapes_tells_the_unit_of_mass():
+    """A rigid translation of 813 kg with modal mass 1, too large by factors about the fourth root of 1000, 5.6."""
+    shape = np.tile([0.0, 0.0, 813.0**-0.5], 10)[:, None]
+    for factor in (1.0, 5.0, 1.0 / 5.0):
+        require_level(factor * shape, np.ones(1), 813.0, units_of(None, "kg"))
+    for factor in (6.5, 1.0 / 6.5):
+        with pytest.raises(DataError, match="another unit of mass"):
+            require_level(factor * shape, np.ones(1), 813.0, units_of(None, "kg"))
+
+
+def test_mass_properties_of_parts_are_those_of_all_points():
+    generator = np.random.default_rng(5)
+    masses, places = generator.uniform(1.0, 9.0, 12), generator.standard_normal((12, 3))
+    whole, some = MassProperties.of_points(masses, places), MassProperties.of_points(masses[:7], places[:7])
+    for found, wanted in (
+        (some.with_points(masses[7:], places[7:]), whole),
+        (whole.without(MassProperties.of_points(masses[7:], places[7:])), some),
+    ):
+        assert found.mass == pytest.approx(wanted.mass)
+        np.testing.assert_allclose(found.cog, wanted.cog, atol=1e-12)
+        np.testing.assert_allclose(found.inertia, wanted.inertia, rtol=1e-9, atol=1e-9)
 
 
 def test_other_bodies_pass():

@@ -31,6 +31,12 @@ def test_a_coons_patch_of_a_plane_is_the_plane() -> None:
     assert grid(surface).area == pytest.approx(np.sqrt(1 + 0.3**2 + 0.7**2), rel=1e-12)
 
 
+def test_the_parameter_of_a_spline_is_centripetal() -> None:
+    # Distances 1 and 4 have the knots 0, 1, 3: four points evenly spaced in the parameter hold the second one.
+    curve = spline([(0.0, 0.0), (1.0, 0.0), (5.0, 0.0)], 4)
+    assert curve[[0, 1, 3], 0] == pytest.approx([0.0, 1.0, 5.0], abs=1e-12)
+
+
 def test_a_grid_drops_triangles_that_shrink_to_a_line() -> None:
     fan = np.zeros((2, 4, 3))
     fan[1] = [(1, 0, 0), (1, 1, 0), (0.5, 1.5, 0), (0, 1.5, 0)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import mujoco
 import numpy as np
@@ -59,12 +60,63 @@ class Tie:
     bent: Mapping[int, Bent]
     directions: Vector | None = None
 
-    def pull(self, gap: Vector) -> tuple[Vector, Vector]:
-        """Return the force [N] and stiffness [N/m] of a bushing at a displacement r [m], along its axes."""
-        assert self.stiffness is not None
-        force, stiffness = self.preload - self.stiffness * gap, self.stiffness.copy()
-        for axis, law in self.bent.items():
-            force[axis], stiffness[axis] = law.force(float(gap[axis]))
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TieTable:
+    """Several ties as arrays, for an evaluation of all at once.
+
+    Attributes:
+        moving, carrier: sites, (k,).
+        bodies: bodies of the moving sites, then of the carriers, (2 k,).
+        ways: directions of the laws as columns, (k, 3, 3).
+        stiffness, preload, torque: see `Tie`, (k, 3); a stiffness of 0 for ideal joints.
+        twist: rotational stiffness, (k, 1).
+        bent: row, axis and nonlinear law.
+    """
+
+    moving: npt.NDArray[np.intp]
+    carrier: npt.NDArray[np.intp]
+    bodies: npt.NDArray[np.intp]
+    ways: Vector
+    stiffness: Vector
+    preload: Vector
+    torque: Vector
+    twist: Vector
+    bent: tuple[tuple[int, int, Bent], ...]
+
+    @classmethod
+    def of(cls, ties: Sequence[Tie], body_of_site: npt.NDArray[np.int32]) -> Self:
+        """Return the table of some ties.
+
+        Args:
+            ties: the ties.
+            body_of_site: body of each site of the model.
+        """
+        moving, carrier = (
+            np.array([getattr(tie, end) for tie in ties], dtype=np.intp) for end in ("moving", "carrier")
+        )
+
+        def column(values: Sequence[npt.ArrayLike], *shape: int) -> Vector:
+            """Return values with a row for each tie."""
+            return np.array(values, dtype=np.float64).reshape(len(ties), *shape)
+
+        return cls(
+            moving=moving,
+            carrier=carrier,
+            bodies=body_of_site[np.concatenate([moving, carrier])].astype(np.intp),
+            ways=column([np.eye(3) if tie.directions is None else tie.directions.T for tie in ties], 3, 3),
+            stiffness=column([np.zeros(3) if tie.stiffness is None else tie.stiffness for tie in ties], 3),
+            preload=column([tie.preload for tie in ties], 3),
+            torque=column([tie.torque for tie in ties], 3),
+            twist=column([tie.twist for tie in ties], 1),
+            bent=tuple((row, axis, law) for row, tie in enumerate(ties) for axis, law in tie.bent.items()),
+        )
+
+    def pull(self, gaps: Vector) -> tuple[Vector, Vector]:
+        """Return forces [N] and stiffnesses [N/m] of bushings at displacements r [m] along their axes, (k, 3) each."""
+        force, stiffness = self.preload - self.stiffness * gaps, self.stiffness.copy()
+        for row, axis, law in self.bent:
+            force[row, axis], stiffness[row, axis] = law.force(float(gaps[row, axis]))
         return force, stiffness
 
 

@@ -22,8 +22,10 @@ from dataclasses import dataclass, replace
 import mujoco
 import numpy as np
 import numpy.typing as npt
+import scipy
 
 from vehicle.engines.kinematics.axle_parts import Spring, Tie, axle_parts
+from vehicle.engines.simulation.axle_parts import Spring, TieTable, axle_parts
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.composition import PlacedWheel
 
@@ -36,6 +38,8 @@ TOLERANCE = 1e-10
 
 CONDITION = 1e-12
 """Smallest singular value of the system, as a share of the largest, that counts as resistance or as a constraint."""
+CONDITION_SURE = 1e-9
+"""Estimated reciprocal condition above which no singular value is near `CONDITION`: the estimate is within 100."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -114,6 +118,8 @@ class AxleStatics:
             held = [model.jnt_dofadr[strut.joint] for strut in self.parts.struts]
             self.parts = replace(self.parts, struts=(), columns=np.setdiff1d(self.parts.columns, held))
         self.wheels, self.columns = self.parts.wheels, self.parts.columns
+        soft, hard = ([tie for tie in self.parts.ties if (tie.stiffness is None) is ideal] for ideal in (False, True))
+        self.soft, self.hard = (TieTable.of(ties, model.site_bodyid) for ties in (soft, hard))
         self.standing = standing
         self.ground = self.parts.standing if standing else np.zeros_like(self.parts.standing)
         mujoco.mj_forward(model, self.data)
@@ -171,9 +177,7 @@ class AxleStatics:
             system = np.block([[stiffness, reacting.T], [constraints, np.zeros((rows, rows))]])
             scale = np.ones(count + rows)
             scale[:count] = 1.0 / np.sqrt(np.maximum(np.diag(stiffness), 1.0))
-            solution = np.linalg.lstsq(
-                system * scale[:, None] * scale, scale * np.concatenate([force, -gaps]), rcond=CONDITION
-            )[0]
+            solution = _solved(system * scale[:, None] * scale, scale * np.concatenate([force, -gaps]))
             step, reactions = (scale * solution)[:count], (scale * solution)[count:]
             full = np.zeros(model.nv)
             # The linear step is accurate for rotations of up to about 0.2 rad.
@@ -187,7 +191,7 @@ class AxleStatics:
                 "travel and its steps"
             )
         mujoco.mj_fwdPosition(model, data)
-        _, _, gaps = self._constraints(travel)
+        gaps = self._open(self._gaps(self.hard)[0], travel)
         if np.max(np.abs(gaps)) > 1e-7:
             raise SimulationError(
                 f"axle: its joints leave a gap of {1e3 * np.max(np.abs(gaps)):.3g} mm at wheel travels "
@@ -212,21 +216,35 @@ class AxleStatics:
         mujoco.mj_jac(self.model, self.data, moved, turned, point, body)
         return moved[:, self.columns], turned[:, self.columns]
 
-    def _relative(self, tie: Tie) -> tuple[Vector, Vector, Vector, Vector]:
-        """Return displacement r [m] and sin(angle) n of the moving part in axes of the carrier, and Jacobians."""
-        data, bodies = self.data, self.model.site_bodyid
-        moving, carrier = tie.moving, tie.carrier
+    def _jacobians(self, bodies: npt.NDArray[np.intp], points: Vector) -> tuple[Vector, Vector]:
+        """Return the Jacobians of displacement and rotation at a point of each body, (k, 3, columns) each."""
+        both = np.empty((len(bodies), 2, 3, self.model.nv))
+        for (moved, turned), body, point in zip(both, bodies.tolist(), points, strict=True):
+            mujoco.mj_jac(self.model, self.data, moved, turned, point, body)
+        own = both[..., self.columns]
+        return own[:, 0], own[:, 1]
+
+    def _gaps(self, ties: TieTable) -> tuple[Vector, Vector, Vector]:
+        """Return displacements r [m], (k, 3), axes of the laws and of the carriers as columns, (k, 3, 3) each."""
         # Forces act along the directions of the law, torques about the axes of the carrier.
-        frame = data.site_xmat[carrier].reshape(3, 3)
-        law_frame = frame if tie.directions is None else frame @ tie.directions.T
+        frames = self.data.site_xmat[ties.carrier].reshape(-1, 3, 3)
+        axes = frames @ ties.ways
+        away = self.data.site_xpos[ties.moving] - self.data.site_xpos[ties.carrier]
+        return np.einsum("kij,ki->kj", axes, away), axes, frames
+
+    def _relative(self, ties: TieTable) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return r [m] and sin(angle) n of the moving parts in axes of the carriers, (k, 3), and their Jacobians."""
+        gaps, axes, frames = self._gaps(ties)
+        count, points = len(gaps), self.data.site_xpos[ties.moving]
         # The Jacobian of the carrier is that of its point under the moving part.
-        moved, turned = self.jacobian(int(bodies[moving]), data.site_xpos[moving])
-        carried, rotated = self.jacobian(int(bodies[carrier]), data.site_xpos[moving])
-        gap = law_frame.T @ (data.site_xpos[moving] - data.site_xpos[carrier])
-        relative = frame.T @ data.site_xmat[moving].reshape(3, 3)
+        moved, turned = (
+            each[:count] - each[count:] for each in self._jacobians(ties.bodies, np.concatenate([points, points]))
+        )
+        back = frames.transpose(0, 2, 1)
+        relative = back @ self.data.site_xmat[ties.moving].reshape(-1, 3, 3)
         # sin(angle) n, the law of the runs (`vehicle/core/source/rotations.h`).
-        angle = 0.5 * np.array([relative[i, j] - relative[j, i] for i, j in ((2, 1), (0, 2), (1, 0))])
-        return gap, angle, law_frame.T @ (moved - carried), frame.T @ (turned - rotated)
+        angles = 0.5 * np.stack([relative[:, i, j] - relative[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=1)
+        return gaps, angles, axes.transpose(0, 2, 1) @ moved, back @ turned
 
     def _forces(self, loads: Vector) -> tuple[Vector, Vector]:
         """Return the generalised force and stiffness of the elements at the present position."""
@@ -236,19 +254,16 @@ class AxleStatics:
         stiffness, force = np.zeros((count, count)), np.zeros(count)
         if self.ideal:
             return force, np.eye(count)
-        for body in self.parts.bodies:
-            moved, _ = self.jacobian(body, data.xipos[body])
-            force += moved.T @ (model.body_mass[body] * model.opt.gravity)
-        for tie in self.parts.ties:
-            if tie.stiffness is None:
-                continue
-            gap, angle, moved, turned = self._relative(tie)
-            pull, slope = tie.pull(gap)
-            force += moved.T @ pull
-            stiffness += moved.T @ (slope[:, None] * moved)
-            if tie.twist > 0.0:
-                force += turned.T @ (tie.torque - tie.twist * angle)
-                stiffness += tie.twist * turned.T @ turned
+        bodies = np.array(sorted(self.parts.bodies))
+        fallen, _ = self._jacobians(bodies, data.xipos[bodies])
+        force += np.einsum("kic,k,i->c", fallen, model.body_mass[bodies], model.opt.gravity)
+        gaps, angles, moved, turned = self._relative(self.soft)
+        pull, slope = self.soft.pull(gaps)
+        twist, size = self.soft.twist, (3 * len(gaps), count)
+        force += np.einsum("kic,ki->c", moved, pull)
+        force += np.einsum("kic,ki->c", turned, self.soft.torque - twist * angles)
+        stiffness += (slope[..., None] * moved).reshape(size).T @ moved.reshape(size)
+        stiffness += (twist[..., None] * turned).reshape(size).T @ turned.reshape(size)
         for spring in self.parts.springs:
             length, row = self._length(spring)
             along, rate = spring.pull(length - spring.length)
@@ -266,6 +281,8 @@ class AxleStatics:
             force[column] += rate * (model.qpos_spring[position] - data.qpos[position])
             stiffness[column, column] += rate
         for index, (wheel, load) in enumerate(zip(self.wheels, loads, strict=True)):
+            if not load.any():
+                continue
             moved, turned = self.jacobian(wheel, self.contact(index))
             raised, _ = self.jacobian(wheel, self.vertical_contact(index))
             force += moved[:2].T @ load[:2] + raised[2] * load[2] + turned.T @ load[3:]
@@ -276,19 +293,17 @@ class AxleStatics:
 
         The height is that of the wheel centre, its reaction the load on the contact point.
         """
-        rows, reacting, gaps = [], [], []
-        for tie in self.parts.ties:
-            if tie.stiffness is None:
-                gap, _, moved, _ = self._relative(tie)
-                rows.append(moved)
-                reacting.append(moved)
-                gaps.append(gap)
-        for index, (wheel, height) in enumerate(zip(self.wheels, travel, strict=True)):
-            center, _ = self.places(index)
-            rows.append(self.jacobian(wheel, center)[0][2:])
+        gaps, _, moved, _ = self._relative(self.hard)
+        rows, reacting = [moved.reshape(-1, self.columns.size)], [moved.reshape(-1, self.columns.size)]
+        for index, wheel in enumerate(self.wheels):
+            rows.append(self.jacobian(wheel, self.places(index)[0])[0][2:])
             reacting.append(self.jacobian(wheel, self.vertical_contact(index))[0][2:])
-            gaps.append(center[2:] - self.at_rest[index][0][2] - height)
-        return np.vstack(rows), np.vstack(reacting), np.concatenate(gaps)
+        return np.vstack(rows), np.vstack(reacting), self._open(gaps, travel)
+
+    def _open(self, gaps: Vector, travel: Sequence[float]) -> Vector:
+        """Return the gaps of the ideal joints, followed by those of the wheel heights [m]."""
+        heights = [self.places(index)[0][2] - rest[0][2] for index, rest in enumerate(self.at_rest)]
+        return np.concatenate([gaps.ravel(), np.array(heights) - travel])
 
     def contact(self, index: int) -> Vector:
         """Return the point at which the horizontal force of the ground acts on a wheel, vehicle axes [m]; (3,).
@@ -348,3 +363,12 @@ class AxleStatics:
             return float("nan")
         spring = self.parts.springs[int(np.argmin(away))]
         return self._length(spring)[0] - spring.length
+
+
+def _solved(system: Vector, right: Vector) -> Vector:
+    """Return the solution of a linear system, of a singular one that with the smallest norm."""
+    factors, pivots, singular = scipy.linalg.lapack.dgetrf(system)
+    near, _ = scipy.linalg.lapack.dgecon(factors, np.abs(system).sum(axis=0).max())
+    if singular or not near > CONDITION_SURE:
+        return np.asarray(np.linalg.lstsq(system, right, rcond=CONDITION)[0])
+    return np.asarray(scipy.linalg.lapack.dgetrs(factors, pivots, right)[0])
