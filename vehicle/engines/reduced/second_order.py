@@ -95,10 +95,8 @@ class SecondOrder:
             coordinates: coordinates c of the patterns over a period; (P, samples).
             interval: sampling interval [s].
         """
-        from scipy import fft
-
         samples = coordinates.shape[1]
-        spectra = fft.rfft(_products(self.forms, coordinates), axis=1)
+        spectra = np.asarray(np.fft.rfft(_products(self.forms, coordinates), axis=1), dtype=np.complex64)
         frequency = np.arange(spectra.shape[1]) / (samples * interval)
         at = np.flatnonzero((frequency > 0.0) & (frequency <= HIGHEST))
         s = (2j * np.pi * frequency[at]).astype(np.complex64)
@@ -131,7 +129,7 @@ class SecondOrder:
         stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
         result[first:end, at] = -stiffness * (moved[first:end] + tyres)
         result[end:, at] = self.damping[:, None] * s * moved[-count:]
-        return np.asarray(fft.irfft(result, samples, axis=1))
+        return np.asarray(np.fft.irfft(result, samples, axis=1))
 
 
 def rms_errors_of(

@@ -63,7 +63,7 @@ class RecordLines:
             Complex lines, (last - first,).
         """
         if not is_long(self.samples):
-            whole: Complex = scipy.fft.rfft(part_values(self.parts[0]))
+            whole: Complex = np.fft.rfft(part_values(self.parts[0]))
             return whole[self.chosen].copy()
         lines = np.zeros(self.turn.size, dtype=np.complex128)
         block = np.zeros(self.zoom.n)
