@@ -147,7 +147,7 @@ def test_laws_that_are_refused():
             register_law("wrong", wrong)
     with pytest.raises(ConfigurationError, match="'missing': not registered in this process, which knows line"):
         car_with("missing").run(ROAD, engine="reduced", skip=0.5)
-    with pytest.raises(ConfigurationError, match=r"damper\.function: found 'line' together with control\.law = sky"):
+    with pytest.raises(ConfigurationError, match=r"damper\.function: found 'line' with control\.law = sky"):
         car_with("line", **{"front.damper.control.law": "skyhook"})
 
 

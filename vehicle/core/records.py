@@ -146,6 +146,25 @@ def packed(name: str, record: Any) -> Packed:
     return Packed(structure(name).from_buffer(bytearray(struct.pack(f"{len(words)}q", *words))), tuple(kept))
 
 
+def checked(name: str, record: Packed, *sizes: int) -> Packed:
+    """Return a record for the core whose lengths and indices fit together; see `check.c`.
+
+    Args:
+        name: name in layout.h: March or Simulation.
+        record: the record.
+        sizes: for a March the cars in a vector; for a Simulation numbers of positions, bodies and sites of the model.
+
+    Raises:
+        ValueError: a length or an index does not fit, which the core would not notice.
+    """
+    function = getattr(core(), f"core_check_{name.lower()}")
+    function.restype = ctypes.c_char_p
+    wrong = function(ctypes.c_void_p(record.address), *map(ctypes.c_int64, sizes))
+    if wrong is not None:
+        raise ValueError(f"{name}.{wrong.decode()}: its length, or an index in it, does not fit the other fields")
+    return record
+
+
 def _add(words: list[int], name: str, record: Any, kept: list[Any]) -> None:
     """Append the fields of a record as 64-bit words."""
     kinds, read = array_kinds(), record.__getitem__ if isinstance(record, Mapping) else partial(getattr, record)

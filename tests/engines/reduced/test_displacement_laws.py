@@ -13,12 +13,13 @@ from scenarios.road.runs import one_sided_tyres
 from tests.engines.reduced.test_reduced_quarter_car import CAR, ROAD, damper, matrices
 from tests.validation import foreign, validated
 from vehicle.engines.linear.displacement_laws import BUSHING, STOP, DisplacementLaw
-from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.reduced.batch_simulation import _single_precision_factors, simulate_batch
 from vehicle.engines.reduced.pole_model import pole_model
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.model.laws.curve import Curve
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
+from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 
 ROAD_OF_STOPS = Signal(time=ROAD.time[:1201], displacement={"fr": ROAD.displacement["fr"][:1201]})
@@ -191,3 +192,30 @@ def test_a_car_over_a_cleat_that_lifts_its_tyres():
     linear = fixed.with_(["*.bushings.tyre.one_sided=false"])
     pulling = linear.run(road, engine="reduced")["tyre_rl_force_z"]
     assert np.min(pulling) < -100.0 and np.std(pulling) > 1.02 * np.std(run["tyre_rl_force_z"])
+
+
+def test_the_force_of_a_stop_in_a_batch():
+    """A stop that is free at rest runs in single precision, one that is loaded at rest alone: both with its force."""
+    free = "front.damper.stop={displacement=[-0.03, -0.002, 0.002, 0.03], force=[-2800.0, 0.0, 0.0, 2800.0]}"
+    loaded = "front.damper.stop={displacement=[-0.03, -0.002, 0.001, 0.03], force=[-2800.0, 0.0, 300.0, 3200.0]}"
+    cars = [Car.load("focus", [changes]) for changes in (free, loaded)]
+    laws = [[damper.law for damper in car.vehicle.composition.dampers] for car in cars]
+    names = ["damper_fr_force", "seat_rail_acc_z"]
+    models = [car.poles for car in cars]
+    signal = random_road(rms=5e-3, seed=3, wheel="fr", duration=2.0)
+    run: dict[str, Any] = {"record_rate": 1000.0, "channels": names, "step": 5e-4}
+    columns = [models[0].matrices.system.inputs.index(wheel) for wheel in signal.wheels]
+    assert set(_single_precision_factors(models, laws, 5e-4, columns, names)) == {0}
+    batch = simulate_batch(models, signal, dampers=laws, tyre_load=[car.static.tyre_load for car in cars], **run)
+    for index, car in enumerate(cars):
+        one = simulate_reduced(models[index], signal, dampers=laws[index], tyre_load=car.static.tyre_load, **run)
+        without = simulate_reduced(
+            models[index],
+            signal,
+            dampers=[dataclasses.replace(law, stop=None) for law in laws[index]],
+            tyre_load=car.static.tyre_load,
+            **run,
+        )
+        force = one["damper_fr_force"]
+        assert np.std(batch.channels["damper_fr_force"][index] - force) < 1e-4 * np.std(force)
+        assert np.std(without["damper_fr_force"] - force) > 0.1 * np.std(force)

@@ -16,6 +16,8 @@ from itertools import groupby
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.displacement_laws import STOP
+from vehicle.engines.linear.load_rows import LoadRows, stop_rows
 from vehicle.engines.reduced.group_run import GroupRun, time_steps
 from vehicle.engines.reduced.pole_model import PoleModel
 from vehicle.engines.reduced.reduced_run import simulate_reduced
@@ -83,8 +85,8 @@ def simulate_batch(
     """Simulate a batch of cars of one topology on the same plates with the reduced engine.
 
     The values of a car are bitwise independent of the other cars. Cars with controlled or strongly coupled dampers
-    or a law by address, with a pole near zero, or with a stop in a recorded damper force are simulated one at a time in
-    double precision: the bits of `simulate_reduced` at the same step.
+    or a law by address, with a pole near zero, or with a stop that is loaded at rest in a recorded damper force are
+    simulated one at a time in double precision: the bits of `simulate_reduced` at the same step.
 
     Args:
         models: pole models of the cars, with the same wheels, dampers, bodies and channels.
@@ -105,7 +107,10 @@ def simulate_batch(
         raise ConfigurationError("simulate_batch: the list of cars is empty")
     samples, every = time_steps(signal, record_rate, step)
     interval, wheels = 1.0 / record_rate, models[0].matrices.system.inputs
-    table = np.empty((len(channels), len(models), samples))
+    # Stops that are free at rest have the forces g of their laws, which follow the channels.
+    stopped = any(law.stop for laws in dampers for law in laws)
+    most = max(len(model.laws) for model in models) if stopped else 0
+    table = np.empty((len(channels) + most, len(models), samples))
     statistics: dict[int, Statistics] = {}
     factors = _single_precision_factors(
         models, dampers, interval / every, [wheels.index(wheel) for wheel in signal.wheels], channels
@@ -121,7 +126,7 @@ def simulate_batch(
             step=step,
         )
         statistics[car] = run.statistics
-        table[:, car] = [run[name] for name in channels]
+        table[: len(channels), car] = [run[name] for name in channels]
     # Group cars with similar numbers of poles: the largest number in a group applies to all its cars.
     keys = {car: (_nonlinear_elements(models[car]), factors[car].single_iterations) for car in factors}
     ordered_cars = sorted(factors, key=lambda car: (keys[car], factors[car].pairs, factors[car].reals))
@@ -143,13 +148,19 @@ def simulate_batch(
             SINGLE,
             present_load=models[0].slope.shape[1] > 0,
         )
-        validities = group.fill(table, cars, channels)
+        laws = models[cars[0]].laws if stopped else ()
+        every_name = [*channels, *(f"law_{index}" for index in range(len(laws)))]
+        validities = group.fill(table[: len(every_name)], cars, every_name)
+        for index, law in enumerate(laws):
+            name = f"damper_{wheels[law.element[1]]}_force" if law.element[0] == STOP else ""
+            if name in channels:
+                table[channels.index(name), cars] += table[len(channels) + index, cars]
         time_of_car = (clock.perf_counter() - started) / len(cars)
         for car, validity in zip(cars, validities, strict=True):
             statistics[car] = group.statistics(validity, samples, time_of_car)
     return BatchRuns(
         time=uniform_time(samples=samples, timestep=interval),
-        channels=dict(zip(channels, table, strict=True)),
+        channels=dict(zip(channels, table[: len(channels)], strict=True)),
         units=channel_units(tuple(channels)),
         excited=tuple(wheel for wheel in signal.wheels if np.ptp(signal.displacement[wheel]) > 0.0),
         statistics=tuple(statistics[car] for car in range(len(models))),
@@ -169,15 +180,14 @@ def _single_precision_factors(
         models, dampers: pole models and damper laws of the cars.
         timestep: time step [s].
         columns: indices of the driven plates.
-        channels: names of the recorded channels; the force of a stop, part of that of its damper, is a load.
+        channels: names of the recorded channels; the force of a damper has that of its stop as a part.
     """
-    forces = [f"{damper}_force" in channels for damper in models[0].matrices.damper_names]
+    forces = [name.replace("_force", "_stop_force") for name in channels]
     suitable = [
         car
         for car, (model, laws) in enumerate(zip(models, dampers, strict=True))
-        if not any(
-            law.controlled or law.function or (law.stop and force) for law, force in zip(laws, forces, strict=True)
-        )
+        if not any(law.controlled or law.function for law in laws)
+        and not _loaded(stop_rows(model.matrices, laws).only(forces))
         and np.min(np.abs(model.poles)) >= SLOWEST
     ]
     rolling, by_car = models[0].slope.shape[1] > 0, dict[int, CarFactors]()
@@ -188,6 +198,11 @@ def _single_precision_factors(
         pairs = zip(cars, factors, strict=True)
         by_car |= {car: factor for car, factor in pairs if factor.single_iterations}
     return by_car
+
+
+def _loaded(stops: LoadRows) -> bool:
+    """Return True if a stop has a force or a stiffness at rest, which its law in the reduced engine lacks."""
+    return bool(np.any(stops.static) or np.any(stops.displacement))
 
 
 def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:

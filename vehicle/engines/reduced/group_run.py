@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.core.library import core
-from vehicle.core.records import packed
+from vehicle.core.records import checked, packed
 from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import forces_at_start
 from vehicle.engines.linear.load_rows import LoadRows
@@ -21,7 +21,16 @@ from vehicle.engines.reduced.load_outputs import load_outputs
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
-from vehicle.engines.reduced.table_layout import BLOCK, INNER_BLOCK, PAST, SINGLE, TILE, OutputTiles, aligned_table
+from vehicle.engines.reduced.table_layout import (
+    BLOCK,
+    INNER_BLOCK,
+    LANES,
+    PAST,
+    SINGLE,
+    TILE,
+    OutputTiles,
+    aligned_table,
+)
 from vehicle.engines.reduced.validity import Validity, check_stride, rotating_bodies, tyre_outputs
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.engines.simulation.recording import Statistics
@@ -248,7 +257,7 @@ class GroupRun:
             displacements = plates[::every, 0::3]
             plate_z = np.hstack([displacements[1:], np.diff(displacements, axis=0)]).astype(self.element)
             block = {"rates": rates, "plate_z": plate_z, "first": sample, "step": step}
-            record = packed("March", constant | block)
+            record = checked("March", packed("March", constant | block), LANES if self.element == SINGLE else 1)
             march(ctypes.c_void_p(record.address))
             sample += size
 

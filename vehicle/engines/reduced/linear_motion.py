@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from vehicle.engines.linear.displacement_laws import law_rows
 from vehicle.engines.reduced.pole_model import PoleModel
+from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
@@ -127,16 +128,14 @@ def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Compl
         interval: sampling interval of the histories [s].
         every: samples from one to the next of the result.
     """
-    from scipy import fft
-
     count, fall = inputs.shape[1], round(RETURN / interval)
     coarse = -(-(count + round(PAUSE / interval)) // every)
-    period = fft.next_fast_len(coarse, real=True)
+    period = fast_length(coarse)
     padded = np.zeros((len(inputs), period * every))
     padded[:, :count] = inputs - inputs[:, :1]
     way = 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
     padded[:, count : count + fall] = padded[:, count - 1 : count] * way
-    return fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
+    return np.fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
 
 
 def plate_inputs(

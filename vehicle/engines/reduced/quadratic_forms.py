@@ -145,12 +145,10 @@ def _components(rows: Vector, sums: Vector) -> tuple[Vector, Vector]:
 
 def _state_products(model: PoleModel) -> Vector:
     """Return the means of the products of the states in the motion that gives the patterns; (states, states)."""
-    from scipy import fft
-
     random = np.random.Generator(np.random.PCG64(0))
     wheels, count = len(model.matrices.system.inputs), input_effects(model).shape[1]
     frequency = np.arange(PERIOD // 2 + 1) * RATE / PERIOD
-    noise = fft.rfft(random.standard_normal((count - wheels, PERIOD)), axis=1)
+    noise = np.fft.rfft(random.standard_normal((count - wheels, PERIOD)), axis=1)
     noise[:wheels] /= 2.0 * np.pi * np.maximum(frequency, frequency[1])
     noise[wheels + model.slope.shape[1] :] *= FORCE_LEVEL / (1.0 + frequency / 20.0)
     spectra = state_spectra(model, noise, 1.0 / RATE, PERIOD)[:, frequency <= BAND]

@@ -94,10 +94,8 @@ class SecondOrder:
             coordinates: coordinates c of the patterns over a period; (P, samples).
             interval: sampling interval [s].
         """
-        from scipy import fft
-
         samples = coordinates.shape[1]
-        spectra = fft.rfft(_products(self.forms, coordinates), axis=1)
+        spectra = np.asarray(np.fft.rfft(_products(self.forms, coordinates), axis=1), dtype=np.complex64)
         frequency = np.arange(spectra.shape[1]) / (samples * interval)
         at = np.flatnonzero((frequency > 0.0) & (frequency <= HIGHEST))
         s = (2j * np.pi * frequency[at]).astype(np.complex64)
@@ -130,7 +128,7 @@ class SecondOrder:
         stiffness = matrices.tyre_stiffness[:, None] + matrices.tyre_damping[:, None] * s
         result[first:end, at] = -stiffness * (moved[first:end] + tyres)
         result[end:, at] = self.damping[:, None] * s * moved[len(moved) - count :]
-        return np.asarray(fft.irfft(result, samples, axis=1))
+        return np.asarray(np.fft.irfft(result, samples, axis=1))
 
 
 def rms_errors_of(
@@ -180,8 +178,6 @@ def rms_errors(
         channels: record of the run; (n,) each.
         time: its times [s]; (n,).
     """
-    from scipy import fft
-
     interval = float(time[1] - time[0])
     every = max(int(1.0 / (interval * RATE)), 1)
     names = [name for name in second.channels if name in channels]
@@ -196,7 +192,7 @@ def rms_errors(
         spectra, samples = periodic_spectra(inputs(part), interval, every)
         spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
         linear = np.array([channels[name][part][::every] for name in names])
-        coordinates = fft.irfft(spectra, samples, axis=1)
+        coordinates = np.fft.irfft(spectra, samples, axis=1)
         more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
         sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
         count += linear.shape[1]

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from vehicle.core.library import core
-from vehicle.core.records import Packed, packed
+from vehicle.core.records import Packed, checked, packed
 from vehicle.engines.simulation.sparse_rows import Pattern, solution_of, sparse_rows
 from vehicle.engines.simulation.step_records import Fields, Simulation, Ticket
 from vehicle.engines.simulation.structures import ROW_FIELDS, offsets
@@ -67,4 +67,5 @@ def packed_simulation(rows: Rows, data: mujoco.MjData, pattern: Pattern | None =
     fields = Fields(**{name: getattr(data, name) for name in Fields._fields})
     solution = solution_of(rows.model, rows.layout, pattern)
     memory, kept = packed("Simulation", Simulation(ticket, fields, rows.layout, rows.weights, rows.state, solution))
-    return Packed(memory, (*kept, arrays, data))
+    model = rows.model
+    return checked("Simulation", Packed(memory, (*kept, arrays, data)), model.nq, model.nbody, model.nsite)

@@ -31,7 +31,6 @@ NUMBERS = {
 }
 """Parameters of a damper that only one law requires, with their units."""
 
-
 MAX_SLIDERS = 8
 """Maximum number of segments of a presliding curve: each is a friction row of the solver."""
 
@@ -288,8 +287,9 @@ class Damper:
     With a side force coefficient the limit of every law grows by it times the transverse force of the mounts of the
     rod. Presliding friction has the limit Fd, and below it springs with sliders over the stroke in place of the line:
     on first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
-    that curve (`vehicle.model.laws.presliding`); the smoothing has no effect. Parameters of a law that is not chosen
-    are optional. A control law other than "passive", or a function of the user's own, replaces the viscous law.
+    that curve (`vehicle.model.laws.presliding`); the smoothing has no effect.
+    Parameters of a law that is not chosen are optional. A control law other than "passive", or a function F(x, v) of
+    the user's own, replaces the viscous law.
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
@@ -309,21 +309,15 @@ class Damper:
     gas_force: float = quantity(
         "N", "force of the gas that pushes the damper apart", default=0.0, at_least=0.0, at_most=1e4
     )
-    function: str | None = quantity(
-        "-", "name of a viscous law of the user's own, `vehicle.register_law`", default=None
-    )
+    function: str | None = quantity("-", "law of `vehicle.register_law` in place of the viscous law", default=None)
     stop: ForceTable | None = None
     control: SemiActiveDamper | None = None
     friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
-        "s/m",
-        "eps: friction has the slope (2/pi) Fd eps at rest",
-        above=0.0,
-        at_least=10.0,
-        at_most=1e8,
+        "s/m", "eps: friction has the slope (2/pi) Fd eps at rest", above=0.0, at_least=10.0, at_most=1e8,
         why="friction is full at a few times 1/eps; beyond 1e9 the integration drowns in round-off",
-    )
+    )  # fmt: skip
     stribeck_friction: float | None = quantity(
         "N", "Fs, friction at rest of the Stribeck law", at_least=0.0, default=None, **RUBBED
     )
@@ -357,8 +351,9 @@ class Damper:
                     raise ConfigurationError(f"Damper.{name}: missing; {key} = {law} needs it [{unit}]")
         self._check_presliding()
         if self.function is not None and self.controlled is not None:
-            both = f"found {self.function!r} together with control.law = {self.controlled.law}"
-            raise ConfigurationError(f"Damper.function: {both}; both replace the viscous law: remove one of them")
+            raise ConfigurationError(
+                f"Damper.function: found {self.function!r} with control.law = {self.controlled.law}; remove one"
+            )
         if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "

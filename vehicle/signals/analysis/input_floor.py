@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache, partial
-from typing import Any
 
 import numpy as np
 import scipy
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 
 from vehicle.signals.analysis.record_lines import RecordLines, is_long
 from vehicle.signals.analysis.segments import windows_of_equal_length
+from vehicle.signals.analysis.spline import CubicSpline
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -122,10 +122,23 @@ def tapered_power(samples: Real, rounding: float, lines: int | None = None) -> t
 
 
 @cache
-def _taper_splines() -> list[Any]:
+def _taper_splines() -> list[CubicSpline]:
     """Return a cubic spline through each Slepian taper, from 0 to 1."""
-    tapers = scipy.signal.windows.dpss(TAPER_SAMPLES, BANDWIDTH, TAPERS)
-    return [scipy.interpolate.CubicSpline(np.linspace(0.0, 1.0, TAPER_SAMPLES), taper) for taper in tapers]
+    return [CubicSpline(np.linspace(0.0, 1.0, TAPER_SAMPLES), taper) for taper in slepian_tapers()]
+
+
+def slepian_tapers() -> Real:
+    """Return the tapers with unit energy, the most concentrated one first, with any sign; (TAPERS, TAPER_SAMPLES).
+
+    Source: Percival and Walden, Spectral Analysis for Physical Applications, 1993, equation 386a: eigenvectors of a
+    tridiagonal matrix with the largest eigenvalues.
+    """
+    count, index = TAPER_SAMPLES, np.arange(TAPER_SAMPLES)
+    diagonal = (0.5 * (count - 1 - 2 * index)) ** 2 * np.cos(2.0 * np.pi * BANDWIDTH / count)
+    beside = 0.5 * index[1:] * (count - index[1:])
+    chosen = (count - TAPERS, count - 1)
+    vectors = scipy.linalg.eigh_tridiagonal(diagonal, beside, select="i", select_range=chosen)[1]
+    return np.ascontiguousarray(vectors[:, ::-1].T)
 
 
 def _window(number: int, count: int, part: slice) -> Real:

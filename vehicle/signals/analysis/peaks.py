@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.signals.analysis.tops import prominent_tops
 
 PROMINENCE_DB = 1.0
 """Minimum prominence of a peak above the higher of its two feet: 1 dB, a factor 1.12."""
@@ -99,10 +99,7 @@ def resonance_peaks(
             continue
         decibel = 20.0 * np.log10(values[span])
         height, ripple = values[span], np.zeros(span.size) if error is None else error[span]
-        tops, properties = scipy.signal.find_peaks(decibel, prominence=prominence_db)
-        for top, rise, *bases in zip(
-            tops, properties["prominences"], properties["left_bases"], properties["right_bases"], strict=True
-        ):
+        for top, rise, bases in prominent_tops(decibel, prominence_db):
             foot = max(bases, key=lambda base: float(decibel[base]))
             noisy = quality is not None and quality[span[top]] < LEAST_COHERENCE
             if noisy or height[top] - height[foot] < STANDARD_ERRORS * np.hypot(ripple[top], ripple[foot]):

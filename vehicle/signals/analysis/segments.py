@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
@@ -86,7 +85,7 @@ def cut_into_segments(
         raise ConfigurationError(f"overlap: found {overlap:g}, must be 0 <= overlap < 1")
     length = round(window_s / time_step)
     step = max(1, length - round(overlap * length))
-    window = np.asarray(scipy.signal.get_window("hann", length), dtype=np.float64)
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi / length * np.arange(length))
     count = 0 if samples < length else 1 + (samples - length) // step
     averages = effective_averages(window, step, count) if count else 0.0
     if averages < minimum_averages:

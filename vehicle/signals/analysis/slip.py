@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.samples import checked_same_length, checked_signals
+from vehicle.signals.analysis.tops import prominent_tops
 
 Real = NDArray[np.float64]
 
@@ -167,8 +167,8 @@ def slip_phases(
         window = np.flatnonzero((time >= start - BREAK_AWAY) & (time <= min(end - BREAK_AWAY, start + SEARCHED)))
         peaks = []
         for sign in (1.0, -1.0):
-            tops, properties = scipy.signal.find_peaks(sign * relative[window], prominence=0.0)
-            for top, prominence in zip(window[tops], properties["prominences"], strict=True):
+            for index, prominence, _ in prominent_tops(sign * relative[window], 0.0):
+                top = window[index]
                 delay = float(time[top] - start)
                 if delay > BREAK_AWAY:
                     peaks.append(
@@ -176,7 +176,7 @@ def slip_phases(
                             time=float(time[top]),
                             delay=delay,
                             height=float(relative[top]),
-                            prominence=float(prominence),
+                            prominence=prominence,
                         )
                     )
         at_start = np.abs(time - start) <= BREAK_AWAY

@@ -7,10 +7,10 @@ from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.analysis.samples import checked_signals, checked_time_step
 
 LEAST_SAMPLING_RATE = 25.0
@@ -173,7 +173,7 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
         )
     samples = array.shape[1]
     # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
-    length = scipy.fft.next_fast_len(samples + int(np.ceil(4.0 / (curve.f1 * step))), real=True)
+    length = fast_length(samples + int(np.ceil(4.0 / (curve.f1 * step))))
     # numpy.fft allocates no extra work arrays.
     spectrum, frequency = np.fft.rfft(array, length, axis=1), np.fft.rfftfreq(length, step)
     if frequency.size <= KEPT_LINES:

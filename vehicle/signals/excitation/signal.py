@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import DataError
 from vehicle.names import CORNERS, in_order, is_wheel
+from vehicle.signals.analysis.spline import CubicSpline
 
 STEP_TOLERANCE = 1e-6
 """Maximum deviation of a time step from the mean step, relative [-]: rounding; readers rebuild the grid."""
@@ -162,18 +162,18 @@ class Signal:
             return 0.0
         return float(np.std(self.displacement[wheel]))
 
-    def spline(self, wheel: str, first: float, last: float) -> scipy.interpolate.CubicSpline:
+    def spline(self, wheel: str, first: float, last: float) -> CubicSpline:
         """Return the cubic spline of `plate_motion` for the times from first to last [s]."""
         return self._spline(self.displacement[wheel], first, last)
 
-    def slope_spline(self, wheel: str, first: float, last: float) -> scipy.interpolate.CubicSpline:
+    def slope_spline(self, wheel: str, first: float, last: float) -> CubicSpline:
         """Return the cubic spline of the slope velocity of a signal that has it; see `spline`."""
         return self._spline(self.slope_velocity[wheel], first, last)
 
-    def _spline(self, values: NDArray[np.float64], first: float, last: float) -> scipy.interpolate.CubicSpline:
+    def _spline(self, values: NDArray[np.float64], first: float, last: float) -> CubicSpline:
         begin, end = (int(time / self.timestep) for time in (first, last))
         near = slice(max(begin - MARGIN, 0), end + 2 + MARGIN)
-        return scipy.interpolate.CubicSpline(self.time[near], values[near], bc_type="not-a-knot")
+        return CubicSpline(self.time[near], values[near])
 
     def plate_motion(self, times: ArrayLike, wheels: Iterable[str] | None = None) -> PlateMotion:
         """Return displacement, velocity and acceleration of the plates at times within the record.

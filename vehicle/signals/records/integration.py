@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.table import Vector
+from vehicle.signals.analysis.fast_length import fast_length
 from vehicle.signals.records.choice import Choice, Chosen
 
 ORDER = 4
@@ -96,11 +96,11 @@ def integrate(values: Vector, step: float, order: int, corner: float) -> Vector:
             f"--highpass {corner:g} Hz: must be {2.0 / duration:.3g} to {0.4 / step:.4g} Hz for this record"
         )
     detrended = values - np.polynomial.Polynomial.fit(count, values, 1)(count)
-    size = scipy.fft.next_fast_len(values.size + int(np.ceil(PERIODS / (corner * step))), real=True)
-    frequency = scipy.fft.rfftfreq(size, step)
+    size = fast_length(values.size + int(np.ceil(PERIODS / (corner * step))))
+    frequency = np.fft.rfftfreq(size, step)
     ratio = (frequency / corner) ** (2 * ORDER)
     gain = (ratio / (1.0 + ratio)).astype(complex)
     gain[1:] /= (2j * np.pi * frequency[1:]) ** order
     gain[0] = 0.0
-    result: Vector = scipy.fft.irfft(scipy.fft.rfft(detrended, size) * gain, size)[: values.size]
+    result: Vector = np.fft.irfft(np.fft.rfft(detrended, size) * gain, size)[: values.size]
     return result
