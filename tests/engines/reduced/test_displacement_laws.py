@@ -10,6 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from scenarios.road.runs import one_sided_tyres
+from scenarios.signals.random_road import random_road
 from tests.engines.reduced.test_reduced_quarter_car import CAR, ROAD, damper, matrices
 from tests.validation import foreign, validated
 from vehicle.engines.linear.displacement_laws import BUSHING, STOP, DisplacementLaw
@@ -19,7 +20,6 @@ from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.model.laws.curve import Curve
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 
 ROAD_OF_STOPS = Signal(time=ROAD.time[:1201], displacement={"fr": ROAD.displacement["fr"][:1201]})

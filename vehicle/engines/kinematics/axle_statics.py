@@ -24,8 +24,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.engines.kinematics.axle_parts import Spring, Tie, axle_parts
-from vehicle.engines.simulation.axle_parts import Spring, TieTable, axle_parts
+from vehicle.engines.kinematics.axle_parts import Spring, TieTable, axle_parts
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.composition import PlacedWheel
 

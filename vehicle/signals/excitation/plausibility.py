@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from vehicle.digits import number
 from vehicle.errors import DataError
-from vehicle.signals.formats.clock import PAUSE
 from vehicle.signals.analysis.fast_length import fast_length
+from vehicle.signals.formats.clock import PAUSE
 from vehicle.signals.records.channel_faults import clipped, constant_part
 from vehicle.signals.records.rare_events import rare_events
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.errors import DataError
-from vehicle.signals.formats.table import Vector
 from vehicle.signals.analysis.fast_length import fast_length
+from vehicle.signals.formats.table import Vector
 from vehicle.signals.records.choice import Choice, Chosen
 
 ORDER = 4
