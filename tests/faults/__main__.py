@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tests.faults.cases import FAULTS
-from tests.faults.commands import commands
+from tests.faults.jobs import commands
 from tests.faults.table import ROOT, Count, build, counted, outcomes
 
 PAGE = ROOT / "docs" / "faults.md"
@@ -44,14 +44,14 @@ def page(table: dict[tuple[str, str], Count], left_out: list[str]) -> str:
     wrong = sum(len(count.wrong) for count in table.values())
     lines = [HEAD, f"{cases} cases, {wrong} with a fault of the program.", ""]
     lines += [
-        "| command | fault | calls | cases | results of before | new results | wrong |",
-        "|---|---|---|---|---|---|---|",
+        "| command | fault | calls | different | cases | results of before | new results | wrong |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for name in names:
         for fault in (*FAULTS, *kills):
             if count := table.get((name, fault)):
                 numbers = (count.results.total(), count.results["old"], count.results["new"], len(count.wrong))
-                cells = [name, fault, str(count.calls or ""), *map(str, numbers)]
+                cells = [name, fault, str(count.calls or ""), str(count.different or ""), *map(str, numbers)]
                 lines.append(f"| {' | '.join(cells)} |")
     if left_out:
         lines += ["", f"Not run in the time that was given: {', '.join(left_out)}."]
@@ -69,11 +69,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "faults", help="folder for inputs and results")
     parser.add_argument("--most", type=int, default=0, help="maximum cases of a fault of a command; 0 for all")
+    parser.add_argument(
+        "--whole", default="", help="faults that are tried at all calls in spite of --most, with commas"
+    )
     parser.add_argument("--kills", type=int, default=32, help="kills of each command at random times")
     parser.add_argument("--minutes", type=float, default=0.0, help="time for all; 0 for no limit")
     parser.add_argument("--only", default="", help="names of commands, with commas between them")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
+    whole = [fault for fault in options.whole.split(",") if fault]
     library, began = build(options.work), time.monotonic()
     with contextlib.redirect_stdout(io.StringIO()):
         all_names = [command.name for command in commands(options.work / "inputs")]
@@ -82,9 +86,9 @@ def main() -> int:
         left = 60.0 * options.minutes - (time.monotonic() - began)
         if options.minutes and left < 0.0:
             break
-        limit = left / (len(names) - number) * 2.0 if options.minutes else None
+        limit = left / (len(names) - number) * 2.0 if options.minutes else 0.0
         with lines_of(options.work, name).open("w", encoding="utf-8") as file:
-            for line in outcomes(library, options.work, name, options.most, options.kills, limit):
+            for line in outcomes(library, options.work, name, options.most, options.kills, whole, limit):
                 file.write(json.dumps(line) + "\n")
                 file.flush()
         table = read_table(options.work, all_names)

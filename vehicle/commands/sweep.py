@@ -100,7 +100,7 @@ def _job(options: argparse.Namespace) -> None:
             progress=ProgressLine("sweep     ", enabled=not options.quiet, runs=len(plan.cases)),
             notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
         )
-        cars = ranked_cars(table)
+        cars, failed = ranked_cars(table), table.failed  # read before the folder of the rows gets its name
         drawn = cars is not None and can_be_drawn(cars)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         if cars is not None and drawn:
@@ -115,16 +115,16 @@ def _job(options: argparse.Namespace) -> None:
         more += f"{PICTURE}, " if drawn else ""
         more += f"{DIFFERENCES} (comfort against the first car), " if (output / DIFFERENCES).exists() else ""
         print(
-            f"{output}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
+            f"{output}: {len(plan.cases)} runs, {len(failed)} failed, tyres {plan.tyres}, evaluated from "
             f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
         if cars is not None:
             print("\n".join(ranking_lines(cars)))
-        for case, reason in table.failed[:5]:
+        for case, reason in failed[:5]:
             print(f"failed      {case.label}: {reason}")
-    if table.failed and not options.allow_failed:
+    if failed and not options.allow_failed:
         raise SimulationError(
-            f"{len(table.failed)} of {len(plan.cases)} runs failed; the table is written, with the reason in their "
+            f"{len(failed)} of {len(plan.cases)} runs failed; the table is written, with the reason in their "
             "rows; --allow-failed takes that as success"
         )
 
