@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from vehicle.__main__ import main
 from vehicle.commands.command_line import run_command
@@ -87,7 +88,7 @@ def keep_cars() -> None:
             cars[key] = load(*arguments, **named)
         return cars[key]
 
-    Car.load = kept  # type: ignore[method-assign, assignment]
+    mock.patch.object(Car, "load", kept).start()
 
 
 class InProcess(Executor):

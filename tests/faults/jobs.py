@@ -15,7 +15,7 @@ from tests.model.flexbody.modal_test import write_modes
 from vehicle.__main__ import main
 from vehicle.commands import COMMANDS, module_of
 from vehicle.model.parameters.shipped import FOCUS_FILE
-from vehicle.signals.records.formats import WRITTEN
+from vehicle.signals.formats.formats import WRITTEN
 
 SAMPLES, STEP_S = 300, 0.005
 
