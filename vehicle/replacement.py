@@ -93,9 +93,14 @@ def being_made(folder: Path) -> Iterator[None]:
         _being_made.discard(folder.absolute())
 
 
+def folder_being_made(path: Path) -> Path | None:
+    """Return the nearest folder of `being_made` that contains a file; None if there is none."""
+    return next((parent for parent in path.absolute().parents if parent in _being_made), None)
+
+
 def is_being_made(path: Path) -> bool:
     """True if a file is in a folder of `being_made`."""
-    return not _being_made.isdisjoint(path.absolute().parents)
+    return folder_being_made(path) is not None
 
 
 def temporary_name(path: Path) -> Path:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tests.faults.cases import FAULTS
-from tests.faults.commands import commands
+from tests.faults.jobs import commands
 from tests.faults.table import ROOT, Count, build, counted, outcomes
 
 PAGE = ROOT / "docs" / "faults.md"
@@ -25,43 +25,70 @@ Each command replaces results of another input (`--force`). After each case the 
 for byte, or the new ones, complete; the exit code and the message must be true; what is left must be mentioned, and the
 next command must succeed, say what it found, and leave nothing of it.
 
-Several files that a command adds to a folder with others (`loads`, `spectra`, `road`, `fit-mount`) cannot be exchanged
-in one step: after a kill between their renames, the next command that reads or writes them moves the others too, and is
-run here before the results are judged.
+Several files that a command adds to a folder with others (`loads`, `spectra`, `road`, `fit-mount`, `fit-damper`) cannot
+be exchanged in one step: after a kill between their renames, the next command that reads or writes them moves the
+others too, and is run here before the results are judged.
 
-The rows "only writing" write small files in each way that the commands use, without a computation.
+Each command that writes has a row, for each option and format that writes; a test compares them with the parsers. The
+rows "only writing" write small files in each way that the commands use, without a computation. `bench` replaces nothing
+and has none. A film is written by ffmpeg, a process of its own whose calls do not fail here: a test writes it, and each
+other format, beyond a limit of the size of files.
 
-`make faults` runs all calls and writes this page; `make test` runs a sample. "Calls" are the system calls of the
-command that the fault can meet, "cases" those that were made to fail.
+"Calls" are the system calls on files below the folder of the results that the fault can meet. Of calls of one kind in a
+row for one file, the first, the middle one and the last are tried, as only the length of an unfinished file differs
+between them: these are the "different" ones. "Cases" are those that were made to fail: with fewer cases than different
+calls, they have equal distances. The next command is run once for all cases of a command that leave the same names,
+lists and journals.
+
+`make faults` runs all different calls and writes this page; `make test` runs a sample. Rows with a `*` are of an
+earlier run of the page; where the column "different" is empty, of a version that counted all calls.
 """
 
+HEADS = ("command", "fault", "calls", "different", "cases", "results of before", "new results", "wrong")
 
-def page(table: dict[tuple[str, str], Count], left_out: list[str]) -> str:
-    """Return the page of the counts."""
-    names = list(dict.fromkeys(command for command, _ in table))
-    kills = [fault for fault in dict.fromkeys(fault for _, fault in table) if fault not in FAULTS]
-    cases = sum(count.results.total() for count in table.values())
-    wrong = sum(len(count.wrong) for count in table.values())
+Cells = list[str]
+
+
+def page(table: dict[tuple[str, str], Count], names: Sequence[str], earlier: str) -> str:
+    """Return the page of the counts.
+
+    Args:
+        table: counts of this run.
+        names: all commands of the page, in its order.
+        earlier: the page so far, whose rows are kept for commands that are not in the table.
+    """
+    rows = [row for name in names for row in (_rows(table, name) or _earlier(earlier, name))]
+    cases, wrong = (sum(int(row[HEADS.index(head)]) for row in rows) for head in ("cases", "wrong"))
     lines = [HEAD, f"{cases} cases, {wrong} with a fault of the program.", ""]
-    lines += [
-        "| command | fault | calls | cases | results of before | new results | wrong |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for name in names:
-        for fault in (*FAULTS, *kills):
-            if count := table.get((name, fault)):
-                numbers = (count.results.total(), count.results["old"], count.results["new"], len(count.wrong))
-                cells = [name, fault, str(count.calls or ""), *map(str, numbers)]
-                lines.append(f"| {' | '.join(cells)} |")
-    if left_out:
-        lines += ["", f"Not run in the time that was given: {', '.join(left_out)}."]
-    if wrong:
-        lines += ["", "What was wrong:", ""]
-        texts = dict.fromkeys(
-            f"- {name}, {fault}: {case['wrong']}" for (name, fault), c in table.items() for case in c.wrong
-        )
-        lines += [text[:400] for text in texts]
+    lines += [f"| {' | '.join(row)} |" for row in (HEADS, ["---"] * len(HEADS), *rows)]
+    seen = {row[0].removesuffix(" *") for row in rows}
+    if missing := [name for name in names if name not in seen]:
+        lines += ["", f"Not run yet: {', '.join(missing)}."]
+    texts = dict.fromkeys(
+        f"- {name}, {fault}: {case['wrong']}" for (name, fault), c in table.items() for case in c.wrong
+    )
+    lines += ["", "What was wrong:", "", *(text[:400] for text in texts)] if texts else []
     return "\n".join(lines) + "\n"
+
+
+def _rows(table: dict[tuple[str, str], Count], name: str) -> list[Cells]:
+    """Return the rows of a command, faults of system calls first."""
+    faults = [fault for command, fault in table if command == name]
+    rows = []
+    for fault in sorted(faults, key=[*FAULTS, *(fault for fault in faults if fault not in FAULTS)].index):
+        count = table[name, fault]
+        numbers = (count.results.total(), count.results["old"], count.results["new"], len(count.wrong))
+        rows.append([name, fault, str(count.calls or ""), str(count.different or ""), *map(str, numbers)])
+    return rows
+
+
+def _earlier(text: str, name: str) -> list[Cells]:
+    """Return the rows of a command in a page, marked as earlier."""
+    lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line[:1] == "|"]
+    rows = [cells for cells in lines if cells[0].removesuffix(" *") == name]
+    return [
+        [f"{name} *", *(cells[1:] if len(cells) == len(HEADS) else [*cells[1:3], "", *cells[3:]])] for cells in rows
+    ]
 
 
 def main() -> int:
@@ -69,11 +96,16 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "faults", help="folder for inputs and results")
     parser.add_argument("--most", type=int, default=0, help="maximum cases of a fault of a command; 0 for all")
+    parser.add_argument(
+        "--whole", default="", help="faults that are tried at all calls in spite of --most, with commas"
+    )
     parser.add_argument("--kills", type=int, default=32, help="kills of each command at random times")
     parser.add_argument("--minutes", type=float, default=0.0, help="time for all; 0 for no limit")
     parser.add_argument("--only", default="", help="names of commands, with commas between them")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
+    whole = [fault for fault in options.whole.split(",") if fault]
+    earlier = PAGE.read_text()
     library, began = build(options.work), time.monotonic()
     with contextlib.redirect_stdout(io.StringIO()):
         all_names = [command.name for command in commands(options.work / "inputs")]
@@ -82,13 +114,13 @@ def main() -> int:
         left = 60.0 * options.minutes - (time.monotonic() - began)
         if options.minutes and left < 0.0:
             break
-        limit = left / (len(names) - number) * 2.0 if options.minutes else None
+        limit = left / (len(names) - number) * 2.0 if options.minutes else 0.0
         with lines_of(options.work, name).open("w", encoding="utf-8") as file:
-            for line in outcomes(library, options.work, name, options.most, options.kills, limit):
+            for line in outcomes(library, options.work, name, options.most, options.kills, whole, limit):
                 file.write(json.dumps(line) + "\n")
                 file.flush()
         table = read_table(options.work, all_names)
-        PAGE.write_text(page(table, [each for each in all_names if not lines_of(options.work, each).exists()]))
+        PAGE.write_text(page(table, all_names, earlier))
         print(
             f"{name}: {sum(count.results.total() for key, count in table.items() if key[0] == name)} cases", flush=True
         )

@@ -15,6 +15,7 @@ import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 from tests.faults.commands import Written, run_words
@@ -25,6 +26,9 @@ OPEN, WRITE, FSYNC, RENAME, UNLINK, MMAP, CLOSE, MKDIR, READ = (1 << bit for bit
 """Kinds of system calls, as in faults.c."""
 
 ALL = (1 << 9) - 1
+
+LIST = "calls.txt"
+"""File of the counted calls."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,12 @@ def hidden_in(folder: Path) -> list[str]:
     )
 
 
+def _state(path: Path, name: str) -> str:
+    """Return the name of what is left, without the number of its process, with the content of a list or journal."""
+    content = path.read_text(errors="replace") if path.is_file() and path.name.startswith(".vehicle-") else ""
+    return re.sub(r"\.\d+\.partial", ".partial", name) + "".join(content.splitlines()[:2])
+
+
 class Bench:
     """A command with its results of before and its new results, and cases of it.
 
@@ -99,6 +109,10 @@ class Bench:
         os.chdir(self.before)
         assert run_words(command.old) == 0  # in this process: later ones need no imports
         self.old = files_of(self.before)
+        self._prepare()
+        os.chdir(self.case)
+        assert run_words(command.new) == 0  # the cars of the cases are kept
+        os.chdir(folder)
         references = []
         for _ in range(2):
             self._prepare()
@@ -106,12 +120,28 @@ class Bench:
             code, said = self.run(self.case, command.new, Fault(ALL, 0), -1)
             assert code == 0, said
             self.duration = time.monotonic() - began
-            counts = re.findall(r"^calls (\d+) (\d+)$", said, re.MULTILINE)
-            self.calls = {int(kind): int(count) for kind, count in counts}
+            self.calls = [
+                (int(kind), path)
+                for kind, _, path in (line.partition(" ") for line in (folder / LIST).read_text().splitlines())
+            ]
             references.append(files_of(self.case))
         self.new = references[0]
         self.same = {name for name in self.new if references[1].get(name) == self.new[name]}
         assert self.new != self.old
+        self.judged: dict[tuple[str, ...], list[str]] = {}
+
+    def numbers(self, fault: Fault) -> tuple[int, list[int]]:
+        """Return the number of calls that a fault can meet, and the numbers of those to try.
+
+        Of calls of one kind in a row for one file, the first, the middle one and the last are tried: between them, only
+        the length of an unfinished file differs.
+        """
+        met = [call for call in self.calls if call[0] & fault.calls]
+        tried: list[int] = []
+        for _, group in groupby(enumerate(met, start=1), key=lambda numbered: numbered[1]):
+            row = [number for number, _ in group]
+            tried += sorted({row[0], row[len(row) // 2], row[-1]})
+        return len(met), tried
 
     def outcome(self, name: str, number: int) -> Outcome:
         """Run a case with a fault, and the command again without it if something is left; judge both."""
@@ -156,10 +186,16 @@ class Bench:
         return Outcome(self.command.name, name, number, results, code, "; ".join(wrong), said[-400:] if wrong else "")
 
     def _afterwards(self, left: Sequence[str], results: str) -> list[str]:
-        """Run the command again where something is left; returns what is wrong then."""
+        """Run the command again where something is left, once for all equal remains; returns what is wrong then."""
         silent_is_right = not hidden_in(self.case)  # a reader has put it in order
         if not left and results != "wrong":
             return []  # a state that was judged before
+        state = (results, str(silent_is_right), *(_state(self.case / name, name) for name in left))
+        if state not in self.judged:
+            self.judged[state] = self._next_command(left, silent_is_right=silent_is_right)
+        return self.judged[state]
+
+    def _next_command(self, left: Sequence[str], *, silent_is_right: bool) -> list[str]:
         code, said = self.run(self.case, self.command.new)
         wrong = []
         if code or self._results() != "new":
@@ -231,12 +267,12 @@ class Bench:
             sys.stderr = open(2, "w", closefd=False, buffering=1)  # noqa: SIM115
             if fault is not None:
                 error = -1 if number < 0 else fault.error
+                if number < 0:
+                    self.library.faults_list(os.fsencode(self.folder / LIST))
                 self.library.faults_arm(os.fsencode(folder), fault.calls, ctypes.c_long(number), error, fault.lasting)
             code = run_words(words)
             self.library.faults_disarm()
             sys.stdout.flush()
-            for bit in range(9) if number < 0 else ():
-                print(f"calls {1 << bit} {self.library.faults_count(1 << bit)}", file=sys.stderr)
         except BaseException:
             self.library.faults_disarm()
             traceback.print_exc()

@@ -22,7 +22,12 @@ enum { OPEN = 1, WRITE = 2, FSYNC = 4, RENAME = 8, UNLINK = 16, MMAP = 32, CLOSE
 static char folder[PATH_MAX];
 static size_t length;
 static int armed, code, calls, lasting;
-static long count, last, of_kind[9];
+static long count, last;
+static char called[PATH_MAX];
+static FILE *list;
+
+/* Write the kind and the path of each counted call to a file. */
+void faults_list(const char *file) { list = fopen(file, "w"); }
 
 /* Fail call number n of the kinds in `which` with `error`; 0 kills, a negative one only counts; all later calls of
    these kinds fail too if `all_later` is set, as on a full disk. */
@@ -32,16 +37,14 @@ void faults_arm(const char *below, int which, long n, int error, int all_later) 
     calls = which, last = n, code = error, lasting = all_later, count = 0, armed = 1;
 }
 
-/* Number of calls of the kinds in `which` since the library was loaded. */
-long faults_count(int which) {
-    long sum = 0;
-    for (int bit = 0; bit < 9; bit++) sum += which >> bit & 1 ? of_kind[bit] : 0;
-    return sum;
+void faults_disarm(void) {
+    armed = 0;
+    if (list) fclose(list), list = NULL;
 }
-void faults_disarm(void) { armed = 0; }
 
 static int below(const char *path) {
     if (!armed || !path) return 0;
+    if (list) strncpy(called, path, sizeof called - 1);
     return path[0] != '/' || (!strncmp(path, folder, length) && (path[length] == '/' || !path[length]));
 }
 
@@ -61,8 +64,8 @@ static int below_at(int descriptor, const char *path) {
 
 /* 1 if this call fails now, with errno set. */
 static int fails(int kind) {
-    __sync_add_and_fetch(&of_kind[__builtin_ctz(kind)], 1);
     if (!(kind & calls)) return 0;
+    if (list) fprintf(list, "%d %s\n", kind, called);
     long number = __sync_add_and_fetch(&count, 1);
     if (code < 0 || !(number == last || (lasting && number > last))) return 0;
     if (code == 0) kill(getpid(), SIGKILL);

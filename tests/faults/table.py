@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,11 +22,13 @@ class Count:
 
     Attributes:
         calls: number of system calls of the command that the fault can meet; 0 for kills at random times.
+        different: number of these calls without those between the first, the middle and the last of equal ones.
         results: number of cases by their results, "old", "new" or "wrong".
         wrong: cases in which something that must hold does not.
     """
 
     calls: int = 0
+    different: int = 0
     results: Counter[str] = field(default_factory=Counter)
     wrong: list[dict[str, Any]] = field(default_factory=list)
 
@@ -44,29 +46,22 @@ def build(folder: Path) -> Path:
     return library
 
 
-def outcomes(library: Path, work: Path, names: str, most: int, kills: int, limit: float | None) -> Iterator[Any]:
+def outcomes(
+    library: Path, work: Path, names: str, most: int, kills: int, whole: Sequence[str] = (), limit: float = 0.0
+) -> Iterator[Any]:
     """Yield the outcomes of commands; see `serve`.
 
     Args:
         library: of `build`.
         work: folder for inputs and results.
         names: names of the commands, with commas between them.
-        most, kills: see `serve`.
-        limit: time after which the process is ended [s].
+        most, kills, whole: see `serve`.
+        limit: time after which the process is ended [s]; 0 for no limit.
     """
-    settings = {"LD_PRELOAD": str(library), "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1", "MUJOCO_GL": "disable"}
+    settings = {"LD_PRELOAD": str(library), "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     log = work / f"{names.replace(' ', '_').replace(',', '_')}.log"
-    command = [
-        "timeout",
-        str(limit or 0),
-        sys.executable,
-        "-m",
-        "tests.faults.server",
-        str(work),
-        names,
-        str(most),
-        str(kills),
-    ]
+    command = ["timeout", str(limit), sys.executable, "-m", "tests.faults.server", str(work), names]
+    command += [str(most), str(kills), *whole]
     environment = {**os.environ, **settings}
     with (
         log.open("w") as errors,
@@ -86,7 +81,7 @@ def counted(lines: Iterator[Any]) -> dict[tuple[str, str], Count]:
     for line in lines:
         count = table.setdefault((line["command"], line["fault"]), Count())
         if "calls" in line:
-            count.calls = line["calls"]
+            count.calls, count.different = line["calls"], line["different"]
         else:
             count.results[line["results"]] += 1
             if line["wrong"]:

@@ -12,11 +12,20 @@ from pathlib import Path
 import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
-from vehicle.runs.output.folder import check_file, check_study, output_folder, study_folder, write_text, write_whole
+from vehicle.runs.output import written_files
+from vehicle.runs.output.folder import (
+    check_file,
+    check_study,
+    output_folder,
+    study_folder,
+    whole_files,
+    write_text,
+    write_whole,
+)
 from vehicle.runs.output.free_names import free_file, free_files, free_folder
 from vehicle.runs.output.locks import folder_lock
 from vehicle.runs.output.model_files import write_mjcf
-from vehicle.runs.output.written_files import MARKER, discard, foreign, note, written
+from vehicle.runs.output.written_files import MARKER, discard, foreign, is_own, note, written
 
 ROOT = Path(__file__).resolve().parents[2]
 FILM = b"\x00\x00\x00\x20ftypisom"
@@ -112,6 +121,31 @@ def study(folder: Path, *names: str, force: bool = False, resume: bool = False, 
     with study_folder(folder, force=force, resume=resume, rows=rows) as made:
         for name in names:
             write_text(made / name, name)
+
+
+def test_a_list_concerns_nothing_in_the_folders_below(tmp_path, monkeypatch):
+    """The list that a command leaves in a folder of all, as /tmp, takes no file of other folders there."""
+    write_text(tmp_path / "all.csv", "all")
+    write_text(tmp_path / "mine" / "a.csv", "a")
+    assert set(written(tmp_path)) == {"all.csv", MARKER} and set(written(tmp_path / "mine")) == {"a.csv", MARKER}
+    (tmp_path / "mine").rename(tmp_path / "moved")
+    write_text(tmp_path / "moved" / "a.csv", "b")
+    with whole_files([tmp_path / "model" / name for name in ("car.xml", "meshes/a.stl")]) as paths:
+        for path in paths:
+            write_text(path, "new")
+    assert set(written(tmp_path / "model")) == {"car.xml", "meshes/a.stl", MARKER}
+    assert is_own(tmp_path / "model" / "meshes" / "a.stl")
+    # One that another user owns is in nobody's way.
+    listed = written_files.written
+
+    def refused(folder):
+        if folder == tmp_path:
+            raise PermissionError
+        return listed(folder)
+
+    monkeypatch.setattr(written_files, "written", refused)
+    write_text(tmp_path / "moved" / "a.csv", "c")
+    assert is_own(tmp_path / "moved" / "a.csv") and not is_own(tmp_path / "moved" / MARKER.upper())
 
 
 def test_studies_keep_the_same_list(tmp_path):

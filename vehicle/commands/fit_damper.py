@@ -43,7 +43,7 @@ def parser() -> Parser:
 
 def _job(options: argparse.Namespace) -> None:
     from vehicle.drawing.rendering.damper_plot import DamperLoop, plot_damper
-    from vehicle.runs.output.folder import write_text, write_whole
+    from vehicle.runs.output.folder import whole_files, write_text, write_whole
     from vehicle.signals.records.choice import pairs
     from vehicle.studies.dampers.damper_text import caption_of, control_lines, summary_lines, tests_text, vehicle_lines
     from vehicle.studies.dampers.fitted_damper import fit_damper
@@ -58,19 +58,21 @@ def _job(options: argparse.Namespace) -> None:
     names = [TABLE, *(f"damper{each.name}.{ending}" for each in fits for ending in ("toml", "png"))]
     names += [CONTROL] if len(fits) > 1 else []
     paths = dict(zip(names, output_files_of(options, Path("runs/damper"), names), strict=True))
-    write_text(paths[TABLE], tests_text(fits))
-    for fitted in fits:
-        write_text(paths[f"damper{fitted.name}.toml"], vehicle_lines(fitted))
-        loops = [
-            DamperLoop(f"{test.name}: error {error:.3f}, left out {outside:.3f}", test.displacement, test.velocity,
-                       test.force, fitted.fit.force(test))
-            for test, error, outside in zip(fitted.tests, fitted.fit.fitted, fitted.fit.left_out, strict=True)
-        ]  # fmt: skip
-        title = fitted.fit.law.title.capitalize()
-        write_whole(paths[f"damper{fitted.name}.png"],
-                    partial(plot_damper, loops=loops, title=title, caption=caption_of(fitted)))  # fmt: skip
-    if len(fits) > 1:
-        write_text(paths[CONTROL], control_lines(fits))
+    with whole_files(list(paths.values())) as temporary:
+        new = dict(zip(names, temporary, strict=True))
+        write_text(new[TABLE], tests_text(fits))
+        for fitted in fits:
+            write_text(new[f"damper{fitted.name}.toml"], vehicle_lines(fitted))
+            loops = [
+                DamperLoop(f"{test.name}: error {error:.3f}, left out {outside:.3f}", test.displacement, test.velocity,
+                           test.force, fitted.fit.force(test))
+                for test, error, outside in zip(fitted.tests, fitted.fit.fitted, fitted.fit.left_out, strict=True)
+            ]  # fmt: skip
+            title = fitted.fit.law.title.capitalize()
+            write_whole(new[f"damper{fitted.name}.png"],
+                        partial(plot_damper, loops=loops, title=title, caption=caption_of(fitted)))  # fmt: skip
+        if len(fits) > 1:
+            write_text(new[CONTROL], control_lines(fits))
     if not options.quiet:
         for fitted in fits:
             print("\n".join(summary_lines(fitted)))

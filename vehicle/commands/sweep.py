@@ -121,7 +121,8 @@ def _job(options: argparse.Namespace) -> None:
         indices = comfort_indices(table, ranges) if ranges else None
         if indices is not None:
             write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
-        cars = None if ranges else ranked_cars(table)
+        # Read before the folder of the rows gets its name.
+        cars, failed = None if ranges else ranked_cars(table), table.failed
         drawn = cars is not None and can_be_drawn(cars)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         if cars is not None and drawn:
@@ -137,18 +138,18 @@ def _job(options: argparse.Namespace) -> None:
         more += f"{SOBOL}, " if ranges else ""
         more += f"{DIFFERENCES} (comfort against the first car), " if (output / DIFFERENCES).exists() else ""
         print(
-            f"{output}: {len(plan.cases)} runs, {len(table.failed)} failed, tyres {plan.tyres}, evaluated from "
+            f"{output}: {len(plan.cases)} runs, {len(failed)} failed, tyres {plan.tyres}, evaluated from "
             f"{plan.skip:g} s on; table.csv, {more}sweep.json, rows.jsonl, timing.csv"
         )
         if cars is not None:
             print("\n".join(ranking_lines(cars)))
         if indices is not None:
             print("\n".join(index_lines(indices)))
-        for case, reason in table.failed[:5]:
+        for case, reason in failed[:5]:
             print(f"failed      {case.label}: {reason}")
-    if table.failed and not options.allow_failed:
+    if failed and not options.allow_failed:
         raise SimulationError(
-            f"{len(table.failed)} of {len(plan.cases)} runs failed; the table is written, with the reason in their "
+            f"{len(failed)} of {len(plan.cases)} runs failed; the table is written, with the reason in their "
             "rows; --allow-failed takes that as success"
         )
 

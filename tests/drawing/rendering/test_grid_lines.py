@@ -86,3 +86,12 @@ def test_axes_without_a_grid_get_none(tmp_path):
 @pytest.mark.parametrize(("value", "words"), [(1.0, "10⁰"), (0.01, "10⁻²"), (1e12, "10¹²")])
 def test_a_decade_is_written_in_plain_letters(value, words):
     assert power_of_ten(value) == words
+
+
+def test_a_logarithmic_axis_without_a_value_is_drawn(tmp_path):
+    with saved_figure(tmp_path / "a.png", (3.0, 2.0)) as figure:
+        axes = figure.subplots()
+        axes.set(xscale="log", yscale="log")
+        axes.plot([1.0, 2.0], [np.nan, np.nan])
+    assert (tmp_path / "a.png").stat().st_size > 1000
+    assert axes.get_ylim() == (0.1, 1.0)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import resource
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.full_disk import largest_file
 from vehicle.drawing.rendering.backend import require_film
 from vehicle.drawing.rendering.figure import saved_figure
 from vehicle.drawing.rendering.film import write_film
@@ -21,17 +20,6 @@ from vehicle.signals.formats.formats import BY_NAME, WRITTEN, write_record
 from vehicle.signals.formats.table import Record
 
 SAMPLES = 20_000
-
-
-@contextmanager
-def largest_file(size: int) -> Iterator[None]:
-    """Let no file of this process and its children become larger than a number of bytes."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 def writer(name: str) -> Callable[[Path], object]:

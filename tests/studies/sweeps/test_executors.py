@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import math
-import os
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from tests.full_disk import largest_file
 from tests.studies.sweeps.sweep_samples import Peak, ShortRoad, grid
 from vehicle.errors import ConfigurationError, OutputError, SimulationError
 from vehicle.studies.sweeps import dispatcher, executors, worker
@@ -171,14 +171,27 @@ def test_a_full_disk_of_a_worker_stops_the_sweep(monkeypatch):
         sweep(many(3), Peak(), executor=lambda: ThreadPoolExecutor(1))
 
 
-def test_a_full_disk_of_the_sweep_stops_it(tmp_path, monkeypatch):
-    def full(descriptor, content):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(os, "write", full)
+def test_a_full_disk_of_the_sweep_stops_it(tmp_path):
     rows = StoredRows(tmp_path / "rows.jsonl", 1)
-    with pytest.raises(OutputError, match=r"cannot be written after 0 rows: No space left.*continue with --resume"):
-        rows.append(np.arange(1), Block.of(many(1), [""], [Result()]))
+    with (
+        largest_file(10),
+        pytest.raises(OutputError, match=r"cannot be written after 0 rows: File too large.*continue with --resume"),
+    ):
+        rows.append(np.arange(1), Block.of(many(1), ["k" * 64], [Result()]))
+
+
+def test_no_file_of_rows_stays_open(tmp_path):
+    """Windows moves no folder with an open file: rows are read from where the folder was, not from a descriptor."""
+    (tmp_path / "work").mkdir()
+    table = sweep(many(3), Peak(), executor=lambda: ThreadPoolExecutor(1), folder=tmp_path / "work")
+    before = table.text()
+    (tmp_path / "work" / "rows.jsonl").rename(tmp_path / "rows.jsonl")
+    with pytest.raises(FileNotFoundError):
+        table.text()
+    (tmp_path / "rows.jsonl").rename(tmp_path / "work" / "rows.jsonl")
+    assert table.text() == before and [result.values for result in table.results] == [
+        table.results[number].values for number in range(3)
+    ]
 
 
 def test_a_time_limit_needs_processes():

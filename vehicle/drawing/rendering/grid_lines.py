@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 Group = Literal["major", "minor"]
 
 GROUPS: tuple[Group, Group] = ("major", "minor")
+NO_VALUES = (0.1, 1.0)
+"""Limits of a logarithmic axis without a positive value, as of a response that is defined nowhere."""
 SIDES = {"x": ("bottom", "top"), "y": ("left", "right")}
 
 
@@ -37,6 +39,10 @@ def bared(axes: Axes) -> dict[str, list[Group]]:
         return grid
     for name, sides in SIDES.items():
         axis = getattr(axes, f"{name}axis")
+        if axis.get_scale() == "log" and getattr(axes, f"get_autoscale{name}_on")():
+            sharing = getattr(axes, f"get_shared_{name}_axes")().get_siblings(axes)
+            if not any(np.isfinite(getattr(each, f"{name}axis").get_minpos()) for each in sharing):
+                getattr(axes, f"set_{name}lim")(NO_VALUES)
         for group in GROUPS:
             if isinstance(getattr(axis, f"get_{group}_locator")(), NullLocator):
                 continue

@@ -104,7 +104,7 @@ def new_files(goals: Sequence[Path]) -> Iterator[list[Path]]:
         for path, hidden in zip(goals, new, strict=True):
             if hidden.exists():
                 refuse_foreign_file(path)
-                note(path, digest_of(hidden))
+                note(path, digest_of(hidden), with_folder=goal.parent)
         _complete(work)
         _put_in_place(goal)
 

@@ -4,6 +4,10 @@ A line contains the beginning of the SHA-256 of a file and its name. A file belo
 content matches a digest of its lines: an edited file belongs to the user. A line without a digest belongs to a file
 that grows during a run. The list moves with its folder; a single file that is moved away has no list and is not
 replaced.
+
+A list names the files of its own folder, and those below that were made together with it, as meshes/wheel.stl of a
+model: never a file that another command wrote below, which has a list of its own. So a list in the folder of all, as
+/tmp, concerns nothing in the folders there.
 """
 
 from __future__ import annotations
@@ -17,7 +21,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from vehicle.errors import ConfigurationError
-from vehicle.replacement import is_being_made
+from vehicle.replacement import folder_being_made, is_being_made
 
 MARKER = ".vehicle-files"
 UNFINISHED, COMPLETE = ".vehicle-unfinished", ".vehicle-complete"
@@ -47,14 +51,18 @@ def mark(folder: Path) -> None:
         _append(folder / MARKER, HEAD + "".join(f"{name}\n" for name in sorted(written(folder))))
 
 
-def note(path: Path, digest: str = "") -> None:
-    """Add a file to the list of the nearest parent folder with a list, else to a new list in its folder.
+def note(path: Path, digest: str = "", *, with_folder: Path | None = None) -> None:
+    """Add a file to the list of its folder.
 
     Args:
         path: the file under its final name.
         digest: see `digest_of`; empty for a file that grows, which belongs to the program with any content.
+        with_folder: folder above, whose files are made together with this one and whose list names it; by default the
+            folder of `being_made` that contains the file, else its own.
     """
-    folder, name = _entry(path)
+    at = path.parent.resolve() / path.name
+    folder = with_folder or folder_being_made(path) or at.parent
+    name = at.relative_to(folder.resolve()).as_posix()
     mark(folder)
     listed = written(folder)
     if name not in listed or (digest not in listed[name] if digest else listed[name]):
@@ -85,15 +93,6 @@ def digest_of(path: Path) -> str:
     """Return the beginning of the SHA-256 of a file."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()[:DIGITS]
-
-
-def _entry(path: Path) -> tuple[Path, str]:
-    """Return the folder of the list for a file, and the name of the file in this list."""
-    at = path.parent.resolve() / path.name
-    # A clone has generated files and no list: a mesh belongs to the folder of its model.
-    near = {parent for parent in at.parents[:2] if at.relative_to(parent).as_posix() in _of_earlier_versions(parent)}
-    folder = next((parent for parent in at.parents if (parent / MARKER).exists() or parent in near), at.parent)
-    return folder, at.relative_to(folder).as_posix()
 
 
 def written(folder: Path) -> dict[str, frozenset[str]]:
@@ -146,9 +145,17 @@ def _files_of_summary(path: Path) -> set[str]:
 
 
 def is_own(path: Path) -> bool:
-    """True if the program wrote the file, and its content is unchanged since."""
-    folder, name = _entry(path)
-    return _unchanged(path, written(folder).get(name))
+    """True if the program wrote the file, as a list of its folder or one above says, and its content is unchanged."""
+    at = path.parent.resolve() / path.name
+    digests = written(at.parent).get(at.name)
+    for number, folder in enumerate(at.parents[1:]):
+        if digests is not None:
+            break
+        with suppress(PermissionError):  # a folder of others
+            # A clone has generated files and no list: a mesh belongs to the folder of its model.
+            if number == 0 or (folder / MARKER).exists():
+                digests = written(folder).get(at.relative_to(folder).as_posix())
+    return _unchanged(path, digests)
 
 
 def _unchanged(path: Path, digests: frozenset[str] | None) -> bool:

@@ -1,7 +1,7 @@
 """Rows of a sweep in a file: appended as their tasks finish, found by the number of the case, used again later.
 
-The process of a sweep holds only the position of each row in the file (16 byte a case). Without a folder the file is a
-temporary one.
+The process of a sweep holds only the position of each row in the file (16 byte a case). The file is open only while it
+is written or read: Windows moves no folder with an open file. Without a folder the file is a temporary one.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ import os
 import tempfile
 import time as clock
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -52,22 +54,31 @@ class StoredRows(LazySequence[Result]):
     def __init__(self, path: Path | None, count: int) -> None:
         self.path = path
         try:
-            if path is None:
-                descriptor, name = tempfile.mkstemp(suffix=ROWS)
-                Path(name).unlink()
-            else:
+            if path is not None:
                 note(path)
-                descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+            self._temporary = tempfile.TemporaryFile(buffering=0) if path is None else None  # noqa: SIM115
+            if self._temporary is not None:
+                weakref.finalize(self, self._temporary.close)
+            with self._opened("ab") as file:
+                self._end = file.seek(0, os.SEEK_END)
         except OSError as error:
             raise OutputError(
                 f"{path or tempfile.gettempdir()}: cannot be written: {error.strerror}; use another folder"
             ) from None
-        self._descriptor = descriptor
-        weakref.finalize(self, os.close, descriptor)
-        self._end, self._synchronised = os.fstat(descriptor).st_size, clock.monotonic()
+        self._synchronised = clock.monotonic()
         self._start = np.zeros(count, dtype=np.int64)
         self._length = np.zeros(count, dtype=np.int32)
         self.failed = np.zeros(count, dtype=bool)
+
+    @contextmanager
+    def _opened(self, mode: Literal["rb", "ab"]) -> Iterator[BinaryIO]:
+        """Yield the file without a buffer; a mode as of `open`."""
+        if self._temporary is not None:
+            yield self._temporary
+            return
+        assert self.path is not None
+        with self.path.open(mode, buffering=0) as file:
+            yield file
 
     @property
     def stored(self) -> npt.NDArray[np.bool_]:
@@ -114,8 +125,10 @@ class StoredRows(LazySequence[Result]):
         starts = np.concatenate([[0], ends[:-1]])
         try:
             remaining = memoryview(block.rows)
-            while remaining:
-                remaining = remaining[os.write(self._descriptor, remaining) :]
+            with self._opened("ab") as file:
+                file.seek(0, os.SEEK_END)
+                while remaining:
+                    remaining = remaining[file.write(remaining) :]
             if self.path is not None and clock.monotonic() - self._synchronised > SYNCHRONISED_S:
                 self.synchronise()
         except OSError as error:
@@ -130,7 +143,8 @@ class StoredRows(LazySequence[Result]):
 
     def synchronise(self) -> None:
         """Flush the rows to the disk."""
-        os.fsync(self._descriptor)
+        with self._opened("ab") as file:
+            os.fsync(file.fileno())
         self._synchronised = clock.monotonic()
 
     def __len__(self) -> int:
@@ -141,19 +155,34 @@ class StoredRows(LazySequence[Result]):
         """Return the result of a case."""
         return result_of(self.row(number))
 
+    def __iter__(self) -> Iterator[Result]:
+        """Return the results in the order of the cases."""
+        return map(result_of, self.rows())
+
     def row(self, number: int) -> bytes:
         """Return the row of a case, a line of JSON."""
-        return os.pread(self._descriptor, int(self._length[number]), int(self._start[number]))
+        with self._opened("rb") as file:
+            return self._row(file, number)
+
+    def rows(self) -> Iterator[bytes]:
+        """Return the rows in the order of the cases, each a line of JSON."""
+        with self._opened("rb") as file:
+            for number in range(len(self)):
+                yield self._row(file, number)
+
+    def _row(self, file: BinaryIO, number: int) -> bytes:
+        file.seek(int(self._start[number]))
+        return file.read(int(self._length[number]))
 
     def _read(self) -> tuple[npt.NDArray[np.bytes_], Indices, Indices, npt.NDArray[np.bool_]]:
         """Return key, position, length and failure of all rows in the file; remove an incomplete last line."""
         keys, starts, lengths, failed = bytearray(), [], [], []
         position = 0
-        with open(self._descriptor, "rb", closefd=False) as file:
-            file.seek(0)
+        assert self.path is not None  # a temporary file has no rows yet
+        with self.path.open("r+b") as file:
             for number, line in enumerate(file, start=1):
                 if not line.endswith(b"\n"):
-                    os.ftruncate(self._descriptor, position)
+                    file.truncate(position)
                     break
                 try:
                     failed.append(bool(result_of(line).reason))

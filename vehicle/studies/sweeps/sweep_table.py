@@ -81,8 +81,8 @@ class SweepTable:
         """Return the rows with numbers as texts of all digits, which need no conversion; read when they are used."""
         if isinstance(self.results, StoredRows):
             numbers_as_texts = json.JSONDecoder(parse_float=str, parse_constant=CONSTANTS.__getitem__)
-            for number in range(len(self.results)):
-                yield numbers_as_texts.decode(self.results.row(number).decode())
+            for row in self.results.rows():
+                yield numbers_as_texts.decode(row.decode())
         else:
             for result in self.results:
                 texts = {name: repr(value) for name, value in result.values.items()}
