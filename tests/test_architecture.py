@@ -113,6 +113,7 @@ HEAVY = {
     "mediapy": {"rendering"},
     "matplotlib": {"rendering"},
     "imageio_ffmpeg": {"rendering"},
+    "jinja2": {"report"},
 }
 
 MAKERS = {
