@@ -20,14 +20,13 @@ from scenarios.charts import chart
 from scenarios.claims import OWN_CHECK, Claim, Findings, markdown
 from scenarios.comfort_runs import chosen_engine
 from scenarios.study import QUICK_NOTE, car_study
-from vehicle.commands.input_options import ROAD_NUMBERS
-from vehicle.commands.road import road_drive
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.semi_active_damper import LAWS, PASSIVE
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.runs.car import Run
+from vehicle.runs.car.road import Road
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.seat_value import weighted_rms_of
 from vehicle.signals.analysis.spectra import band_rms
@@ -149,9 +148,7 @@ def cases_of(runs: CarRuns, chosen: Iterable[Setting], duration: float, engine: 
     """Return the case of each setting."""
     vehicle, cases = runs.car().vehicle, []
     for setting in chosen:
-        numbers = dict.fromkeys(ROAD_NUMBERS) | {"speed": setting.speed, "duration": duration}
-        options = argparse.Namespace(**numbers, overrides=runs.overrides)
-        source = road_drive(setting.road, options, vehicle)
+        source = Road(setting.road, setting.speed, duration=duration).under(vehicle, runs.overrides)
         shared = (*runs.overrides, *overrides_of(source))
         changes = (*shared, *setting.changes(vehicle))
         cases.append(Case(source=source, overrides=changes, engine=engine, vehicle=runs.vehicle, shared=len(shared)))

@@ -106,6 +106,7 @@ HEAVY = {
     "mediapy": {"rendering"},
     "matplotlib": {"rendering"},
     "imageio_ffmpeg": {"rendering"},
+    "jinja2": {"report"},
 }
 
 MAKERS = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -12,13 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.comfort_runs import chosen_engine, standard_error
-from vehicle.commands.input_options import ROAD_NUMBERS
-from vehicle.commands.road import road_drive
 from vehicle.errors import SimulationError
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Run
-from vehicle.runs.car.road import lifting_tyres
+from vehicle.runs.car.road import Road, lifting_tyres
 from vehicle.signals.analysis.comfort import comfort_values
 from vehicle.signals.analysis.seat_value import seat_value, weighted_rms_of
 from vehicle.signals.analysis.slip import slip_shares
@@ -240,10 +237,8 @@ class RideRuns:
         vehicle = self.vehicles[ride.car]
         changes = () if ride.friction is None else all_friction(vehicle, ride.friction)
         changes = (*changes, *one_sided_tyres(vehicle)) if ride.one_sided else changes
-        numbers = {**dict.fromkeys(ROAD_NUMBERS), "speed": ride.speed, "duration": self.duration + LEAD_S}
-        numbers["overrides"] = self.overrides
         roads = [
-            road_drive(ride.road, argparse.Namespace(**{**numbers, "seed": seed}), vehicle)
+            Road(ride.road, ride.speed, duration=self.duration + LEAD_S, seed=seed).under(vehicle, self.overrides)
             for seed in range(1, self.records + 1)
         ]
         engine, file = ride.engine or self.engine, self.cars[ride.car]

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from vehicle.commands.input_options import ROAD_NUMBERS
-from vehicle.commands.road import road_drive
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.idle import idle_parameters
 from vehicle.model.parameters.shipped import vehicle_file
 from vehicle.model.parameters.template import SHIPPED
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
+from vehicle.runs.car.road import Road
 
 AXLES = ("front", "rear")
 PASSIVE = {"front": 2250.0, "rear": 1500.0}
@@ -28,8 +26,7 @@ def changes(law, **values):
 
 
 def road(car, duration):
-    options = argparse.Namespace(**dict.fromkeys(ROAD_NUMBERS) | {"speed": 80.0, "duration": duration})
-    return road_drive("A", options, car.vehicle).signal()
+    return Road("A", 80.0, duration=duration).under(car.vehicle).signal()
 
 
 @pytest.fixture(scope="module")

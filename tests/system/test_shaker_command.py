@@ -21,6 +21,8 @@ from vehicle.model.parameters.template import SHIPPED
 from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER, written
+from vehicle.runs.report import page
+from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import write_signal
 
@@ -77,6 +79,19 @@ def test_a_run_has_all_files_and_keys(shaker, short_signal, tmp_path):
     assert len(header) == 1 + 4 * len(load_vehicle().acceleration_channels)
     for word in ("damper", "resonances", "comfort", "solver", "files"):
         assert word in outcome.out
+
+
+def test_the_numbers_are_printed_before_the_report_is_made(shaker, short_signal, tmp_path, monkeypatch):
+    """A film and a report take longer than the run, and may fail."""
+
+    def fails(runs, progress, **head):
+        raise DataError("no report")
+
+    monkeypatch.setattr(page, "report_page", fails)
+    outcome = shaker("--input", "short.csv", "--engine", "reduced", "--no-figures", "--report")
+    assert (outcome.code, outcome.err.splitlines()[-1]) == (3, "error: no report")
+    assert "comfort     seat rail" in outcome.out and "files  " not in outcome.out
+    assert not (tmp_path / "runs" / "short").exists()
 
 
 def test_without_figures_the_other_files_are_the_same_and_no_drawing_library_is_loaded(short_signal, tmp_path):

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vehicle.commands.parser import Condition, Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
+from vehicle.signals.excitation.road_settings import SETTINGS
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
@@ -70,12 +71,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
 
     note = "" if several else "; with --input: in place of the times of the file"
     road = road_options(parser, lambda options: bool(options.road), is_class, several=several, rate_note=note)
-    road.add_argument(
-        "--tyre",
-        choices=("rolling", "standing"),
-        help="rolling: tyres roll at the speed, the default on a road; standing: tyres on moving plates, as on a rig, "
-        "the default for a car that is on blocks too; with --input tyres are standing unless --set driving.speed=M/S",
-    )
+    road_setting(road, "tyre", note="; with --input tyres are standing unless --set driving.speed=M/S")
     return group
 
 
@@ -119,38 +115,28 @@ def road_options(
         help="speed of the car [km/h]; channel:NAME for a road that was recorded over time together with this speed"
         + ("; once for all roads, or once for each" if several else ""),
     )
-    group.add_argument("--duration", type=float, metavar="S", help="length [s]; 60, or the whole profile, by default")
-    (parser if rate_note else group).add_argument(
-        "--rate", type=float, metavar="HZ", help=f"samples a second; 1000 by default{rate_note}"
-    )
+    road_setting(group, "duration")
+    road_setting(parser if rate_note else group, "rate", note=rate_note)
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
-    random.add_argument(
-        "--seed",
-        action="append" if several else "store",
-        type=int,
-        metavar="N",
-        help="one seed is one road; 1 by default"
-        + ("; repeated: each road with each seed, so that their scatter is known" if several else ""),
-    )
-    random.add_argument(
-        "--coherence",
-        type=float,
-        metavar="G",
-        help="of the tracks: 1 equal, 0 unrelated; isotropic plane by default",
-    )
-    group.add_argument(
-        "--patch",
-        type=float,
-        metavar="M",
-        help="length of the contact patch that averages the road [m], 0 for none; 0.1 by default",
-    )
-    group.add_argument(
-        "--contact",
-        choices=("patch", "cams"),
-        help="patch: the road is averaged over the contact patch; cams: two elliptical cams envelop the road; patch by "
-        "default, cams on an obstacle",
-    )
+    each = "; repeated: each road with each seed, so that their scatter is known" if several else ""
+    road_setting(random, "seed", note=each, action="append" if several else "store")
+    road_setting(random, "coherence")
+    road_setting(group, "patch")
+    road_setting(group, "contact")
     return group
+
+
+def road_setting(parser: argparse._ActionsContainer, name: str, *, note: str = "", **more: Any) -> None:
+    """Add the option of a setting of a road.
+
+    Args:
+        parser: of the command, or a group of options.
+        name: name of a field of `RoadSettings`.
+        note: addition to the help.
+        more: further arguments of `add_argument`.
+    """
+    declared = SETTINGS[name]
+    parser.add_argument(f"--{name}", help=declared["meaning"] + note, **declared["option"], **more)
 
 
 def _listed(value: str | list[str] | None) -> list[str]:
@@ -183,10 +169,6 @@ def speeds_of(options: argparse.Namespace) -> list[float | str]:
     """
     speed = options.speed
     return speed if isinstance(speed, list) else [] if speed is None else [speed]
-
-
-ROAD_NUMBERS = ("speed", "duration", "rate", "seed", "coherence", "patch", "contact")
-"""Names of the options of `road_options`."""
 
 
 def drives_on_road(options: argparse.Namespace) -> bool:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 from vehicle.commands.command_line import command
 from vehicle.commands.destination import output_file_of
-from vehicle.commands.input_options import ROAD_NUMBERS, record_choice, road_options
+from vehicle.commands.input_options import record_choice, road_options
 from vehicle.commands.options import command_parser, figures_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+from vehicle.signals.excitation.road_settings import SETTINGS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -156,8 +157,7 @@ def road_of(road: str | Path, options: argparse.Namespace) -> Road:
         # --rate is that of the run; the times are those of the file.
         settings = {**vars(options), "rate": None}
         choice = record_choice(argparse.Namespace(**settings), "height", known=("speed",)) or Choice()
-    numbers = {name: value for name in (*ROAD_NUMBERS, "tyre") if (value := getattr(options, name, None)) is not None}
-    return Road(road, choice=choice, **numbers)
+    return Road(road, options.speed, choice=choice, **{name: getattr(options, name, None) for name in SETTINGS})
 
 
 main = command(parser, _job)

@@ -13,6 +13,7 @@ from vehicle.commands.compare import mapping_options, measured_choice
 from vehicle.commands.input_options import record_options, speed_value
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
+from vehicle.signals.excitation.road_settings import SETTINGS
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
@@ -109,9 +110,9 @@ def measurement_options(parser: Parser) -> None:
     )
     files.add_argument(
         "--contact",
-        choices=("patch", "cams"),
         action=_OfMeasurement,
         help="contact with the road of the preceding --road; patch by default, cams on an obstacle",
+        **SETTINGS["contact"]["option"],
     )
     files.add_argument(
         "--levels",

@@ -7,20 +7,16 @@ channel. Along and across of the wheel carriers, which are made of rotations, 2.
 
 from __future__ import annotations
 
-from argparse import Namespace
-
 import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.commands.input_options import ROAD_NUMBERS
-from vehicle.commands.road import road_drive
 from vehicle.runs.car import Car
+from vehicle.runs.car.road import Road
 
 
 def road(car, road_class, duration):
-    numbers = {"speed": 80.0, "duration": duration, "seed": 2}
-    return road_drive(road_class, Namespace(**(dict.fromkeys(ROAD_NUMBERS) | numbers)), car.vehicle).signal()
+    return Road(road_class, 80.0, duration=duration, seed=2).under(car.vehicle).signal()
 
 
 @pytest.fixture(scope="module")

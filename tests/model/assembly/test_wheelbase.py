@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +10,9 @@ import numpy as np
 import pytest
 
 from tests.model.assembly.test_four_wheels import RIDE, ride_table
-from vehicle.commands.input_options import ROAD_NUMBERS
-from vehicle.commands.road import road_drive
 from vehicle.model.parameters.vehicle import vehicle_of
 from vehicle.runs.car import Car, Run
+from vehicle.runs.car.road import Road
 from vehicle.signals.excitation.iso_road import drive
 
 SPEED, WHEELBASE = 20.0, 2.6
@@ -60,8 +58,8 @@ def equal_axles(folder: Path) -> Car:
 @pytest.fixture(scope="module")
 def over_a_hump(tmp_path_factory) -> Run:
     car = equal_axles(tmp_path_factory.mktemp("ride"))
-    options = Namespace(**(dict.fromkeys(ROAD_NUMBERS) | {"speed": 3.6 * SPEED}))
-    places = {wheel: (behind, side) for wheel, behind, side in road_drive("C", options, car.vehicle).wheels}
+    drive_of_car = Road("C", 3.6 * SPEED).under(car.vehicle)
+    places = {wheel: (behind, side) for wheel, behind, side in drive_of_car.wheels}
     assert {wheel: behind for wheel, (behind, _) in places.items()} == pytest.approx(
         {"fr": 0.0, "fl": 0.0, "rr": WHEELBASE, "rl": WHEELBASE}
     )

@@ -27,7 +27,7 @@ def test_a_report_without_sliders_says_why(reported):
     silent = {name: history for name, history in run.recording.channels.items() if not name.startswith("plate")}
     recording = dataclasses.replace(run.recording, channels=silent)
     silent_trial = trial(dataclasses.replace(run, recording=recording))
-    assert silent_trial.numbers == "" and "no channel &#x27;plate_fl_displacement&#x27;" in silent_trial.content
+    assert silent_trial.numbers == "" and "no channel &#39;plate_fl_displacement&#39;" in silent_trial.content
 
 
 def test_a_car_that_the_page_cannot_run_has_no_section():

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
-
 import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.ranges import Range
-from vehicle.studies.sweeps import indices
 from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
 
 ANGLES = [Range(path=f"x{i}", low=-np.pi, high=np.pi) for i in range(3)]
@@ -112,12 +109,3 @@ def test_bad_arguments():
         sobol_indices(UNIT, [1.0, 2.0, np.nan, 3.0, 4.0, *range(5)])
     with pytest.raises(DataError, match="all values are equal"):
         sobol_indices(UNIT, np.ones(5))
-
-
-def test_without_salib_the_extra_is_named(monkeypatch):
-    def without(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr(importlib, "import_module", without)
-    with pytest.raises(MissingPartError, match=r"needs SALib of the extra 'sensitivity'"):
-        indices.sobol_sample(UNIT, 8)

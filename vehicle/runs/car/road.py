@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.force_elements import Tyre
@@ -15,46 +14,32 @@ from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.obstacle import is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
 from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_settings import RoadSettings, with_settings
 from vehicle.signals.records.choice import Choice
 
 Drive = RoadDrive | RecordedDrive
 """A road under the wheels of one car."""
 
 
+@with_settings
 @dataclass(frozen=True, slots=True, repr=False)
-class Road:
-    """Road for the wheels of any car; `road("C", 80)` makes one.
+class Road(RoadSettings):
+    """Road for the wheels of any car, as road("C", 80); `Car.run` and `sweep` take it.
 
     Attributes:
         road: class of ISO 8608, "A" to "H"; an obstacle on a level road, as "cleat:20x50" (`Obstacle`); or the file
             of a measured profile (columns distance, left, right [m]; OpenCRG; ERD), or of heights over time.
         speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
-        duration: length [s]; by default 60 s on a class, the whole profile otherwise.
-        rate: samples per second [Hz]; 1000 by default.
-        seed: seed of a road of a class; 1 by default.
-        coherence: of the two tracks of a class: 1 equal, 0 unrelated; isotropic plane by default.
-        patch: length of the contact patch that averages the road [m]; 0.1 by default.
-        contact: "patch" or "cams", two elliptical cams in place of the average; cams by default on an obstacle only.
-        tyre: "rolling" or "standing"; rolling by default, except for a car that is on blocks too.
         choice: channels of heights over time, their units and excerpt.
     """
 
     road: str | Path
-    _: KW_ONLY
     speed: float | str
-    duration: float | None = None
-    rate: float | None = None
-    seed: int | None = None
-    coherence: float | None = None
-    patch: float | None = None
-    contact: str | None = None
-    tyre: str | None = None
-    choice: Choice = field(default_factory=Choice, hash=False)
+    choice: Choice = field(default_factory=Choice, hash=False, kw_only=True)
 
     def __repr__(self) -> str:
         """Return the call of `road` that makes this road."""
-        names = ("duration", "rate", "seed", "coherence", "patch", "contact", "tyre")
-        options = "".join(f", {name}={value!r}" for name, value in self._given(*names).items())
+        options = "".join(f", {name}={value!r}" for name, value in self.given().items())
         return f"road({str(self.road)!r}, {self.speed!r}{options})"
 
     @property
@@ -88,7 +73,7 @@ class Road:
             radius=sum(wheel.center[2] - wheel.patch[2] for wheel in wheels) / len(wheels),
             driving=driving,
             lifting=lifting_tyres(vehicle, overrides) if isinstance(road, str) and is_obstacle(road) else (),
-            **self._given("duration", "rate", "seed", "coherence", "patch", "contact"),
+            **self.given(without=("tyre",)),
         )
 
     def _recorded(self, road: str | Path, vehicle: Vehicle, driving: float | None) -> RecordedDrive:
@@ -97,7 +82,7 @@ class Road:
             raise ConfigurationError(
                 f"--speed {self.speed}: belongs to a recorded road, --road FILE; {road} is a class"
             )
-        for name in self._given("seed", "coherence", "patch", "contact"):
+        for name in self.given(without=("duration", "rate", "tyre")):
             raise ConfigurationError(f"--{name}: belongs to a class or a profile; a recorded road is used unchanged")
         return RecordedDrive(
             road=road,
@@ -105,12 +90,8 @@ class Road:
             wheels=_wheel_positions(vehicle),
             choice=self.choice,
             driving=driving,
-            **self._given("duration", "rate"),
+            **{name: value for name in ("duration", "rate") if (value := getattr(self, name)) is not None},
         )
-
-    def _given(self, *names: str) -> dict[str, Any]:
-        """Return the attributes that are set, by name."""
-        return {name: value for name in names if (value := getattr(self, name)) is not None}
 
     def _driving(self, vehicle: Vehicle, overrides: Iterable[str]) -> float | None:
         """Return the speed at which the tyres roll [m/s], 0 for standing tyres; None if the car itself specifies it.
@@ -131,42 +112,8 @@ class Road:
         return math.nan if isinstance(self.speed, str) else float(self.speed) / 3.6
 
 
-def road(
-    profile: str | Path,
-    speed: float | str,
-    *,
-    duration: float | None = None,
-    rate: float | None = None,
-    seed: int | None = None,
-    coherence: float | None = None,
-    patch: float | None = None,
-    contact: str | None = None,
-    tyre: str | None = None,
-    choice: Choice | None = None,
-) -> Road:
-    """Return a road for the wheels of any car, as road("C", 80).
-
-    Args:
-        profile: class of ISO 8608, "A" to "H"; an obstacle, as "cleat:20x50"; or the file of a measured profile or of
-            heights over time.
-        speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
-        duration, rate, seed, coherence, patch, contact, tyre, choice: see `Road`.
-
-    Returns:
-        The road; `Car.run` and `sweep` take it.
-    """
-    return Road(
-        profile,
-        speed=speed,
-        duration=duration,
-        rate=rate,
-        seed=seed,
-        coherence=coherence,
-        patch=patch,
-        contact=contact,
-        tyre=tyre,
-        choice=choice or Choice(),
-    )
+road = Road
+"""The form in which examples name a road: road("C", 80)."""
 
 
 def lifting_tyres(vehicle: Vehicle, overrides: Iterable[str] = ()) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+from markupsafe import Markup
 
 from vehicle.digits import number
 from vehicle.drawing.rendering.answer_plot import Change, plot_bands, plot_changes
@@ -21,10 +22,12 @@ from vehicle.runs.report.differences import MISSING, changed_parameters, differe
 from vehicle.runs.report.findings import damper_state
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.main_band import MainBand, main_band, weighted_bands
-from vehicle.runs.report.markup import Markup, joined, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.modal_assurance import mac
 from vehicle.signals.records.run_summary import slip_shares
+
+fill = templates(__file__)
 
 Modes = Mapping[str, Sequence[Mode]]
 Changed = tuple[str, str, list[str]]
@@ -39,12 +42,6 @@ SMALL = 0.05
 SLIP = 0.1
 """Change of the time in slip [percentage points] from which it is named."""
 
-EXPLANATION = (
-    "Mode and path come from the linear model, with the dampers fixed in their usual state: stuck, or sliding without "
-    "friction. A share counts only what acts in phase; a path is named only if it carries most of the mode."
-)
-"""Explanation of the statements."""
-
 DIRECTIONS = {"x": "fore-aft", "y": "lateral", "z": "vertical"}
 
 
@@ -57,25 +54,30 @@ def answer(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     """
     if len(runs) == 1:
         return _of_one(runs[0], modes[0])
-    first, parts = runs[0], []
+    first, statements, figure = runs[0], [], Markup()
     for run, run_modes in zip(runs[1:], modes[1:], strict=True):
         texts = [_effect(first, run)]
         if abs(_percent(first, run) or 0.0) >= SMALL:
             texts.append(_reason(first, run, modes[0], run_modes))
-        parts.append(tag("p", " ".join(texts), class_="answer"))
+        statements.append(" ".join(texts))
     changes = {f"{run.name} against {first.name}": _changes(first, run) for run in runs[1:]}
     if all(changes.values()):
         title = f"Change of comfort and loads from {first.name}"
         caption = "green: smaller vibration or load, red: larger; grey: no rating"
-        parts.append(drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title))
-    return joined(parts)
+        figure = drawing(partial(plot_changes, changes=changes, title=title, caption=caption), title)
+    return fill("answer", texts=statements, figure=figure)
+
+
+def explained() -> Markup:
+    """Return the explanation of the statements."""
+    return fill("explained")
 
 
 def _of_one(run: FinishedRun, modes: Modes) -> Markup:
     spectra = weighted_bands(run)
     comfort = run.summary["comfort"].get("seat_rail")
     if comfort is None or not spectra:
-        return tag("p", "The run records no acceleration of the seat rail, so there is no comfort value.")
+        return fill("no_comfort")
     total = comfort["iso2631"]["vector_sum"]["weighted_rms"]
     texts = [
         f"On {_input_words(run)} the weighted acceleration at the seat rail of {run.car.vehicle.name} is "
@@ -96,7 +98,7 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
         partial(plot_bands, edges=bands.edges, powers=powers, modes=marked, caption=run.caption),
         f"Frequencies of the weighted acceleration of {run.name}",
     )
-    return joined([tag("p", " ".join(texts), class_="answer"), figure])
+    return fill("answer", texts=[" ".join(texts)], figure=figure)
 
 
 def _input_words(run: FinishedRun) -> str:

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
+from markupsafe import Markup
+
 from vehicle.digits import number
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.several_runs import plot_responses, shared_channels
@@ -13,9 +15,11 @@ from vehicle.names import side_of, wheel_words
 from vehicle.runs.report.differences import changed_parameters, difference, key_figures
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
-from vehicle.runs.report.markup import Markup, joined, shortened, table, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.runs.report.svg_figure import drawing
+
+fill = templates(__file__)
 
 SIZE = (PAGE_WIDTH, 5.6)
 """Width and height of the figure of FRFs [inch]."""
@@ -45,35 +49,27 @@ def numbers_beside(runs: Sequence[FinishedRun]) -> Markup:
         )
         for run in runs
     ]
-    parts = [
-        table(("run", "car", "signal", "RMS [mm]", "length [s]", "engine"), inputs, text_columns=3),
-        tag("h3", f"Differences from {runs[0].name}"),
-        table(heads, rows, text_columns=2),
-    ]
-    changed = changed_parameters([run.car.vehicle for run in runs])
-    parts.append(tag("h3", "Parameters that differ"))
-    if changed:
-        content = [(path, unit, *values) for path, unit, values in changed]
-        heads = ["parameter", "unit", *(run.name for run in runs)]
-        parts.append(shortened(f"{len(changed)} parameters", heads, content, text_columns=2))
-    else:
-        parts.append(tag("p", "None: the cars have equal parameters."))
-    if len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1:
-        parts.append(tag("p", "The signals differ: differences of level are also due to the input."))
-    return joined([*parts, _notices(runs)])
+    return fill(
+        "comparison",
+        names=[run.name for run in runs],
+        inputs=inputs,
+        heads=heads,
+        rows=rows,
+        changed=[(path, unit, *values) for path, unit, values in changed_parameters([run.car.vehicle for run in runs])],
+        other_signals=len({run.summary["input"]["sha256"] or run.signal.source for run in runs}) > 1,
+        noted=_notices(runs),
+    )
 
 
-def _notices(runs: Sequence[FinishedRun]) -> Markup:
+def _notices(runs: Sequence[FinishedRun]) -> list[str]:
     """Return the notices of all runs; those that are not of all runs name theirs."""
     of_runs = {run.name: without_general(run.summary["notices"], run.car.vehicle) for run in runs}
     texts = dict.fromkeys(text for notices in of_runs.values() for text in notices)
-    if not texts:
-        return Markup()
     items = []
     for text in texts:
         names = [name for name, notices in of_runs.items() if text in notices]
-        items.append(tag("li", text if len(names) == len(runs) else f"{', '.join(names)}: {text}"))
-    return joined([tag("h3", "Notices"), tag("ul", *items, class_="notices")])
+        items.append(text if len(names) == len(runs) else f"{', '.join(names)}: {text}")
+    return items
 
 
 def curves_over_each_other(runs: Sequence[FinishedRun]) -> Markup:
@@ -102,4 +98,4 @@ def curves_over_each_other(runs: Sequence[FinishedRun]) -> Markup:
             drawing(partial(plot_responses, runs=with_response, channels=channels, title=title, size=SIZE), title)
         )
     parts.append(spectra(runs))
-    return joined(parts)
+    return Markup().join(parts)

@@ -7,10 +7,14 @@ import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from markupsafe import Markup
+
 from vehicle.drawing.rendering.backend import find_ffmpeg
 from vehicle.errors import MissingPartError
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, joined, tag
+from vehicle.runs.report.markup import templates
+
+fill = templates(__file__)
 
 BUDGET = 2.2e6
 """Maximum size of the films of a page [bytes]: 2.9 MB as text, so that a page with two runs is below 6 MB."""
@@ -37,17 +41,15 @@ def film(run: FinishedRun, share: float = 1.0) -> Markup | None:
     path = next((candidate for candidate in candidates if candidate.is_file()), None)
     if path is None:
         return None
-    note = f"{path.name}: the motion is exaggerated by the factor in the picture."
     with TemporaryDirectory() as folder:
         content, still = embedded(path, share * BUDGET, Path(folder)), _still(path, Path(folder))
-    if content is None:
-        return tag("p", f"{path.name} ({path.stat().st_size / 1e6:.1f} MB) is too large for this page.")
-    picture = None if still is None else "data:image/jpeg;base64," + base64.b64encode(still).decode("ascii")
-    source = "data:video/mp4;base64," + base64.b64encode(content).decode("ascii")
-    parts = [tag("video", src=source, poster=picture, controls="", preload="metadata")]
-    if picture is not None:
-        parts.append(tag("img", src=picture, alt="Picture of the film", class_="only-paper"))
-    return joined([*parts, tag("p", note)])
+    return fill(
+        "film",
+        name=path.name,
+        megabytes=path.stat().st_size / 1e6,
+        film=content and base64.b64encode(content).decode("ascii"),
+        picture=still and base64.b64encode(still).decode("ascii"),
+    )
 
 
 def embedded(path: Path, budget: float, folder: Path) -> bytes | None:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import base64
 
+from markupsafe import Markup
+
 from vehicle.digits import number
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import MANY, Markup, joined, shortened, table, tag
+from vehicle.runs.report.markup import templates
 
-WORST = 10
-"""Number of rows shown above a folded table."""
+fill = templates(__file__)
 
 UNITS = {
     "low_hz": "from [Hz]",
@@ -24,11 +25,6 @@ UNITS = {
 }
 """Heads of columns with units."""
 
-ERROR = (
-    "error of a band: RMS of |ln(simulated / measured)|, weighted by both coherences; magnitude is positive if the "
-    "simulation is larger, lag if it is late; drift is the change of the lag."
-)
-
 
 def measured(run: FinishedRun) -> Markup | None:
     """Return the table of differences, largest first, and the pictures; None without a measurement."""
@@ -38,17 +34,12 @@ def measured(run: FinishedRun) -> Markup | None:
     heads = list(dict.fromkeys(key for row in comparison["table"] for key in row))
     rows = [[_cell(row.get(key)) for key in heads] for row in comparison["table"]]
     titles = [UNITS.get(head, head.replace("_", " ")) for head in heads]
-    parts = [
-        tag("p", f"Measured: {comparison['file']}. The table is sorted by type of data, largest error first; {ERROR}"),
-        *([table(titles, rows[:WORST], text_columns=2)] if len(rows) > MANY else []),
-        shortened(f"All {len(rows)} rows", titles, rows, text_columns=2),
+    pictures = [
+        (base64.b64encode(path.read_bytes()).decode("ascii"), purpose.replace("_", " "))
+        for purpose, name in run.summary["files"].items()
+        if purpose.startswith("compare_") and (path := run.folder / name).suffix == ".png" and path.is_file()
     ]
-    for purpose, name in run.summary["files"].items():
-        path = run.folder / name
-        if purpose.startswith("compare_") and path.suffix == ".png" and path.is_file():
-            source = "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode("ascii")
-            parts.append(tag("figure", tag("img", src=source, alt=purpose.replace("_", " "))))
-    return joined(parts)
+    return fill("measured", file=comparison["file"], heads=titles, rows=rows, pictures=pictures)
 
 
 def _cell(value: object) -> str:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from markupsafe import Markup
+
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, folded, joined, table, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.moving_modes import mode_set
 
 Modes = Mapping[str, Sequence[Mode]]
@@ -15,7 +17,7 @@ STATES = ("stuck", "sliding")
 HIGHEST_MODE = 60.0
 """Maximum frequency of the modes [Hz]."""
 
-VIEWS = {"corner": "Corner", "side": "Side", "front": "Front", "top": "Top"}
+fill = templates(__file__)
 
 
 def modes_of(run: FinishedRun) -> Modes:
@@ -40,50 +42,13 @@ def car_modes_of(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> list[di
 
 def moving_modes(runs: Sequence[FinishedRun], modes: Sequence[Modes]) -> Markup:
     """Return canvas, controls, gallery and tables of the modes."""
-
-    def select(label: str, name: str) -> Markup:
-        return tag("div", tag("label", label, for_=f"mode-{name}"), tag("select", id=f"mode-{name}"))
-
-    def slider(label: str, name: str, minimum: float, maximum: float, step: float, value: float) -> Markup:
-        limits = f'min="{minimum:g}" max="{maximum:g}" step="{step:g}"'
-        control = f'<input type="range" id="mode-{name}" {limits} value="{value:g}">'
-        return joined([tag("label", label, for_=f"mode-{name}"), Markup(control)])
-
-    views = [tag("button", word, type="button", data_view=view) for view, word in VIEWS.items()]
-    controls = tag(
-        "div",
-        select("Car", "car"),
-        select("Dampers", "state"),
-        select("Mode", "pick"),
-        slider("Maximum displacement on the screen [mm]", "amplitude", 0, 500, 5, 160),
-        slider("Periods per second on the screen", "speed", 0.1, 2.0, 0.1, 0.7),
-        tag("button", "Pause", type="button", id="mode-play"),
-        *views,
-        tag("div", id="mode-words"),
-        tag("div", class_="scale", id="mode-scale"),
-        tag("div", tag("span", "at rest"), tag("span", "maximum"), class_="ends"),
-        class_="controls",
-    )
-    label = "Animation of the selected mode. Rotate by mouse or arrow keys, zoom by mouse wheel, plus and minus."
-    canvas = tag("canvas", id="mode-canvas", tabindex="0", role="img", aria_label=label)
-    parts = [
-        tag(
-            "p",
-            "Linear modes of the car in its design position, from the matrices of the simulated model. Drag to rotate, "
-            "mouse wheel to zoom. Grey: at rest. Colour: displacement. The decay is not shown.",
-        ),
-        tag("noscript", tag("p", "The animation needs JavaScript; the tables below do not.")),
-        tag("div", canvas, controls, class_="modes"),
-        tag("div", id="mode-gallery", class_="gallery"),
+    tables = [
+        (
+            run.name,
+            state,
+            [(mode.description, f"{mode.frequency:.3f}", f"{100 * mode.damping_ratio:.2f}") for mode in state_modes],
+        )
+        for run, car_modes in zip(runs, modes, strict=True)
+        for state, state_modes in car_modes.items()
     ]
-    heads = ("mode shape", "frequency [Hz]", "damping ratio [%]")
-    for run, car_modes in zip(runs, modes, strict=True):
-        for state, state_modes in car_modes.items():
-            rows = [
-                (mode.description, f"{mode.frequency:.3f}", f"{100 * mode.damping_ratio:.2f}") for mode in state_modes
-            ]
-            title = f"{len(rows)} modes up to {HIGHEST_MODE:g} Hz, dampers {state}" + (
-                f": {run.name}" if len(runs) > 1 else ""
-            )
-            parts.append(folded(title, table(heads, rows)))
-    return joined(parts)
+    return fill("modes", tables=tables, highest=HIGHEST_MODE, several=len(runs) > 1)

@@ -10,22 +10,26 @@ from dataclasses import dataclass
 from datetime import date
 from importlib import resources
 
+from markupsafe import Markup
+
 from vehicle.errors import ConfigurationError
 from vehicle.runs.report import sections
-from vehicle.runs.report.answer import EXPLANATION, answer
+from vehicle.runs.report.answer import answer, explained
 from vehicle.runs.report.base_run import base_run
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.comfort_section import comfort
 from vehicle.runs.report.comparison_section import curves_over_each_other, numbers_beside
 from vehicle.runs.report.film_section import film
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, escaped, folded, joined, section, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.measured_section import measured
 from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, moving_modes
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
 from vehicle.version import package_version
+
+fill = templates(__file__)
 
 Part = tuple[str, str, Markup]
 """Title, anchor and content of a section."""
@@ -111,18 +115,13 @@ def _told_apart(runs: Sequence[FinishedRun]) -> list[FinishedRun]:
     return [dataclasses.replace(run, name=name) for run, name in zip(runs, unique, strict=True)]
 
 
-def _explained() -> Markup:
-    """Return the explanation of the statements of the first screen."""
-    return tag("p", EXPLANATION, class_="about")
-
-
 def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
     """Return the sections of the report of a single run, with the given section for trials."""
     base = base_run(run)
-    single = joined([answer([run], [modes]), sections.tiles(run)])
+    single = answer([run], [modes]) + sections.tiles(run)
     changed = None if base is None else answer([base, run], [modes_of(base), modes])
     parts = [
-        ("Result", "result", joined([single if changed is None else changed, _explained()])),
+        ("Result", "result", (single if changed is None else changed) + explained()),
         ("This run", "alone", None if changed is None else single),
         ("Film", "film", film(run)),
         ("Try it", "trial", trial_part),
@@ -145,10 +144,10 @@ def _of_one(run: FinishedRun, modes: Modes, trial_part: Markup) -> list[Part]:
 def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Callable[[float], None]) -> list[Part]:
     """Return the sections of a comparison; what belongs to a single run is folded under its name."""
     parts = [
-        ("Result", "result", joined([answer(runs, modes), _explained()])),
+        ("Result", "result", answer(runs, modes) + explained()),
         ("Comparison of the runs", "comparison", numbers_beside(runs)),
         ("Frequency responses and spectra", "responses", curves_over_each_other(runs)),
-        ("Time histories", "time", joined(sections.time_figure(run, runs) for run in runs)),
+        ("Time histories", "time", Markup().join(sections.time_figure(run, runs) for run in runs)),
         (f"The car of {runs[0].name}", "car", car_section(runs[0].car)),
         ("Modes", "modes", moving_modes(runs, modes)),
     ]
@@ -158,7 +157,7 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
         new = all(run.car.vehicle != other.car.vehicle for other in runs[:index])
         of_run = (
             ("Film", film(run, 1.0 / len(runs))),
-            ("Findings", joined([sections.tiles(run), sections.what_was_found(run, car_modes)])),
+            ("Findings", sections.tiles(run) + sections.what_was_found(run, car_modes)),
             ("Car, signal, engine", sections.what_was_run(run)),
             ("The car", car_section(run.car) if new and index else None),
             ("Frequency responses", responses(run, car_modes) if run.responses else None),
@@ -168,10 +167,9 @@ def _of_several(runs: Sequence[FinishedRun], modes: Sequence[Modes], done: Calla
             ("All values", sections.tables(run)),
             ("How to repeat the run", sections.repeating(run)),
         )
-        contents = [part for title, content in of_run if content is not None for part in (tag("h3", title), content)]
-        details.append(folded(run.name, *contents))
+        details.append((run.name, [(title, content) for title, content in of_run if content is not None]))
         done((index + 1) / len(runs))
-    return [*parts, ("Each run", "runs", joined(details))]
+    return [*parts, ("Each run", "runs", fill("each_run", runs=details))]
 
 
 def document(
@@ -186,35 +184,26 @@ def document(
         modes: moving modes as JSON; empty for a page without them.
         trial: section for trials, whose scripts the page gets; None for a page without it.
     """
-    parts_of_page = [_file("wireframe.js"), _file("modes.js")] if modes else []
-    allowed, started = "", ""
-    if trial and trial.numbers:
-        parts_of_page.append(trial.script)
+    run_scripts = [_file("wireframe.js"), _file("modes.js")] if modes else []
+    allowed, tried = "", trial if trial and trial.numbers else Trial(content=Markup())
+    if tried.numbers:
+        run_scripts.append(tried.script)
         # Its worker is a script from the page itself, and runs a module of WebAssembly.
-        allowed, started = " 'wasm-unsafe-eval'", "; worker-src blob:"
-    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in parts_of_page)
+        allowed = " 'wasm-unsafe-eval'; worker-src blob:"
+    digests = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in run_scripts)
     hashes = " ".join(f"'sha256-{digest}'" for digest in digests) or "'none'"
-    policy = (
-        "default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; "
-        f"script-src {hashes}{allowed}{started}"
-    )
-    links = tag("nav", *(tag("a", name, href=f"#{anchor}") for name, anchor, _ in parts))
-    top = tag("header", tag("h1", title), *(tag("p", line, class_="about") for line in subtitles))
-    body = joined(section(name, anchor, content) for name, anchor, content in parts)
-    data = f'<script type="application/json" id="mode-data">{modes}</script>\n' if modes else ""
-    if trial and trial.numbers:
-        data += f'<script type="application/json" id="trial-data">{trial.numbers}</script>\n'
-        data += f'<script type="text/plain" id="trial-worker">{trial.worker}</script>\n'
-    run_scripts = "".join(f"<script>{text}</script>\n" for text in parts_of_page)
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{escaped(policy)}">\n'
-        '<meta name="generator" content="vehicle-on-shaker">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        '<link rel="icon" href="data:,">\n'
-        f"<title>{escaped(title)}</title>\n<style>\n{_file('page.css')}</style>\n</head>\n<body>\n"
-        f"{top}\n{links}\n<main>{body}</main>\n"
-        f"{data}{run_scripts}</body>\n</html>\n"
+    return fill(
+        "page",
+        title=title,
+        subtitles=subtitles,
+        parts=parts,
+        policy="default-src 'none'; img-src data:; media-src data:; style-src 'unsafe-inline'; "
+        f"script-src {hashes}{allowed}",
+        style=Markup(_file("page.css")),
+        modes=Markup(modes),
+        numbers=Markup(tried.numbers),
+        worker=Markup(tried.worker),
+        scripts=[Markup(text) for text in run_scripts],
     )
 
 

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from markupsafe import Markup
+
 from vehicle.digits import number
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.frf_plot import plot_frfs
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.runs.report.findings import main_points, nearest_mode
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, joined, table, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
+
+fill = templates(__file__)
 
 SIZE = (PAGE_WIDTH, 5.8)
 """Width and height of the figure [inch]."""
@@ -22,25 +26,16 @@ STRONGEST = 6
 
 def responses(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
     """Return FRFs and tables of resonances of a run with FRFs."""
-    return joined(
-        [
-            drawing(
-                lambda path: plot_frfs(path, run, run.responses, run.caption, SIZE),
-                f"Frequency responses of {run.name}",
-            ),
-            tag(
-                "p",
-                "The band around a line is the 95 % region of the random error, drawn where the coherence is at least "
-                "0.5. Low coherence means a nonlinear "
-                "response, or too little excitation by the plate.",
-            ),
-            tag("div", *_resonances(run, modes), class_="columns"),
-        ]
+    figure = drawing(
+        lambda path: plot_frfs(path, run, run.responses, run.caption, SIZE), f"Frequency responses of {run.name}"
     )
+    return fill("responses", figure=figure, tables=_resonances(run, modes))
 
 
-def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Markup]:
-    """Return tables of the highest resonances of the main output points with the nearest modes."""
+def _resonances(
+    run: FinishedRun, modes: Mapping[str, Sequence[Mode]]
+) -> list[tuple[str, list[tuple[str, str, str, str]]]]:
+    """Return captions and rows of the highest resonances of the main output points with the nearest modes."""
     tables = []
     main = [
         (f" to motion of the {plate}" if plate else "", point, resonances.get(channel, ()))
@@ -54,9 +49,8 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[M
             state, mode = nearest_mode(run, peak["frequency_hz"], modes)
             near = "" if mode is None else f"{mode.frequency:.2f} Hz, {mode.description}"
             rows.append((near, f"{peak['frequency_hz']:.2f}", number(peak["magnitude"]), number(peak["coherence"])))
-        heads = ("nearest mode", "resonance [Hz]", "m/s² per m", "coherence")
         if rows:
             count = f"the {len(rows)} highest" if len(rows) > 1 else "one found"
             caption = f"Vertical resonances at the {point}{plate}: {count}; modes with {state}"
-            tables.append(table(heads, rows, caption=caption))
+            tables.append((caption, rows))
     return tables

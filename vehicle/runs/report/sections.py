@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from markupsafe import Markup
 
 from vehicle.digits import number
 from vehicle.drawing.rendering.plots import plot_time
@@ -18,9 +19,11 @@ from vehicle.runs.report.differences import changed_parameters, shipped_origin
 from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
-from vehicle.runs.report.markup import Markup, folded, joined, shortened, table, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
+
+fill = templates(__file__)
 
 ROAD_WORDS = {
     "class": "class of ISO 8608",
@@ -52,8 +55,7 @@ def tiles(run: FinishedRun) -> Markup:
             values.append((f"{top['frequency_hz']:.1f} Hz", label))
     plate = side_of(run.wheel, run.car.vehicle.wheels)
     values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
-    boxes = [tag("div", tag("b", value), tag("span", label), class_="tile") for value, label in values]
-    return tag("div", *boxes, class_="tiles")
+    return fill("tiles", values=values)
 
 
 def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Markup:
@@ -61,16 +63,7 @@ def what_was_found(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> Mar
     topics: dict[str, list[str]] = {}
     for finding in findings(run, modes):
         topics.setdefault(finding.topic, []).append(finding.text)
-    rows = [
-        part
-        for topic, texts in topics.items()
-        for part in (tag("dt", topic), tag("dd", *(tag("p", text) for text in texts)))
-    ]
-    parts = [tag("dl", *rows, class_="findings")]
-    if notices := without_general(run.summary["notices"], run.car.vehicle):
-        said = [tag("li", text) for text in notices]
-        parts += [tag("h3", "Notices"), tag("ul", *said, class_="notices")]
-    return joined(parts)
+    return fill("findings", topics=topics, noted=without_general(run.summary["notices"], run.car.vehicle))
 
 
 def what_was_run(run: FinishedRun) -> Markup:
@@ -101,20 +94,15 @@ def what_was_run(run: FinishedRun) -> Markup:
         ("tyres", vehicle.driving.words),
         ("mass of the trimmed body", f"{vehicle.body.mass:g} kg"),
     ]
-    tables = (("Car", car), ("Signal", signal), ("Engine", engine))
-    parts = [tag("div", *(table((title, ""), rows, text_columns=2) for title, rows in tables), class_="columns")]
     default = shipped_origin(vehicle)
-    if default is None:
-        parts.append(tag("p", "The car is not derived from a shipped car."))
-        return joined(parts)
-    rows = [(path, unit, *values) for path, unit, values in changed_parameters([default, vehicle])]
-    if rows:
-        heads = ("parameter", "unit", f"shipped car {default.name}", "this run")
-        parts.append(tag("h3", f"Differences from the shipped car {default.name}"))
-        parts.append(shortened(f"{len(rows)} parameters", heads, rows, text_columns=2))
-    else:
-        parts.append(tag("p", f"All parameters are equal to those of the shipped car {default.name}."))
-    return joined(parts)
+    return fill(
+        "run",
+        tables={"Car": car, "Signal": signal, "Engine": engine},
+        default=default and default.name,
+        changed=[(path, unit, *values) for path, unit, values in changed_parameters([default, vehicle])]
+        if default
+        else [],
+    )
 
 
 def _origin(run: FinishedRun) -> str:
@@ -132,9 +120,8 @@ def time_figure(run: FinishedRun, runs: Sequence[FinishedRun] = ()) -> Markup:
         run: the run.
         runs: runs whose figures have equal scales, with this run among them; empty for a single run.
     """
-    title = [tag("h3", run.name)] if runs else []
     figure = drawing(lambda path: plot_time(path, run, page=True, others=runs), f"Time histories of {run.name}")
-    return tag("div", *title, figure, class_="whole")
+    return fill("time", title=run.name if runs else "", figure=figure)
 
 
 def dampers(run: FinishedRun) -> Markup | None:
@@ -144,8 +131,6 @@ def dampers(run: FinishedRun) -> Markup | None:
     if not first:
         return None
     saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
-    slip, limit = 1e3 * share["slip_velocity"], 1e3 * summary["saturated_velocity"]
-    heads = ("damper", f"time above {slip:g} mm/s", "first", f"time above {limit:g} mm/s", "first")
     rows = []
     for wheel in first:
         velocity, force = (
@@ -162,10 +147,7 @@ def dampers(run: FinishedRun) -> Markup | None:
                 f"{number(force)} N",
             )
         )
-    note = (
-        f"Slip in all tables: a damper velocity above {slip:g} mm/s. Above {limit:g} mm/s the friction is at its limit."
-    )
-    return joined([table((*heads, "largest velocity", "largest force"), rows), tag("p", note)])
+    return fill("dampers", slip=1e3 * share["slip_velocity"], limit=1e3 * summary["saturated_velocity"], rows=rows)
 
 
 def _when(value: float | None) -> str:
@@ -192,41 +174,15 @@ def tables(run: FinishedRun) -> Markup:
     wheels = run.car.vehicle.wheels
     loads = [(f"tyre {side_of(wheel, wheels)}", f"{load:.0f}") for wheel, load in static["tyre_load_n"].items()]
     loads += [(f"rear support {name}", f"{load:.0f}") for name, load in static["rear_support_load_n"].items()]
-    heads = ("channel", "unit", "RMS", "minimum", "maximum")
-    parts = [folded(f"Levels of all {len(levels)} channels", table(heads, levels, text_columns=2))]
-    if peaks:
-        columns = ("channel", "frequency [Hz] (magnitude [m/s² per m])")
-        parts.append(folded("Resonances of all channels", table(columns, peaks, text_columns=2)))
-    parts.append(folded("Static loads", table(("support", "load [N]"), loads)))
-    return joined(parts)
+    return fill("values", levels=levels, peaks=peaks, loads=loads)
 
 
 def repeating(run: FinishedRun) -> Markup:
     """Return the command of the run, and a command that repeats the run from its folder."""
-    summary = run.summary
-    parts = []
-    if summary.get("command"):
-        parts += [tag("p", "Command of this run:"), tag("pre", summary["command"])]
-    again = [
-        "python",
-        "-m",
-        "vehicle.shaker",
-        "--vehicle",
-        f"{run.place}/vehicle.toml",
-        *_signal_again(run),
-        "--engine",
-        summary["solver"]["engine"],
-    ]
-    parts += [
-        tag(
-            "p",
-            "The folder of the run contains all parameters, so it can be repeated without the vehicle file. Repeat "
-            "options for channels, units or an excerpt of the input; the notices list them:",
-        ),
-        tag("pre", shlex.join(again)),
-        tag("p", "Files of the run: ", ", ".join(summary["files"].values()), "."),
-    ]
-    return joined(parts)
+    again = ["python", "-m", "vehicle.shaker", "--vehicle", f"{run.place}/vehicle.toml", *_signal_again(run)]
+    again += ["--engine", run.summary["solver"]["engine"]]
+    files = ", ".join(run.summary["files"].values())
+    return fill("repeat", command=run.summary.get("command"), again=shlex.join(again), files=files)
 
 
 def _signal_again(run: FinishedRun) -> list[str]:

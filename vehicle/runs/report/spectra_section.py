@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 
-from vehicle.digits import number
+from markupsafe import Markup
+
 from vehicle.drawing.rendering.figure import PAGE_WIDTH
 from vehicle.drawing.rendering.spectra_plot import plot_spectra
 from vehicle.errors import DataError
 from vehicle.names import CORNERS, wheel_words
 from vehicle.runs.output.spectra_files import picture_columns
 from vehicle.runs.report.finished_run import FinishedRun
-from vehicle.runs.report.markup import Markup, joined, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.record_spectra import RecordSpectra, evaluated_from, recorded_spectra
 
-EXPLANATION = (
-    "Thin: unweighted; thick and pale: weighted as on a seat (ISO 2631-1). One-third octaves and cumulative RMS come "
-    "from the whole record, so that the bands add up to its RMS; where the cumulative RMS rises, vibration is added."
-)
+fill = templates(__file__)
 
 
 def spectra(runs: Sequence[FinishedRun]) -> Markup:
@@ -28,17 +26,22 @@ def spectra(runs: Sequence[FinishedRun]) -> Markup:
         of_runs = {run.name: _spectra(run) for run in runs}
         pictures = picture_columns(list(of_runs.values()))
     except DataError as error:
-        return tag("p", f"No spectra: {error}.")
+        return fill("spectra", error=error)
     by_name = {name: run.channels for name, run in of_runs.items()}
     caption = "; ".join(dict.fromkeys(run.caption for run in of_runs.values()))
-    parts = [
+    figures = [
         drawing(
             partial(plot_spectra, runs=by_name, channels=columns, title=title, caption=caption, max_width=PAGE_WIDTH),
             title,
         )
         for title, columns in pictures.values()
     ]
-    return joined([*parts, tag("p", EXPLANATION), *_roads(of_runs)])
+    roads = [
+        (name, wheel_words(wheel, CORNERS.values()), level)
+        for name, run in of_runs.items()
+        for wheel, level in run.road_levels.items()
+    ]
+    return fill("spectra", error=None, figures=figures, roads=roads)
 
 
 def _spectra(run: FinishedRun) -> RecordSpectra:
@@ -59,18 +62,3 @@ def _spectra(run: FinishedRun) -> RecordSpectra:
 def _points(run: FinishedRun) -> tuple[str, ...]:
     """Return the points of the figures: the seat only if the car has one."""
     return ("seat_rail", "seat") if run.summary.get("seat_value") is not None else ("seat_rail",)
-
-
-def _roads(runs: Mapping[str, RecordSpectra]) -> list[Markup]:
-    """Return a line on the road under each front wheel."""
-    return [
-        tag(
-            "p",
-            f"Road of {name} under the {wheel_words(wheel, CORNERS.values())}: "
-            f"class {level.letter} of ISO 8608, G(0.1 cycles/m) = "
-            f"{number(1e6 * level.reference_density)}·10⁻⁶ m³, fitted from {level.fitted[0]:.3g} to "
-            f"{level.fitted[1]:.3g} cycles/m.",
-        )
-        for name, run in runs.items()
-        for wheel, level in run.road_levels.items()
-    ]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from vehicle.runs.report.markup import Markup, tag
+from markupsafe import Markup, escape
 
 FONTS = "'DejaVu Sans', Verdana, sans-serif"
 """Fonts of the figures: the layout uses the first, and the second has equal widths; the page contains no fonts."""
@@ -27,7 +27,7 @@ def drawing(plot: Callable[[Path], object], label: str) -> Markup:
         path = Path(folder) / "figure.svg"
         plot(path)
         text = path.read_text(encoding="utf-8")
-    return tag("figure", Markup(small(text, label)))
+    return Markup(f"<figure>{small(text, label)}</figure>")
 
 
 def small(svg: str, label: str) -> str:
@@ -48,8 +48,7 @@ def small(svg: str, label: str) -> str:
     head, content = svg.split(">", 1)
     view = re.search(r'viewBox="[^"]*"', head)
     assert view is not None
-    label = tag("title", label)
-    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">{label}{content.strip()}'
+    return f'<svg {view[0]} role="img" xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"><title>{escape(label)}</title>{content.strip()}'
 
 
 def _short(path: str) -> str:

@@ -16,6 +16,7 @@ from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
 from vehicle.signals.excitation.obstacle import Obstacle, is_obstacle
 from vehicle.signals.excitation.plausibility import acceleration_events
+from vehicle.signals.excitation.road_settings import SETTINGS
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.tyre_envelope import CAMS, TyreEnvelope
 
@@ -31,9 +32,6 @@ USUAL_DURATION = 60.0
 SKIP_S = 2.0
 """Minimum default of --skip on a road [s]: the rise from rest and 1 s, in which a motion of 1 Hz with a damping ratio
 of 0.2 decays to 28 %, its power to 8 %."""
-
-CONTACTS = ("patch", "cams")
-"""Names of the contacts of a tyre: average over the contact patch, two elliptical cams."""
 
 RADIUS = 0.30
 """Default radius of a tyre [m], to which its cams are proportional."""
@@ -111,8 +109,9 @@ class RoadDrive:
             )
         if not 0.0 <= self.patch < 1.0:
             raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
-        if self.contact is not None and self.contact not in CONTACTS:
-            raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(CONTACTS)}")
+        contacts = SETTINGS["contact"]["option"]["choices"]
+        if self.contact is not None and self.contact not in contacts:
+            raise ConfigurationError(f"contact {self.contact!r}: must be one of {', '.join(contacts)}")
         _ = self.envelope
 
     @property

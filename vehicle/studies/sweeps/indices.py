@@ -1,4 +1,4 @@
-"""Global sensitivity: variance-based indices (Sobol) and elementary effects (Morris); samples and effects by SALib.
+"""Global sensitivity: variance-based indices (Sobol) and elementary effects (Morris).
 
 First-order index S1: share of the variance of y due to x_i without interactions, Var(E[y|x_i]) / Var(y). Total index
 ST: share with all interactions of x_i. Elementary effect: change of y over a step of x_i, mu* its mean absolute value,
@@ -13,6 +13,9 @@ so a bootstrap over points does not give the error of the estimate; the scrambli
 that of Student's t with R - 1 degrees of freedom and the jackknife error over the scramblings (each left out once).
 A failed run costs its base point, with the p + 2 runs of that point.
 
+A trajectory of Morris starts at a point of a grid of L levels and moves one coordinate after the other, in random order
+and direction, by L / (2 (L - 1)) of its range.
+
 Sources: Saltelli et al., Comput. Phys. Commun. 181 (2010); L'Ecuyer, Randomized quasi-Monte Carlo (2018): independent
 replicates; Efron and Tibshirani, An Introduction to the Bootstrap (1993), chapter 11; Morris, Technometrics 33 (1991),
 with the mu* of Campolongo et al. (2007).
@@ -20,16 +23,14 @@ with the mu* of Campolongo et al. (2007).
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy
 
-from vehicle.errors import ConfigurationError, DataError, MissingPartError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.parameters.ranges import Range
 
 Vector = npt.NDArray[np.float64]
@@ -44,6 +45,7 @@ POINTS = 4
 LEAST_LEFT = 0.5
 """Minimum share of the base points without a failed run."""
 MORRIS_LEVELS = 6
+MORRIS_STEP = MORRIS_LEVELS / (2.0 * (MORRIS_LEVELS - 1))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -100,22 +102,20 @@ def sobol_sample(ranges: Sequence[Range], base: int, *, seed: int = 0) -> Vector
 
     Raises:
         ConfigurationError: `base` is no power of two.
-        MissingPartError: SALib is not installed.
     """
     if base < 2 or base & (base - 1):
         raise ConfigurationError(
             f"base points: found {base}, must be a power of two (a Sobol sequence of this length is balanced)"
         )
-    draw = _salib("sample.sobol").sample
-    count = _scramblings(base)
+    count, size, blocks = _scramblings(base), len(ranges), []
     # Children of one seed are independent of each other and of those of every other seed.
     seeds = np.random.SeedSequence(seed).generate_state(count)
-    return np.concatenate(
-        [
-            draw(_problem(ranges), base // count, calc_second_order=False, scramble=True, seed=int(child))
-            for child in seeds
-        ]
-    )
+    for child in seeds:
+        both = scipy.stats.qmc.Sobol(2 * size, scramble=True, seed=int(child)).random(base // count)
+        a, b = both[:, None, :size], both[:, None, size:]
+        # One coordinate of b in a after the other: p rows between a and b.
+        blocks.append(np.concatenate([a, np.where(np.eye(size, dtype=bool), b, a), b], axis=1).reshape(-1, size))
+    return _scaled(np.concatenate(blocks), ranges)
 
 
 def _scramblings(base: int) -> int:
@@ -175,13 +175,16 @@ def _indices(y: Vector) -> Vector:
 
 
 def morris_sample(ranges: Sequence[Range], trajectories: int, *, seed: int = 0) -> Vector:
-    """Return the trajectories of Morris for `morris_effects`; (trajectories (p + 1), p).
-
-    Raises:
-        MissingPartError: SALib is not installed.
-    """
-    draw = _salib("sample.morris").sample
-    return np.asarray(draw(_problem(ranges), trajectories, num_levels=MORRIS_LEVELS, seed=seed))
+    """Return the trajectories of Morris for `morris_effects`; (trajectories (p + 1), p)."""
+    generator, size, points = np.random.default_rng(seed), len(ranges), []
+    for _ in range(trajectories):
+        order = np.eye(size)
+        generator.shuffle(order)
+        direction = generator.choice([-1, 1], size)
+        start = generator.choice(np.linspace(0.0, 1.0 - MORRIS_STEP, MORRIS_LEVELS // 2), size)
+        moved = np.tril(np.ones((size + 1, size)), -1) @ order.T
+        points.append(start + MORRIS_STEP / 2.0 * ((2.0 * moved - 1.0) * direction + 1.0))
+    return _scaled(np.concatenate(points), ranges)
 
 
 def morris_effects(
@@ -191,27 +194,28 @@ def morris_effects(
 
     Raises:
         DataError: a value is missing or all are equal.
-        MissingPartError: SALib is not installed.
     """
-    y = _checked(values, len(ranges) + 1)
-    analyze = _salib("analyze.morris").analyze
-    effects: Any = analyze(
-        _problem(ranges),
-        np.asarray(points, dtype=float),
-        y,
-        num_levels=MORRIS_LEVELS,
-        num_resamples=RESAMPLES,
-        conf_level=CONFIDENCE,
-        print_to_console=False,
-        seed=seed,
-    )
+    size = len(ranges)
+    changes = np.diff(_checked(values, size + 1).reshape(-1, size + 1), axis=1)
+    # Each step of a trajectory moves one coordinate; (trajectories, steps, coordinates).
+    moves = np.sign(np.diff(np.asarray(points, dtype=float).reshape(-1, size + 1, size), axis=1))
+    effects = np.einsum("ts,tsc->ct", changes, moves) / MORRIS_STEP
+    sizes, generator = np.abs(effects), np.random.default_rng(seed)
+    count = sizes.shape[1]
+    means = np.array([row[generator.integers(count, size=(RESAMPLES, count))].mean(axis=1) for row in sizes])
     return MorrisEffects(
         paths=tuple(r.path for r in ranges),
-        mean_size=np.asarray(effects["mu_star"], dtype=float),
-        mean_size_error=np.asarray(effects["mu_star_conf"], dtype=float),
-        mean=np.asarray(effects["mu"], dtype=float),
-        scatter=np.asarray(effects["sigma"], dtype=float),
+        mean_size=sizes.mean(axis=1),
+        mean_size_error=scipy.stats.norm.ppf(0.5 + 0.5 * CONFIDENCE) * means.std(axis=1, ddof=1),
+        mean=effects.mean(axis=1),
+        scatter=effects.std(axis=1, ddof=1),
     )
+
+
+def _scaled(points: Vector, ranges: Sequence[Range]) -> Vector:
+    """Return points of the unit cube within the ranges."""
+    low, high = (np.array([getattr(bounds, end) for bounds in ranges]) for end in ("low", "high"))
+    return np.asarray(points * (high - low) + low)
 
 
 def latin_hypercube(ranges: Sequence[Range], count: int, *, seed: int = 0) -> Vector:
@@ -242,20 +246,3 @@ def _checked(values: npt.ArrayLike, group: int) -> Vector:
             "reasons in table.csv, narrow the ranges, or repeat with --retry-failed"
         )
     return y
-
-
-def _problem(ranges: Sequence[Range]) -> dict[str, Any]:
-    return {
-        "num_vars": len(ranges),
-        "names": [r.path for r in ranges],
-        "bounds": [[r.low, r.high] for r in ranges],
-    }
-
-
-def _salib(part: str) -> Any:
-    try:
-        return importlib.import_module(f"SALib.{part}")
-    except ImportError:
-        raise MissingPartError(
-            "global sensitivity: needs SALib of the extra 'sensitivity' (pip install SALib)"
-        ) from None

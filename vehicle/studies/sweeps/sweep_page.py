@@ -6,15 +6,19 @@ import math
 import shlex
 from collections.abc import Sequence
 
+from markupsafe import Markup
+
 from vehicle.digits import number
 from vehicle.runs.car import Car
-from vehicle.runs.report.markup import Markup, folded, joined, shortened, table, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import parameter_cells
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars
+
+fill = templates(__file__)
 
 MOST_ROWS = 2000
 """Maximum number of runs in the table of all runs; `table.csv` has all."""
@@ -73,14 +77,11 @@ def best_sentences(cars: RankedCars) -> list[str]:
 
 
 def _result(cars: RankedCars, caption: str) -> Markup:
-    over = f", mean of {cars.inputs} inputs" if cars.inputs > 1 else ""
-    definitions = "; ".join(f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED))
-    parts: list[object] = [tag("p", text) for text in best_sentences(cars)]
+    figure = Markup()
     if can_be_drawn(cars):
-        label = "Comfort over the varied parameters"
-        parts.append(drawing(lambda path: draw_ranked(path, cars, caption), label))
-    parts.append(tag("p", f"{definitions}; {cars.point}{over}. Lower is better."))
-    return joined(parts)
+        figure = drawing(lambda path: draw_ranked(path, cars, caption), "Comfort over the varied parameters")
+    definitions = [f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED)]
+    return fill("result", sentences=best_sentences(cars), figure=figure, definitions=definitions, cars=cars)
 
 
 def _cars(cars: RankedCars) -> Markup:
@@ -100,7 +101,7 @@ def _cars(cars: RankedCars) -> Markup:
                 *([] if cars.seat_value is None else [number(cars.seat_value[car], 4)]),
             ]
         )
-    return shortened(f"{len(rows)} cars in the order of comfort", heads, rows, text_columns=count)
+    return fill("cars", heads=heads, rows=rows, parameters=count)
 
 
 def _runs(results: SweptCases) -> Markup:
@@ -113,27 +114,16 @@ def _runs(results: SweptCases) -> Markup:
         values = [float(row["values"].get(name, math.nan)) for name in results.units]
         cells = [number(value if math.isfinite(value) else None, 4) for value in values]
         rows.append([case.source.name, *parameter_cells(case, paths), *cells, row["engine"]])
-    more = f"the first {MOST_ROWS} of {len(results.cases)}; all are in table.csv" if len(rows) == MOST_ROWS else "all"
-    failed = [tag("li", f"{case.label}: {reason}") for case, reason in results.failed[:20]]
-    heading = tag("h3", f"{len(results.failed)} failed runs")
-    return joined(
-        [
-            folded(f"Table of the runs ({more})", table(heads, rows, text_columns=1 + len(paths))),
-            *([heading, tag("ul", *failed, class_="notices")] if failed else []),
-        ]
-    )
+    return fill("runs", heads=heads, rows=rows, runs=len(results.cases), parameters=len(paths), failed=results.failed)
 
 
 def _repeating(cars: RankedCars | None, results: SweptCases, command: str, notes: Sequence[str]) -> Markup:
-    parts: list[object] = [tag("p", text) for text in notes]
-    if command:
-        parts.append(tag("pre", command))
+    best = ""
     if cars is not None and cars.paths:
         first, cells = results.cases[0], cars.cells[cars.best]
         settings = [f"{path}={cell}" for path, cell in zip(cars.paths, cells, strict=True)]
         base = Car.load(first.vehicle, first.overrides[: first.shared])
         best = " ".join(f"--set {shlex.quote(text)}" for text in base.with_(settings).overrides[first.shared :])
-        parts += [tag("p", "The most comfortable car in every other command:"), tag("pre", best)]
     engines = ", ".join(results.made.get("engines_asked", ()))
-    parts.append(tag("p", f"Engine {engines}; program {results.made.get('program', '')}."))
-    return joined(parts)
+    program = results.made.get("program", "")
+    return fill("repeat_sweep", notes=notes, command=command, best=best, engines=engines, program=program)

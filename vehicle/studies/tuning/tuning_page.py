@@ -6,12 +6,14 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from markupsafe import Markup
+
 from vehicle.digits import number
 from vehicle.model.parameters.paths import unit_of
 from vehicle.names import channel_words
 from vehicle.runs.report.car_section import car_section
 from vehicle.runs.report.differences import parameter_words
-from vehicle.runs.report.markup import Markup, joined, shortened, table, tag
+from vehicle.runs.report.markup import templates
 from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.studies.tuning.frf_target import FrfTarget
@@ -20,18 +22,13 @@ from vehicle.studies.tuning.posterior_text import NamedPosterior, posterior_sent
 from vehicle.studies.tuning.tuned_car import TunedCar
 from vehicle.studies.tuning.tuning_text import delay_lines, fit_sentences
 
+fill = templates(__file__)
+
 POSTERIOR = "posterior"
 """Name of the picture of the posterior."""
 
 CORRELATION = "correlation"
 """Name of the picture of the correlations."""
-
-SOURCES = (
-    "The standard error holds noise alone. With misfit: the data in 20 stretches as observations, whose scatter holds "
-    "noise and the part of the misfit that varies. Half a sample of lag: largest shift of the value if one channel, or "
-    "all, lag by half a sampling interval."
-)
-"""Explanation of the columns of the fitted values."""
 
 MOST_NAMED = 3
 """Maximum number of fitted values in the sentence of the result."""
@@ -65,7 +62,7 @@ def tuning_page(
         ("Before and after", "agreement", _agreement(tuned, figures)),
         ("Residuals", "residuals", _residuals(tuned)),
         ("The fitted car", "car", car_section(tuned.fitted)),
-        ("How to repeat the fit", "repeat", joined([tag("pre", command), *_settings(tuned)])),
+        ("How to repeat the fit", "repeat", fill("repeat_fit", command=command, settings=tuned.settings)),
     ]
     subtitles = (f"tyres {_driving(tuned)}", head_line(author, project))
     return document(f"{vehicle.name} fitted to {names}", subtitles, parts)
@@ -103,7 +100,7 @@ def _result(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> M
         + (f"leave open: {left_open[0]}." if left_open else "determine every parameter."),
     ]
     shown = [drawing(figures[name], name) for name in _curves(figures)[:1]]
-    return joined([tag("p", " ".join(texts), class_="answer"), *shown])
+    return fill("answer", texts=[" ".join(texts)], figure=Markup().join(shown))
 
 
 def _curves(figures: Mapping[str, Callable[[Path], None]]) -> list[str]:
@@ -130,22 +127,8 @@ def _values(tuned: TunedCar) -> Markup:
                 f"{number(parameter.low, 5)} to {number(parameter.high, 5)}",
             )
         )
-    errors = ("standard error", "[%]", "with misfit", "half a sample of lag")
-    heads = ("parameter", "unit", "fitted", *errors, "start", "change [%]", "bounds")
-    sentences = [tag("p", text) for text in (*delay_lines(tuned), SOURCES, *fit_sentences(tuned))]
-    notices = [tag("li", text) for each in tuned.measurements for text in each.notices]
-    return joined(
-        [
-            table(heads, rows, text_columns=2),
-            *sentences,
-            *([tag("h3", "Notices on the measurements"), tag("ul", *notices, class_="notices")] if notices else []),
-        ]
-    )
-
-
-def _settings(tuned: TunedCar) -> list[Markup]:
-    """Return the options that set the fitted values, if they are to be used."""
-    return [tag("pre", " ".join(f"--set {text}" for text in tuned.settings))] if tuned.settings else []
+    noted = [text for each in tuned.measurements for text in each.notices]
+    return fill("fitted", rows=rows, delays=delay_lines(tuned), sentences=fit_sentences(tuned), noted=noted)
 
 
 def _finite(value: float | None) -> float | None:
@@ -153,10 +136,7 @@ def _finite(value: float | None) -> float | None:
 
 
 def _left_open(tuned: TunedCar) -> Markup:
-    sentences = what_data_leave_open(tuned.result)
-    if not sentences:
-        return tag("p", "Nothing: no pair with a correlation of 0.9 or more, no standard error above 10 %.")
-    return tag("ul", *(tag("li", text) for text in sentences), class_="notices")
+    return fill("left_open", sentences=what_data_leave_open(tuned.result))
 
 
 def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -> Markup:
@@ -164,10 +144,9 @@ def _agreement(tuned: TunedCar, figures: Mapping[str, Callable[[Path], None]]) -
         (row.measurement, channel_words(row.label), row.measure, row.unit, number(row.before), number(row.after))
         for row in tuned.agreement
     ]
-    heads = ("measurement", "channel", "error of", "unit", "before", "after")
     curves = _curves(figures)
     drawings = [drawing(draw, name) for name, draw in figures.items() if name not in (POSTERIOR, *curves[:1])]
-    return joined([table(heads, rows, text_columns=4), *drawings])
+    return fill("agreement", rows=rows, figures=drawings)
 
 
 def _posterior(
@@ -182,13 +161,8 @@ def _posterior(
         (f"comfort on {name}", "m/s2", *(number(value, 4) for value in ends))
         for name, ends in zip(posterior.car.signals, posterior.comfort().T.tolist(), strict=True)
     ]
-    return joined(
-        [
-            table(("", "unit", "5 %", "median", "95 %"), rows, text_columns=2),
-            *(tag("p", text) for text in posterior_sentences(posteriors)),
-            drawing(figures[POSTERIOR], POSTERIOR),
-        ]
-    )
+    figure = drawing(figures[POSTERIOR], POSTERIOR)
+    return fill("posterior", rows=rows, sentences=posterior_sentences(posteriors), figure=figure)
 
 
 def _residuals(tuned: TunedCar) -> Markup:
@@ -196,14 +170,4 @@ def _residuals(tuned: TunedCar) -> Markup:
         (row.name, str(row.count), number(row.rms), f"{row.neighbours:+.2f}", number(row.inflation, 2))
         for row in tuned.result.rows
     ]
-    heads = ("row", "values", "RMS", "correlation of neighbours", "values per independent value")
-    return joined(
-        [
-            tag(
-                "p",
-                "Residuals over their assumed standard deviation: for FRFs from the coherence, for time histories the "
-                "RMS of the record. The fit weights each row with its own RMS and the correlation of neighbours.",
-            ),
-            shortened(f"{len(rows)} rows", heads, rows),
-        ]
-    )
+    return fill("residuals", rows=rows)
