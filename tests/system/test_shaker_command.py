@@ -22,7 +22,6 @@ from vehicle.model.parameters.vehicle import load_vehicle
 from vehicle.runs.car import Car
 from vehicle.runs.output.written_files import MARKER, written
 from vehicle.runs.report import page
-from vehicle.signals.excitation.random_road import random_road
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import write_signal
 
