@@ -6,7 +6,7 @@ import os
 
 
 def physical_memory() -> float:
-    """Return the memory of this machine [bytes]; infinity where the system does not tell it."""
+    """Return the memory of this machine [bytes]; infinity where the system does not say."""
     if os.name == "nt":
         return _windows_memory()
     try:
@@ -16,11 +16,11 @@ def physical_memory() -> float:
 
 
 def _windows_memory() -> float:
-    """Return the memory as GlobalMemoryStatusEx of Windows tells it [bytes]."""
+    """Return the memory from GlobalMemoryStatusEx of Windows [bytes]."""
     import ctypes
 
-    # MEMORYSTATUSEX: its own length and the load [%] (32 bits each), the memory, and six further amounts (64 bits)
+    # MEMORYSTATUSEX: its length and the load [%] (32 bits each), the memory, and six further amounts (64 bits)
     status = (ctypes.c_uint64 * 8)()
     status[0] = ctypes.sizeof(status)
-    told = ctypes.windll.kernel32.GlobalMemoryStatusEx(status)  # type: ignore[attr-defined, unused-ignore]
-    return float(status[1]) if told else float("inf")
+    success = ctypes.windll.kernel32.GlobalMemoryStatusEx(status)  # type: ignore[attr-defined, unused-ignore]
+    return float(status[1]) if success else float("inf")

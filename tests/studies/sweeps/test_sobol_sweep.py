@@ -18,8 +18,6 @@ from vehicle.studies.sweeps.indices import sobol_indices
 from vehicle.studies.sweeps.plan import plan_sweep
 from vehicle.studies.sweeps.sobol_sweep import comfort_indices, index_lines, sobol_changes
 
-pytest.importorskip("SALib", reason="SALib is missing: pip install 'vehicle-on-shaker[sensitivity]'")
-
 BOUNDS = {"damper.viscous": (1500.0, 3000.0), "damper.coulomb_friction": (50.0, 250.0)}
 RANGES = [Range(path=path, low=low, high=high) for path, (low, high) in BOUNDS.items()]
 

@@ -114,20 +114,20 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
     if not re.fullmatch(r"[A-Za-z0-9_.-]+", name):
         raise ConfigurationError(f"damper law {name!r}: a name has letters, digits, '_', '.' and '-' only")
     address = _address(name, function)
-    known = _LAWS.get(name)
-    if known is not None and (known.address, known.memory) != (address, memory):
+    earlier = _LAWS.get(name)
+    if earlier is not None and (earlier.address, earlier.memory) != (address, memory):
         raise ConfigurationError(
             f"damper law {name!r}: the name belongs to another function in this process, and cars that have it would "
             "change; register the new one with another name"
         )
     law = LawByAddress(name=name, address=address, memory=memory, viscous=0.0, kept=function)
-    rest = law.force(0.0, np.array([0.0, *STROKES]))
+    at_rest = law.force(0.0, np.array([0.0, *STROKES]))
     ends = law.force(np.array([-STEP, STEP]))
-    if not (np.isfinite(rest).all() and np.isfinite(ends).all()):
+    if not (np.isfinite(at_rest).all() and np.isfinite(ends).all()):
         raise ConfigurationError(f"damper law {name!r}: the force at rest or at {STEP:.3g} m/s is not a finite number")
-    if np.max(np.abs(rest)) > AT_REST * np.max(np.abs(ends)):
+    if np.max(np.abs(at_rest)) > AT_REST * np.max(np.abs(ends)):
         raise ConfigurationError(
-            f"damper law {name!r}: found a force of {float(np.max(np.abs(rest))):.4g} N at rest, must be zero at every "
+            f"damper law {name!r}: found a force of {float(np.max(np.abs(at_rest))):.4g} N at rest, must be zero at every "
             "displacement; a gas force and a spring are the parameters gas_force and stop of the damper"
         )
     viscous = float(ends[1] - ends[0]) / (2.0 * STEP)

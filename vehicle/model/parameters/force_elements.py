@@ -375,8 +375,8 @@ class Damper:
         """
         ends, slopes = self.presliding_force, self.presliding_slope
         if len(ends) != len(slopes) or not 1 <= len(ends) <= MAX_SLIDERS:
-            found = f"found {len(slopes)} numbers for {len(ends)} of presliding_force"
-            raise ConfigurationError(f"Damper.presliding_slope: {found}; set a slope for each, 1 to {MAX_SLIDERS}")
+            numbers = f"found {len(slopes)} numbers for {len(ends)} of presliding_force"
+            raise ConfigurationError(f"Damper.presliding_slope: {numbers}; set a slope for each, 1 to {MAX_SLIDERS}")
         orders = ("force", ends, ends[::-1], "rise to 1"), ("slope", slopes, slopes, "fall from 1")
         for name, values, falling, shape in orders:
             if falling[0] != 1.0 or any(after >= value for value, after in itertools.pairwise(falling)):

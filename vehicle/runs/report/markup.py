@@ -34,9 +34,9 @@ def templates(module: str) -> Callable[..., Markup]:
 @cache
 def _environment(folder: Path) -> Environment:
     """Return the environment of the templates of a folder; elements.html has the elements of all."""
-    places = [folder / "templates", Path(__file__).parent / "templates"]
+    folders = [folder / "templates", Path(__file__).parent / "templates"]
     environment = Environment(
-        loader=FileSystemLoader(places),
+        loader=FileSystemLoader(folders),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

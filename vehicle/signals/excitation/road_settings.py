@@ -57,8 +57,8 @@ SETTINGS: dict[str, Mapping[str, Any]] = {each.name: each.metadata for each in f
 """Name to the declaration of each setting: meaning, and arguments of `argparse`."""
 
 
-def with_settings(kind: Class) -> Class:
+def with_settings(decorated: Class) -> Class:
     """Add the settings to the attributes at the end of the docstring of a class."""
     lines = "".join(f"\n        {name}: {each['meaning']}." for name, each in SETTINGS.items())
-    kind.__doc__ = f"{(kind.__doc__ or '').rstrip()}{lines}\n    "
-    return kind
+    decorated.__doc__ = f"{(decorated.__doc__ or '').rstrip()}{lines}\n    "
+    return decorated

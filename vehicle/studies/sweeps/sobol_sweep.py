@@ -60,7 +60,6 @@ def sobol(
     Raises:
         ConfigurationError: bounds that do not ascend, `base` is no power of two, and as in `sweep`.
         DataError: half of the base points have a failed run, or no parameter changes the comfort.
-        MissingPartError: SALib is not installed.
 
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
     """
@@ -78,7 +77,6 @@ def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:
 
     Raises:
         ConfigurationError: `base` is no power of two.
-        MissingPartError: SALib is not installed.
     """
     return RowChanges([each.path for each in ranges], sobol_sample(ranges, base).tolist())
 
