@@ -57,7 +57,7 @@ ROOMS: dict[str, set[str]] = {
     | {"rendering", "simulation", "threads"},
     "bench": {"analysis", "assembly", "car", "excitation", "linear", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "shapes", "threads"},
-    "fmu": {"car", "laws", "linear", "parameters", "reduced", "version"},
+    "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "trial": {"analysis", "car", "excitation", "fmu", "linear", "parameters", "reduced", "rendering", "simulation"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "parameters", "records", "rendering"}
     | {"replacement", "simulation"},

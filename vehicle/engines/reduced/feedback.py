@@ -41,6 +41,7 @@ class Feedback(NamedTuple):
         controlled: indices of the k controlled dampers.
         settings: their records of `vehicle.model.laws.control_laws`; (k,).
         memory: states of their laws, with delayed settings; (k, ...).
+        outside: share of the law [-], and coefficient [N s/m] and half force [N] from outside; (k, 3).
         owners: index of the damper of each group of Jenkins elements; (g,).
         sides: indices of the dampers whose friction limit depends on their side force; (k,).
     """
@@ -50,6 +51,7 @@ class Feedback(NamedTuple):
     controlled: npt.NDArray[np.int64]
     settings: npt.NDArray[Any]
     memory: Vector
+    outside: Vector
     owners: npt.NDArray[np.int64]
     sides: npt.NDArray[np.int64]
 
@@ -133,6 +135,7 @@ def feedback_at_rest(
         controlled=np.array(controlled, dtype=np.int64),
         settings=settings,
         memory=memory,
+        outside=np.tile([1.0, 0.0, 0.0], (len(controlled), 1)),
         owners=owners,
         sides=sides,
     )
