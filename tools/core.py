@@ -3,8 +3,8 @@
     python -m pip install ziglang==0.17.1
     python tools/core.py [core|fmu|page] [PLATFORM ...] [--fmi-headers FOLDER]
 
-The sources are in vehicle/core/source and vehicle/runs/fmu/runtime; equal sources give equal bytes. stamp.json beside
-the libraries has the digest of the sources and the SHA-256 of each library, which tests compare. With the C headers of
+The sources are in vehicle/core/source and vehicle/handover/fmu/runtime; equal sources give equal bytes. stamp.json
+beside the libraries has the digest of the sources and the SHA-256 of each library, which tests compare. With the C headers of
 FMI 2.0 and 3.0, as in fmpy/c-code of the wheel FMPy, the compiler compares every function of an FMU with its
 declaration in the standard.
 """
@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from vehicle.core import build, library
 from vehicle.core.build import SOURCES, VARIANTS, compile_core, digest
 
-RUNTIME = Path(__file__).resolve().parents[1] / "vehicle" / "runs" / "fmu" / "runtime"
+RUNTIME = Path(__file__).resolve().parents[1] / "vehicle" / "handover" / "fmu" / "runtime"
 FMU_BINARIES = RUNTIME.parent / "binaries"
 COMPILER = (sys.executable, "-m", "ziglang", "cc")
 WARNINGS = ("-Wall", "-Wextra", "-Wshadow", "-Werror", "-Wno-psabi", "-fno-sanitize=all")

@@ -14,11 +14,8 @@ from tests.physics.test_displacement_tables import bent, changed_car
 from tests.validation import validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.car_numbers import car_numbers
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
-from vehicle.signals.excitation.bump import bump_shape
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 SPEED = 15.0

@@ -18,8 +18,6 @@ from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Recording
-from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.car_numbers import FRICTION_CODES
 from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
 from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.runs.car import Car, Road

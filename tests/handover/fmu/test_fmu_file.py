@@ -11,11 +11,8 @@ import pytest
 from tools.core import FMU_BINARIES, PRODUCTS, stamp_of
 from vehicle.commands.fmu import main
 from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu import car_numbers
-from vehicle.handover.fmu.car_numbers import DAMPER_FIELDS
 from vehicle.handover.fmu.fmu_file import PLATFORMS, write_fmu
 from vehicle.runs.car import Car
-from vehicle.runs.fmu.fmu_file import PLATFORMS, write_fmu
 
 LIBRARIES = {
     "2": {"linux64/car.so", "win64/car.dll", "darwin64/car.dylib"},

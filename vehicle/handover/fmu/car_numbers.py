@@ -21,13 +21,9 @@ from vehicle.engines.reduced.group_run import march_fields, packed_cars
 from vehicle.engines.reduced.step_factors import CarFactors, car_factors
 from vehicle.engines.reduced.table_layout import DOUBLE, TILE, OutputTiles, aligned_table
 from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.output_rows import Output, OutputRows, Watched, car_outputs, watched_outputs
-from vehicle.model.laws.control_laws import NUMBERS, in_steps, pack
-from vehicle.model.laws.curve import BEYOND
-from vehicle.model.laws.damper import damper_curve
+from vehicle.handover.fmu.output_rows import Output, OutputRows, Watched, car_outputs, joined_rows, watched_outputs
 from vehicle.model.parameters.force_elements import Damper
 from vehicle.model.parameters.semi_active_damper import FMU
-from vehicle.runs.fmu.output_rows import Output, OutputRows, Watched, car_outputs, joined_rows, watched_outputs
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car

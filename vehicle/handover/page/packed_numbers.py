@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.handover.fmu.car_numbers import CarNumbers
 from vehicle.engines.reduced.table_layout import BLOCK
-from vehicle.runs.fmu.car_numbers import CarNumbers
+from vehicle.handover.fmu.car_numbers import CarNumbers
 
 Vector = npt.NDArray[np.float64]
 
