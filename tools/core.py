@@ -4,9 +4,9 @@
     python tools/core.py [core|fmu|page] [PLATFORM ...] [--fmi-headers FOLDER]
 
 The sources are in vehicle/core/source and vehicle/handover/fmu/runtime; equal sources give equal bytes. stamp.json
-beside the libraries has the digest of the sources and the SHA-256 of each library, which tests compare. With the C headers of
-FMI 2.0 and 3.0, as in fmpy/c-code of the wheel FMPy, the compiler compares every function of an FMU with its
-declaration in the standard.
+beside the libraries has the digest of the sources and the SHA-256 of each library, which tests compare. With the C
+headers of FMI 2.0 and 3.0, as in fmpy/c-code of the wheel FMPy, the compiler compares every function of an FMU with
+its declaration in the standard.
 """
 
 from __future__ import annotations

@@ -103,7 +103,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         watched: quantities that must stay within limits.
 
     Raises:
-        ConfigurationError: the car has no damper, or a controller in an FMU.
+        ConfigurationError: the car has no damper, a law of the user's own, or a controller in an FMU.
     """
     composition = car.vehicle.composition.dampers
     laws = [damper.law for damper in composition]
@@ -113,6 +113,11 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
             "a car with dampers at its wheels"
         )
     for damper in composition:
+        if damper.law.function is not None:
+            raise ConfigurationError(
+                f"{damper.name}.function: found {damper.law.function!r}, a function of this process, which neither an "
+                "FMU nor a page can contain; set the viscous law, as points of a table"
+            )
         if damper.law.controlled is not None and damper.law.controlled.law == FMU:
             raise ConfigurationError(
                 f"{damper.name}.control.law: found {FMU!r}; an FMU of a car does not contain another FMU: set law = "

@@ -23,6 +23,7 @@ typedef struct { char magic[8], token[TOKEN]; uint64_t length, sum; } Header;
 #define MOVE_Records(field) MOVE_ARRAY(field)
 #define MOVE_RecordTable(field) MOVE_ARRAY(field)
 #define MOVE_Settings(field) MOVE_ARRAY(field)
+#define MOVE_OwnLaws(field) MOVE_ARRAY(field) /* empty: an address means nothing in another process */
 #define MOVE_Lanes(field) MOVE_ARRAY(field)
 #define MOVE_Reals(field) MOVE_ARRAY(field)
 #define MOVE_IN_MARCH(kind, name) MOVE_##kind(data->march.name)
