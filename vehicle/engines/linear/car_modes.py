@@ -129,8 +129,9 @@ def require_stable(car: CarModel, matrices: CarMatrices, poles: npt.NDArray[np.c
         raise ConfigurationError(
             f"the car is unstable at {vehicle.driving.speed:g} m/s: "
             f"{fastest.description.removeprefix('grows: ')} grows by a factor e in {1.0 / fastest.growth:.3g} s. Lower "
-            "driving.speed, or check cornering_stiffness of the tyres: the front axle may have too much of it. If the "
-            "car is unstable with driving.speed=0 too, its springs are too soft: see python -m vehicle.modes"
+            "driving.speed or driving.hold_frequency, since a fast car may be unstable through the hold of its course "
+            "alone, or check cornering_stiffness: the front axle may have too much of it. If the car is "
+            "unstable with driving.speed=0 too, its springs are too soft: see python -m vehicle.modes"
         )
     raise ConfigurationError(
         f"the car is statically unstable: {fastest.description.removeprefix('grows: ')} grows by a factor e in "

@@ -157,7 +157,7 @@ def plate_inputs(
         if wheel in signal.wheels:
             plate_displacement[row], rate = motion.displacement[wheel], motion.velocity[wheel]
             if model.slope.size:
-                slope = signal.slope_spline(wheel, 0.0, signal.duration)(time) if signal.slope_velocity else rate
+                slope = signal.slope_spline(wheel, time[0], time[-1])(time) if signal.slope_velocity else rate
                 share = np.maximum(channels[f"tyre_{wheel}_force_z"], 0.0) / tyre_load[wheel]
                 slopes[row] = share * slope - rate
     return plate_displacement, slopes[: model.slope.shape[1]]

@@ -10,6 +10,8 @@ import numpy.typing as npt
 from vehicle.signals.formats.clock import PAUSE
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.text import LARGEST
+from vehicle.signals.records.table import Vector
+from vehicle.signals.records.text import LARGEST
 
 EQUAL = 1e-6
 """Maximum difference of equal samples over peak to peak [-]: single precision has seven digits."""
@@ -53,6 +55,10 @@ with a band of one octave, 1 of 1e4 intervals is longer."""
 CERTAIN_PERIODS = 20.0
 """Constant duration of a stuck channel that is shorter than a pause, in the same intervals: in a record of the last
 digits, whose intervals are distributed exponentially, 1 of 5e8 is longer."""
+
+CERTAIN = 0.4
+"""Constant duration that suffices for a stuck channel if it has five intervals [s]: a sensor stuck for half a second
+repeats its value for a sample less than that."""
 
 OTHERS_MOVE = 0.2
 """Minimum RMS of another channel in the constant part, over its RMS in the whole record, that counts as motion [-]."""
@@ -200,7 +206,7 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     length = float(time[end] - time[begin])
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
     interval = max(moving, 0.0) / crossings
-    minimum = max(STUCK_PERIODS * interval, min(PAUSE, CERTAIN_PERIODS * interval))
+    minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
     return (float(time[begin]), float(time[end])) if length >= minimum else None
 
 
