@@ -1,6 +1,7 @@
 # make shaker   set everything up and run the main job with a film
 # make test     set everything up, check and test
 # make check    format, lint and types only
+# make studies  the studies of the sources, whole (hours) -> docs/published-results.md
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
 # make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
 # make docs     build the documentation -> docs/_build/html/index.html
@@ -11,7 +12,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize faults docs setup mjcf benchmark clean
+.PHONY: shaker test check core core-sanitize studies faults docs setup mjcf benchmark clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -40,6 +41,9 @@ docs: setup
 
 mjcf: setup
 	$(BIN)/python -m vehicle.mjcf --force
+
+studies: setup
+	$(BIN)/python -m scenarios.published --force
 
 faults: setup
 	$(BIN)/python -m tests.faults
