@@ -1,6 +1,7 @@
 # make shaker   set everything up and run the main job with a film
 # make test     set everything up, check and test
 # make check    format, lint and types only
+# make studies  the studies of the sources, whole (hours) -> docs/published-results.md
 # make faults   every system call of every command fails once (hours) -> docs/faults.md
 # make core     build the compiled core for all platforms (needs ziglang, see tools/core.py)
 # make lowest   smoke tests with the lowest versions of the dependencies
@@ -14,7 +15,7 @@ BIN := $(VENV)/bin
 INPUT ?= low.csv
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: shaker test check core core-sanitize faults docs setup setup-tests mjcf benchmark lowest laptop test-windows clean
+.PHONY: shaker test check core core-sanitize studies faults docs setup setup-tests mjcf benchmark lowest laptop test-windows clean
 
 shaker: setup
 	@if $(BIN)/python -m vehicle.drawing.rendering.backend; then \
@@ -58,6 +59,10 @@ test-windows: setup-tests .stamps/windows
 	$(BIN)/python -m tests.windows "build/under wine ü/vehicle"
 
 faults: setup-tests
+studies: setup-tests
+	$(BIN)/python -m scenarios.published --force
+
+faults: setup
 	$(BIN)/python -m tests.faults
 
 benchmark: setup-tests

@@ -72,7 +72,7 @@ def _job(options: argparse.Namespace) -> None:
     figures: Sequence[MotionFigure] = ()
     reason = ""
     try:
-        figures = motion_figures(car, [options.damper])
+        figures = motion_figures(car, (options.damper,))
     except SimulationError as error:
         reason = f"headline figures: not defined: {error}"
     table = modes_table(car, options.damper, figures)

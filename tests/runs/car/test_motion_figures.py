@@ -297,7 +297,7 @@ def test_figures_on_paper(cars, name):
 def test_rolling_cars_have_modes_at_their_figures(cars, name, speed):
     """On tyres that roll, which oppose no slow motion along or across, one mode holds heave, and one roll."""
     rolling = cars[name].with_({"driving.speed": speed})
-    figures = {figure.motion: figure for figure in motion_figures(rolling, ["sliding"])}
+    figures = {figure.motion: figure for figure in motion_figures(rolling, ("sliding",))}
     for motion, tolerance in (("heave", 0.07), ("roll", 0.02)):
         own = [mode for mode in figures[motion].modes if mode.share >= 0.5]
         assert len(own) == 1

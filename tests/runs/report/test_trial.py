@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import time
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,11 @@ from vehicle.handover.page.page_input import LONGEST, PageInput, RunRoad, page_i
 from vehicle.handover.page.trial_data import CURVE_SCALES, trial_data
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
+from vehicle.runs.fmu.car_numbers import PARAMETERS
 from vehicle.runs.report.finished_run import read_run, recorded_signal
+from vehicle.runs.trial.moving_car import picture_rows, static_shapes
+from vehicle.runs.trial.page_input import LONGEST, PageInput, RunRoad, page_input
+from vehicle.runs.trial.trial_data import CURVE_SCALES, FRICTION, _sliders, trial_data
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
@@ -395,3 +400,15 @@ def test_settings_outside_the_valid_range_are_named(browser):
         notices = page.ask("record", level=level)["notices"]
         assert valid == (level == 1.0) and valid == (not notices), notices
     assert notices == ["stabilizer_half_fl turned by more than 0.05 rad about y; this car is valid up to there"]
+
+
+@pytest.mark.parametrize("friction", [100.0, 5000.0])
+def test_a_slider_has_room_above_its_value(car, friction):
+    numbers: Any = SimpleNamespace(
+        parameters=np.full((len(car.vehicle.composition.dampers), len(PARAMETERS)), friction)
+    )
+    sliders = [each for each in _sliders(car, numbers, None) if each["id"].endswith("coulomb_friction")]
+    for slider in sliders:
+        assert slider["low"] == 0.0 and slider["value"] == friction <= 0.5 * slider["high"]
+        assert slider["high"] >= FRICTION["coulomb_friction"][1]
+    assert sliders

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from vehicle.engines.kinematics.axle_ride import DamperState, axle_rides
@@ -64,9 +65,10 @@ class MotionFigure:
     modes: tuple[MotionMode, ...]
 
 
+@lru_cache(maxsize=4)
 @one_blas_thread()
-def motion_figures(car: Any, states: Sequence[DamperState] = STATES) -> tuple[MotionFigure, ...]:
-    """Return the headline figures of a car.
+def motion_figures(car: Any, states: tuple[DamperState, ...] = STATES) -> tuple[MotionFigure, ...]:
+    """Return the headline figures of a car; kept, because a saved run, its report and `show` print them.
 
     Args:
         car: the car; on rolling tyres the figures are those of the car at rest, and the modes those at its speed.
