@@ -58,11 +58,10 @@ test-windows: setup-tests .stamps/windows
 	$(BIN)/python tools/windows_folder.py "build/under wine ü/vehicle" --for-wine
 	$(BIN)/python -m tests.windows "build/under wine ü/vehicle"
 
-faults: setup-tests
 studies: setup-tests
 	$(BIN)/python -m scenarios.published --force
 
-faults: setup
+faults: setup-tests
 	$(BIN)/python -m tests.faults
 
 benchmark: setup-tests

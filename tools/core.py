@@ -31,6 +31,7 @@ RUNTIME = Path(__file__).resolve().parents[1] / "vehicle" / "handover" / "fmu" /
 FMU_BINARIES = RUNTIME.parent / "binaries"
 COMPILER = (sys.executable, "-m", "ziglang", "cc")
 WARNINGS = ("-Wall", "-Wextra", "-Wshadow", "-Werror", "-Wno-psabi", "-fno-sanitize=all")
+MARCH = tuple(name for name in VARIANTS if name != "outputs.c")
 FMI = ("fmi2.c", "fmi3.c")
 PAGE = "web_page.c"
 
@@ -47,7 +48,7 @@ class Target(NamedTuple):
 class Product(NamedTuple):
     """Library for several platforms: its stem, folder and platforms; options; files of the runtime that are left out.
 
-    Without `runtime` it is the core alone, with it the march of the core and the runtime.
+    Without `runtime` it is the core alone, with it the march of the core and the runtime, which reads outputs.
     """
 
     stem: str
@@ -101,7 +102,7 @@ def copy_sources(product: Product, folder: Path) -> None:
     folder.mkdir(parents=True)
     of_core = sorted(SOURCES.glob("*.[ch]"))
     if product.runtime:
-        of_core = [path for path in of_core if path.suffix == ".h" or path.name in VARIANTS]
+        of_core = [path for path in of_core if path.suffix == ".h" or path.name in MARCH]
     of_runtime = sorted(RUNTIME.glob("*.[ch]")) if product.runtime else []
     for path in [*of_core, *of_runtime]:
         if path.name not in product.without:

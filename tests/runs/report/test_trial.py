@@ -9,7 +9,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import pytest
 import scipy
 
 from tests.patience import HANG
@@ -123,8 +122,8 @@ PATHS = {
 """Parameters of the sliders in the vehicle file."""
 
 
-def car_of(car: Car, state: dict[str, float]) -> Car:
-    """Return the car with the settings of the sliders."""
+def changes_of(car: Car, state: dict[str, float]) -> dict[str, Any]:
+    """Return the parameters of the car that the settings of the sliders change."""
     changes: dict[str, Any] = {}
     for name, value in state.items():
         axle, _, parameter = name.partition("-")
@@ -132,7 +131,12 @@ def car_of(car: Car, state: dict[str, float]) -> Car:
             changes[f"{axle}.damper.{PATHS[parameter]}"] = value
         elif parameter == "curve_scale" and value != 1.0:
             changes[f"{axle}.damper.viscous"] = value * car[f"{axle}.damper.viscous"].value
-    return car.with_(changes)
+    return changes
+
+
+def car_of(car: Car, state: dict[str, float]) -> Car:
+    """Return the car with the settings of the sliders."""
+    return car.with_(changes_of(car, state))
 
 
 def worst_of(page: Page, car: Car, signal: Signal, states: list[dict[str, float]]) -> dict[str, float]:
@@ -160,20 +164,6 @@ STRIBECK = (
     "front.damper.stribeck_velocity=0.05",
     "front.damper.stribeck_exponent=1.5",
 )
-
-
-PRESLIDING = ("front.damper.friction_law=presliding", "front.damper.presliding_stiffness=1e6")
-
-
-@pytest.mark.parametrize("overrides", [(), STRIBECK, PRESLIDING], ids=["coulomb", "stribeck", "presliding"])
-def test_friction_and_level_equal_the_reduced_engine(browser, overrides):
-    # Both ends of the record are in motion.
-    car, signal = shipped("high.csv", overrides, first=3000)
-    page = Page(browser, car, signal)
-    worst = worst_of(page, car, signal, random_states(page, 6, curve=False))
-    # The iteration of the engine ends at 1e-8 of the change of a force (`step_factors.ACCURACY`); 7e-9 with Stribeck.
-    limit = 1e-8 if overrides == STRIBECK else 1e-9
-    assert worst["channel"] < limit and worst["comfort"] < 1e-6 and worst["slip"] == 0.0, worst
 
 
 def test_each_damper_has_its_own_slip_and_force(browser):

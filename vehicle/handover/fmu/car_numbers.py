@@ -198,10 +198,9 @@ def _march(cars: CarTable, fields: dict[str, Any]) -> dict[str, Any]:
 
 
 def _joined(tables: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Return aligned tables one after the other."""
+    """Return aligned tables one after the other, with zeros without sign, which are shorter in a page."""
     table = aligned_table(sum(len(part) for part in tables), DOUBLE)
-    np.concatenate(tables, out=table)
-    return table
+    return np.asarray(np.add(np.concatenate(tables), 0.0, out=table))
 
 
 def _rows(cars: CarTable, factors: CarFactors, rows: OutputRows) -> npt.NDArray[Any]:

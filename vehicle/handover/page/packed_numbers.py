@@ -52,8 +52,8 @@ def text(content: bytes) -> str:
     return base64.b85encode(zlib.compress(content, 9)).translate(ALPHABET).decode()
 
 
-def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[tuple[int, int]]:
-    """Return the runs of words of the numbers of a car: count, and bytes of each word.
+def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[tuple[int, int, int]]:
+    """Return the runs of words of the numbers of a car: count, bytes of each word, and how often it is there.
 
     Factors of the poles, effects of the forces, and rows of outputs are rounded; all else stays exact.
 
@@ -83,22 +83,30 @@ def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[
     outputs = of("rows").reshape(-1, cars.states * PARTS)
     outputs[: len(numbers.outputs)] = cancelling
     outputs[len(numbers.outputs) - coarse_outputs :] = COARSE[short]
-    ends = [*(np.flatnonzero(np.diff(sizes)) + 1).tolist(), len(sizes)]
-    return [(end - begin, int(sizes[begin])) for begin, end in zip([0, *ends], ends, strict=False)]
+    # The parts of a row of the table are equal, except for sums over the poles.
+    times = np.ones_like(sizes)
+    offset = numbers.places["march.table"][0] // WORD
+    parts = np.frombuffer(numbers.content, dtype="<u8")[offset:][: table.size].reshape(-1, PARTS)
+    times[offset:][: table.size] = np.repeat(np.where(np.all(parts == parts[:, :1], axis=1), PARTS, 1), PARTS)
+    ends = [*(np.flatnonzero(np.diff(sizes) | np.diff(times)) + 1).tolist(), len(sizes)]
+    return [
+        ((end - begin) // int(times[begin]), int(sizes[begin]), int(times[begin]))
+        for begin, end in zip([0, *ends], ends, strict=False)
+    ]
 
 
-def packed(content: bytes, runs: Sequence[tuple[int, int]]) -> dict[str, Any]:
+def packed(content: bytes, runs: Sequence[tuple[int, int, int]]) -> dict[str, Any]:
     """Return words as text for the page.
 
     Args:
         content: the words.
-        runs: count of words and bytes of each, of all words in their order.
+        runs: see `byte_runs`, of all words in their order.
     """
     integers_of_words = np.frombuffer(content, dtype="<u8")
-    offsets = np.cumsum([0, *(count for count, _ in runs)])
+    offsets = np.cumsum([0, *(count * times for count, _, times in runs)])
     planes = []
-    for first, last, (_, size) in zip(offsets, offsets[1:], runs, strict=False):
-        rounded = integers_of_words[first:last]
+    for first, last, (_, size, times) in zip(offsets, offsets[1:], runs, strict=False):
+        rounded = integers_of_words[first:last:times]
         if size < WORD:
             rounded = rounded + np.uint64(1 << (8 * (WORD - size) - 1))
         parts = np.ascontiguousarray(rounded).view(np.uint8).reshape(-1, WORD)

@@ -27,6 +27,12 @@ from vehicle.handover.page.moving_car import moving_picture, picture_rows, turni
 from vehicle.handover.page.packed_numbers import byte_runs, packed, text
 from vehicle.handover.page.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
 from vehicle.names import AXES, axle_and_side, is_wheel
+from vehicle.runs.fmu.car_numbers import PARAMETERS, CarNumbers, numbers_with
+from vehicle.runs.fmu.output_rows import Output, Watched, car_outputs, joined_rows, motion_rows, watched_outputs
+from vehicle.runs.trial.car_sets import stepped_sliders
+from vehicle.runs.trial.moving_car import moving_picture, picture_rows, turning_parts
+from vehicle.runs.trial.packed_numbers import byte_runs, packed, text
+from vehicle.runs.trial.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
 from vehicle.signals.excitation.signal import Signal
@@ -99,6 +105,7 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
         "frf": drive.road is not None or len(drive.wheels) == 1,
         "parameters": np.asarray(base.parameters).tolist(),
         "names": list(PARAMETERS),
+        "notices": list(_watched(car, rotations).notices),
         "positions": [outputs[f"{POINT}_displacement_{axis}"] for axis in AXES],
         "motions": [outputs[f"motion_{index}"] for index in range(shown)],
         "picture": moving_picture(car),
@@ -138,15 +145,21 @@ def _page_numbers(car: Car, drive: PageInput, rotations: Sequence[int]) -> CarNu
     motions = motion_rows(car, picture_rows(car))
     read = [outputs[index] for index in kept]
     read += [Output(name=f"motion_{k}", unit="m", meaning="") for k in range(len(motions.fixed))]
-    watched = watched_outputs(car)
-    others = len(watched.notices) - 3 * len(rotating_bodies(car.matrices))
     _, every = time_steps(drive.signal, car.vehicle.solver.record_rate, LONGEST_STEP)
     return numbers_with(
         car,
         drive.interval / every,
         (read, joined_rows([rows.part(kept), motions])),
-        watched.part([*range(others), *(others + index for index in rotations)]),
+        # The page has the notices once, not in each car.
+        dataclasses.replace(_watched(car, rotations), notices=[]),
     )
+
+
+def _watched(car: Car, rotations: Sequence[int]) -> Watched:
+    """Return what the page watches: linear tyres, and rotations by their indices among `rotation_outputs`."""
+    watched = watched_outputs(car)
+    others = len(watched.notices) - 3 * len(rotating_bodies(car.matrices))
+    return watched.part([*range(others), *(others + index for index in rotations)])
 
 
 def scripts(names: Sequence[str]) -> str:

@@ -15,13 +15,15 @@ async function bytesOf(text) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Words of 8 bytes from runs [count, bytes] of their most significant bytes, bytes of equal significance together.
+// Words of 8 bytes from runs [count, bytes, times] of their most significant bytes, bytes of equal significance together;
+// each word is there `times` times.
 function wordsOf(bytes, runs) {
-  const words = new Uint8Array(8 * runs.reduce((sum, [count]) => sum + count, 0));
+  const words = new Uint8Array(8 * runs.reduce((sum, [count, , times]) => sum + count * times, 0));
   let from = 0, to = 0;
-  for (const [count, size] of runs) {
-    for (let byte = 8 - size; byte < 8; byte++) for (let k = 0; k < count; k++) words[to + 8 * k + byte] = bytes[from++];
-    to += 8 * count;
+  for (const [count, size, times] of runs) {
+    for (let byte = 8 - size; byte < 8; byte++)
+      for (let k = 0; k < count; k++, from++) for (let t = 0; t < times; t++) words[to + 8 * (k * times + t) + byte] = bytes[from];
+    to += 8 * count * times;
   }
   return words;
 }

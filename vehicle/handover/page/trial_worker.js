@@ -74,15 +74,9 @@ class Trial {
     return outputs.map((_, k) => values.slice(k * samples, (k + 1) * samples));
   }
 
-  text(place) {
-    const bytes = new Uint8Array(this.module.memory.buffer, place);
-    return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
-  }
-
   // Notices of the last run on quantities that left their valid range.
   notices() {
-    const places = Array.from({ length: this.module.watched(this.car) }, (_, k) => this.module.notice(this.car, k));
-    return places.filter(Boolean).map((place) => this.text(place));
+    return this.data.notices.filter((_, k) => this.module.left(this.car, k));
   }
 
   // Second derivative of a position, with the filter of the records; the last `ahead` samples are lost.

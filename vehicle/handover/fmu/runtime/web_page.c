@@ -7,6 +7,20 @@
 #undef EXPORT /* of the core */
 #define EXPORT __attribute__((visibility("default")))
 
+/* Memory of the page is never given back: allocation is a mark that moves up. */
+extern char __heap_base;
+void *malloc(size_t size) {
+  static uintptr_t top;
+  uintptr_t first = ((top ? top : (uintptr_t)&__heap_base) + ROW - 1) / ROW * ROW, page = 65536;
+  uintptr_t have = __builtin_wasm_memory_size(0) * page;
+  if (size > UINTPTR_MAX / 2) return NULL;
+  if (first + size > have && __builtin_wasm_memory_grow(0, (first + size - have + page - 1) / page) == SIZE_MAX) return NULL;
+  top = first + size;
+  return (void *)first;
+}
+void *calloc(size_t count, size_t size) { return malloc(count * size); } /* new memory is zero */
+void free(void *memory) { (void)memory; }
+
 EXPORT void *reserve(size_t size) { return malloc(size); }
 
 /* Return an instance of the car whose numbers are the content of resources/car.bin; NULL if they are damaged. */
@@ -39,7 +53,5 @@ EXPORT int32_t run_car(Motion *s, const double *parameter, const double *plate, 
   return samples;
 }
 
-/* Return the number of watched quantities, and the notice on one of them; NULL if it stayed within its limits. */
-EXPORT int32_t watched(const Motion *s) { return (int32_t)watched_count(s->car); }
-
-EXPORT const char *notice(const Motion *s, int32_t k) { return s->warned[k] > 0.0 ? notice_of(s->car, k) : NULL; }
+/* Return 1 if a watched quantity left its limits in the last run. */
+EXPORT int32_t left(const Motion *s, int32_t k) { return s->warned[k] > 0.0; }
