@@ -9,22 +9,20 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 import scipy
 
 from tests.patience import HANG
 from vehicle.drawing.rendering.wireframe import car_wireframe
 from vehicle.engines.linear.load_rows import displacement_rows
 from vehicle.engines.reduced.reduced_run import simulate_reduced
+from vehicle.handover.fmu.car_numbers import PARAMETERS
 from vehicle.handover.page.moving_car import picture_rows, static_shapes
 from vehicle.handover.page.page_input import LONGEST, PageInput, RunRoad, page_input
-from vehicle.handover.page.trial_data import CURVE_SCALES, trial_data
+from vehicle.handover.page.trial_data import CURVE_SCALES, FRICTION, _sliders, trial_data
 from vehicle.names import AXES
 from vehicle.runs.car import Car, Road
-from vehicle.runs.fmu.car_numbers import PARAMETERS
 from vehicle.runs.report.finished_run import read_run, recorded_signal
-from vehicle.runs.trial.moving_car import picture_rows, static_shapes
-from vehicle.runs.trial.page_input import LONGEST, PageInput, RunRoad, page_input
-from vehicle.runs.trial.trial_data import CURVE_SCALES, FRICTION, _sliders, trial_data
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal

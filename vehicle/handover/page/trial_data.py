@@ -21,18 +21,12 @@ from vehicle.engines.reduced.validity import rotating_bodies
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, WEIGHTS
 from vehicle.errors import ConfigurationError
 from vehicle.handover.fmu.car_numbers import PARAMETERS, CarNumbers, numbers_with
-from vehicle.handover.fmu.output_rows import Output, car_outputs, joined_rows, motion_rows, watched_outputs
+from vehicle.handover.fmu.output_rows import Output, Watched, car_outputs, joined_rows, motion_rows, watched_outputs
 from vehicle.handover.page.car_sets import stepped_sliders
 from vehicle.handover.page.moving_car import moving_picture, picture_rows, turning_parts
 from vehicle.handover.page.packed_numbers import byte_runs, packed, text
 from vehicle.handover.page.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
 from vehicle.names import AXES, axle_and_side, is_wheel
-from vehicle.runs.fmu.car_numbers import PARAMETERS, CarNumbers, numbers_with
-from vehicle.runs.fmu.output_rows import Output, Watched, car_outputs, joined_rows, motion_rows, watched_outputs
-from vehicle.runs.trial.car_sets import stepped_sliders
-from vehicle.runs.trial.moving_car import moving_picture, picture_rows, turning_parts
-from vehicle.runs.trial.packed_numbers import byte_runs, packed, text
-from vehicle.runs.trial.page_input import LONGEST, SPEEDS, PageInput, RunRoad, page_input
 from vehicle.signals.analysis.evaluation import application
 from vehicle.signals.analysis.weighting import weighting
 from vehicle.signals.excitation.signal import Signal

@@ -7,11 +7,8 @@ from collections.abc import Container, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.signals.formats.clock import PAUSE
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.text import LARGEST
-from vehicle.signals.records.table import Vector
-from vehicle.signals.records.text import LARGEST
 
 EQUAL = 1e-6
 """Maximum difference of equal samples over peak to peak [-]: single precision has seven digits."""
