@@ -29,8 +29,10 @@ def comfort(run: FinishedRun) -> Markup:
             )
             for axis in "xyz"
         ]
-        of_all = (number(iso["vector_sum"][key]) for key in ("weighted_rms", "vdv"))
-        rows.append(("all", "", next(of_all), "", "", next(of_all), "", number(raw["overall"])))
+        whole = iso["vector_sum"]
+        rows.append(
+            ("all", "", number(whole["weighted_rms"]), "", "", number(whole["vdv"]), "", number(raw["overall"]))
+        )
         span = f", {run.span} of the run" if run.span else ""
         caption = f"{point_words(point).capitalize()}, {iso['standard']}{span}"
         points.append((caption, low, high, rows, iso["reasons"]))
