@@ -70,7 +70,7 @@ ROOMS: dict[str, set[str]] = {
     | {"records", "rendering", "replacement", "simulation"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "version"},
-    "fmu": {"car", "laws", "linear", "parameters", "reduced", "version"},
+    "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "fmu", "linear", "output", "parameters", "reduced"}
     | {"rendering", "report", "simulation"},
     "bench": {"analysis", "assembly", "car", "excitation", "formats", "linear", "output", "page"}

@@ -10,16 +10,20 @@ from __future__ import annotations
 
 import hashlib
 import json
+import subprocess
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from tools.fmu_runtime import OPTIONS, TARGETS, WARNINGS, compiler
+from tools.core import COMPILER, TARGETS
 
 FOLDER = Path(__file__).resolve().parents[1] / "tests" / "data" / "controller"
 FILES = ("skyhook.c", "skyhook.so")
 """Source and library."""
+
+OPTIONS = ("-std=c11", "-O2", "-ffp-contract=off", "-fvisibility=hidden", "-fno-sanitize=all", "-s")
+WARNINGS = ("-Wall", "-Wextra", "-Wshadow", "-Werror")
 
 
 def digests() -> dict[str, str]:
@@ -30,9 +34,8 @@ def digests() -> dict[str, str]:
 def main() -> None:
     """Build the library and the stamp."""
     source, library = FILES
-    target, _ = TARGETS["x86_64-linux"]
-    warnings = [name for name in WARNINGS if name != "-Wconversion"]
-    compiler("-target", target, *OPTIONS, *warnings, "-shared", "-s", "-o", library, source, "-lm", folder=FOLDER)
+    target = ["-target", TARGETS["x86_64-linux"].name, "-shared", "-o", library, source, "-lm"]
+    subprocess.run([*COMPILER, *OPTIONS, *WARNINGS, *target], cwd=FOLDER, check=True)
     (FOLDER / "stamp.json").write_text(json.dumps(digests(), indent=2) + "\n", encoding="utf-8")
     print(f"{library}: {(FOLDER / library).stat().st_size} bytes")
 

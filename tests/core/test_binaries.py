@@ -16,7 +16,7 @@ from vehicle.core import build, library
 from vehicle.core.library import BINARIES
 from vehicle.errors import MissingPartError
 
-STAMP = json.loads((BINARIES / "stamp.json").read_text(encoding="utf-8"))
+STAMP = json.loads((BINARIES / "stamp.json").read_text(encoding="utf-8"))["core"]
 ROOT = Path(__file__).resolve().parents[2]
 
 

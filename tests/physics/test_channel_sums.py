@@ -14,8 +14,6 @@ from tests.physics.test_displacement_tables import bent, changed_car
 from tests.validation import validated
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.car_numbers import car_numbers
 from vehicle.runs.car import Car
 from vehicle.runs.car.road import Road
 from vehicle.signals.excitation.signal import Signal, uniform_time
@@ -83,14 +81,6 @@ def test_a_batch_has_the_stops_too():
     single = simulate_reduced(car.poles, signal, dampers=dampers, tyre_load=car.static.tyre_load, **given)
     batch = simulate_batch([car.poles], signal, dampers=[dampers], tyre_load=[car.static.tyre_load], **given)
     np.testing.assert_array_equal(batch.recording(0)["damper_fr_force"], single["damper_fr_force"])
-
-
-def test_an_fmu_has_no_force_of_a_damper_whose_stop_acts_at_rest():
-    def leaning(front):
-        front["damper"]["stop"] = {"displacement": [-0.05, 0.05], "force": [-500.0, 500.0]}
-
-    with pytest.raises(ConfigurationError, match=r"damper_fr_force: .* leave this channel out"):
-        car_numbers(changed_car(leaning), ["damper_fr_force"], 1e-4)
 
 
 @pytest.mark.parametrize("engine", ENGINES)

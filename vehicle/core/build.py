@@ -15,9 +15,9 @@ from pathlib import Path
 SOURCES = Path(__file__).parent / "source"
 
 VARIANTS = ("forces.c", "march.c", "outputs.c", "poles.c")
-"""Files in double and single precision."""
+"""Files in double and single precision: the march, which other libraries contain in double precision."""
 
-DOUBLE = ("callback.c",)
+DOUBLE = ("callback.c", "reading.c")
 """Files for each processor in double precision only."""
 
 OPTIONS = ["-std=gnu11", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden"]
@@ -36,7 +36,12 @@ def digest(sources: Path = SOURCES) -> str:
 
 
 def compile_core(
-    compiler: Sequence[str], machine: str, library: Path, options: Sequence[str] = (), linked: Sequence[str] = ()
+    compiler: Sequence[str],
+    machine: str,
+    library: Path,
+    options: Sequence[str] = (),
+    linked: Sequence[str] = (),
+    single: bool = True,
 ) -> None:
     """Compile and link the core in a folder of its own, into which the sources are copied.
 
@@ -46,6 +51,7 @@ def compile_core(
         library: library that is written; its folder is the work folder and has the sources.
         options: further options of the compilation.
         linked: further options of the linking.
+        single: with single precision.
 
     Raises:
         CalledProcessError: the compiler fails.
@@ -66,7 +72,7 @@ def compile_core(
             compiled(source, stem, stamp, *processors[min(processors)])
             continue
         for number, chosen in processors.items():
-            for letter, real in (("d", "double"), ("f", "float"))[: 1 if source in DOUBLE else 2]:
+            for letter, real in (("d", "double"), ("f", "float"))[: 2 if single and source in VARIANTS else 1]:
                 variant = f"{letter}{number}"
                 compiled(source, f"{stem}_{variant}", f"-DVARIANT={variant}", f"-DREAL={real}", *chosen)
     _run([*compiler, *linked, "-o", library.name, *objects], folder)

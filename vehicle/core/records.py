@@ -10,7 +10,7 @@ from __future__ import annotations
 import ctypes
 import re
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from typing import Any, NamedTuple
 
@@ -27,6 +27,7 @@ ELEMENTS: dict[str, tuple[type[Any], ...]] = {
     "double": (np.float64,),
     "int64_t": (np.int64,),
     "uint32_t": (np.uint32,),
+    "char": (np.uint8,),
     "REAL": (np.float32, np.float64),
 }
 """numpy types of the elements of arrays."""
@@ -142,7 +143,12 @@ def packed(name: str, record: Any) -> Packed:
         TypeError: type, dimensions, order or alignment of an array differs from its kind.
     """
     words, kept = list[int](), list[Any]()
-    _add(words, name, record, kept)
+
+    def address_of(array: npt.NDArray[Any]) -> int:
+        kept.append(array)
+        return int(array.__array_interface__["data"][0])
+
+    _add(words, name, record, address_of)
     return Packed(structure(name).from_buffer(bytearray(struct.pack(f"{len(words)}q", *words))), tuple(kept))
 
 
@@ -165,8 +171,58 @@ def checked(name: str, record: Packed, *sizes: int) -> Packed:
     return record
 
 
-def _add(words: list[int], name: str, record: Any, kept: list[Any]) -> None:
-    """Append the fields of a record as 64-bit words."""
+class Stored(NamedTuple):
+    """Record as bytes, for a file.
+
+    Attributes:
+        content: the structure, then the arrays, each at a multiple of `LANE_BYTES`, little-endian; addresses are
+            offsets from the beginning of the file.
+        places: offset in the file and size of each array by the path of its field, as "march.table" [byte].
+    """
+
+    content: bytes
+    places: dict[str, tuple[int, int]]
+
+
+def stored(name: str, record: Any, begin: int) -> Stored:
+    """Return a record as bytes.
+
+    Args:
+        name, record: see `packed`.
+        begin: bytes of the file before the record, a multiple of `LANE_BYTES`.
+
+    Raises:
+        TypeError: see `packed`.
+    """
+    words, arrays, places = list[int](), list[bytes](), list[tuple[int, int]]()
+    end = begin + ctypes.sizeof(structure(name))
+
+    def offset_of(array: npt.NDArray[Any]) -> int:
+        nonlocal end
+        filled = -end % LANE_BYTES
+        arrays.append(b"\0" * filled + array.tobytes())
+        places.append((end + filled, array.nbytes))
+        end += len(arrays[-1])
+        return places[-1][0]
+
+    _add(words, name, record, offset_of)
+    content = struct.pack(f"<{len(words)}q", *words) + b"".join(arrays)
+    return Stored(content, dict(zip(_array_paths(name), places, strict=True)))
+
+
+def _array_paths(name: str, before: str = "") -> list[str]:
+    """Return the paths of the arrays of a record."""
+    paths = list[str]()
+    for kind, field in records()[name]:
+        if kind in array_kinds():
+            paths.append(before + field)
+        elif kind not in NUMBERS:
+            paths += _array_paths(kind, f"{before}{field}.")
+    return paths
+
+
+def _add(words: list[int], name: str, record: Any, place: Callable[[npt.NDArray[Any]], int]) -> None:
+    """Append the fields of a record as 64-bit words; `place` returns the address of an array."""
     kinds, read = array_kinds(), record.__getitem__ if isinstance(record, Mapping) else partial(getattr, record)
     for kind, field in records()[name]:
         value, wanted = read(field), kinds.get(kind)
@@ -176,14 +232,13 @@ def _add(words: list[int], name: str, record: Any, kept: list[Any]) -> None:
                     f"{name}.{field}: {value.dtype} {value.shape} is no {wanted.element} of {wanted.dimensions} "
                     "dimensions in C order"
                 )
-            words += (value.__array_interface__["data"][0], *value.shape[: wanted.dimensions])
-            kept.append(value)
+            words += (place(value), *value.shape[: wanted.dimensions])
         elif kind == "double":
             words.append(struct.unpack("q", struct.pack("d", value))[0])
         elif kind == "int64_t":
             words.append(int(value))
         else:
-            _add(words, kind, value, kept)
+            _add(words, kind, value, place)
 
 
 def _fits(kind: ArrayKind, array: npt.NDArray[Any]) -> bool:

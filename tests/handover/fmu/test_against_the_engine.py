@@ -18,8 +18,6 @@ from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes
 from vehicle.engines.reduced.reduced_run import simulate_reduced
 from vehicle.engines.simulation.recorded_acceleration import AHEAD, acceleration
 from vehicle.engines.simulation.recording import Recording
-from vehicle.errors import ConfigurationError
-from vehicle.handover.fmu.car_numbers import FRICTION_CODES
 from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
 from vehicle.model.parameters.semi_active_damper import LAWS
 from vehicle.runs.car import Car, Road
@@ -40,12 +38,9 @@ STRIBECK: dict[str, Any] = {
 
 
 def on_road(name: str, level: str, overrides: tuple[str, ...] = ()) -> tuple[Car, Signal]:
-    """Return a car on a road or an obstacle with rolling tyres, and the road under its wheels.
-
-    An FMU contains linear tyres, so an obstacle does not lift them here.
-    """
+    """Return a car on a road or an obstacle with rolling tyres, and the road under its wheels."""
     car = Car.load(name, overrides)
-    ride = Road(level, speed=80, duration=SECONDS + 0.1).under(car.vehicle, (*car.overrides, "one_sided=false"))
+    ride = Road(level, speed=80, duration=SECONDS + 0.1).under(car.vehicle, car.overrides)
     return car.with_(ride.overrides), ride.signal()
 
 
@@ -95,7 +90,7 @@ def deviations(fmu: Fmu, car: Car, signal: Signal, channels: tuple[str, ...]) ->
             if name not in run.channels:
                 continue
             wanted, values = run[name][:count], values[:count]
-            peak = float(np.max(np.abs(wanted - wanted[0])))
+            peak = float(np.max(np.abs(wanted - wanted[0]))) or 1.0
         elif name.startswith("damper_") and name.endswith("_force"):
             kind, wanted, values = "instantaneous damper force", run[name][:count], values[:count]
             peak = float(np.max(np.abs(wanted)))
@@ -165,9 +160,6 @@ CONTROL = {
 }
 """Numbers of a controlled damper, with delay and rate."""
 
-MISSING_FRICTION_LAWS: dict[str, dict[str, Any]] = {}
-"""Friction laws that the runtime does not have, with the numbers of a damper that has them."""
-
 NUMBERS_OF_FRICTION: dict[str, dict[str, Any]] = {"stribeck": STRIBECK, "presliding": {"presliding_stiffness": 1e6}}
 """Numbers of each friction law, beside the limit."""
 
@@ -191,6 +183,40 @@ def damping_laws() -> tuple[str, ...]:
     return tuple(entry.metadata["choices"])
 
 
+LIFTING = {f"{axle}.bushings.tyre.one_sided": True for axle in ("front", "rear")}
+RUBBER: dict[str, Any] = {
+    "front.bushings.arm_rear.friction_force": [300.0] * 3,
+    "front.bushings.arm_rear.friction_stroke": [2e-4] * 3,
+}
+STOP = {"displacement": [-0.04, -0.02, -0.005, 0.005, 0.02], "force": [-9e3, -2e3, 0.0, 0.0, 3e3]}
+MOUNT = {"displacement": [-8e-3, -1e-3, 0.0, 4e-3], "force": [-8e3, -800.0, 0.0, 3200.0]}
+LAWS_OF_A_CAR: dict[str, tuple[str, dict[str, Any]]] = {
+    "rubber friction": ("focus", RUBBER),
+    "stops": ("focus", {"front.damper.stop": STOP}),
+    "a table": ("focus", {"front.bushings.suspension_mount.table_z": MOUNT}),
+    "tyres that lift off": ("focus", {"front.bushings.tyre.one_sided": True}),
+    "side forces": ("focus", {"front.damper.side_force_coefficient": 0.1}),
+    "rubber friction and rolling tyres that lift off": ("focus_road", RUBBER | LIFTING),
+}
+"""Cars and changes for each law over displacement, and friction by the side force."""
+
+
+@pytest.mark.parametrize(("law", "fmi"), [*zip(LAWS_OF_A_CAR, ["2", "3"] * 3, strict=True)])
+def test_each_law_of_a_car(law, fmi, tmp_path):
+    name, changes = LAWS_OF_A_CAR[law]
+    linear, signal = on_plates("high") if name == "focus" else on_road(name, "D")
+    # A strong input: tyres lift off, and dampers reach their stops.
+    level = 40.0 if name == "focus" else 1.0
+    signal = replace(signal, displacement={wheel: level * z for wheel, z in signal.displacement.items()})
+    car = linear.with_(changes)
+    channels = (*car.vehicle.channels, *loads_without_accelerations(car))
+    found = deviations(written(car, tmp_path, fmi=fmi, channels=channels), car, signal, channels)
+    found.pop("instantaneous damper force")
+    agree(f"{name} with {law}, FMI {fmi}.0", found)
+    with_law, without = (engine(each, signal, ("knuckle_fl_acc_z",))["knuckle_fl_acc_z"] for each in (car, linear))
+    assert np.max(np.abs(with_law - without)) > 1e-3 * np.max(np.abs(without))
+
+
 def checked(law: str, overrides: tuple[str, ...], folder: Path) -> None:
     """Check the FMU of a car with other dampers against the engine."""
     car, signal = on_plates("high", overrides)
@@ -200,14 +226,7 @@ def checked(law: str, overrides: tuple[str, ...], folder: Path) -> None:
 
 
 @pytest.mark.parametrize("law", FRICTION_LAWS)
-def test_each_friction_law_is_known_or_refused_by_name(law, tmp_path):
-    """A new law fails here until the runtime has it, or the list of laws that it lacks says so."""
-    assert set(FRICTION_LAWS) == set(FRICTION_CODES) | set(MISSING_FRICTION_LAWS)
-    if law in MISSING_FRICTION_LAWS:
-        numbers = {"friction_law": law, **MISSING_FRICTION_LAWS[law]}
-        with pytest.raises(ConfigurationError, match=rf"friction_law: an FMU can have .*not '{law}'"):
-            written(Car.load("focus", overrides_of(numbers)), tmp_path)
-        return
+def test_each_friction_law(law, tmp_path):
     checked(f"{law} friction", overrides_of({"friction_law": law, **NUMBERS_OF_FRICTION.get(law, {})}), tmp_path)
 
 

@@ -41,6 +41,7 @@ static const char *check_sections(const March *job) {
   SECTION(hold, d);
   SECTION(stuck, d);
   SECTION(stick, d);
+  SECTION(inverse, 2 * d);
   SECTION(sensors, sensors);
   SECTION(past, sensors);
   SECTION(direct, sensors * (2 * (d + m) + g));
@@ -82,7 +83,7 @@ EXPORT const char *core_check_march(const March *job, int64_t lanes) {
   NEED("tyres", job->tyres <= m);
   NEED("plate_inputs", job->plate_inputs <= m);
   NEED("inputs", job->inputs >= force_count(job) + 2 * m + job->tyres + job->plate_inputs);
-  const int64_t own = job->own.n[0], sides = job->sides.n[0], controlled = job->controlled.n[0];
+  const int64_t nodes = r->pieces + 1, own = job->own.n[0], sides = job->sides.n[0], controlled = job->controlled.n[0];
   NEED("sums", job->sums >= solved_count(job) + job->tyres + 2 * (controlled + sides) + own);
   const char *wrong = check_sections(job);
   if (wrong) return wrong;
@@ -100,6 +101,7 @@ EXPORT const char *core_check_march(const March *job, int64_t lanes) {
   NEED("watched", s.levels + job->watched <= s.speeds);
   NEED("peaks", job->peaks.n[0] >= job->rotations.n[0] / weights + 2 * job->watched);
   NEED("owners", job->owners.n[0] >= r->groups && within(&job->owners, 0, d));
+  NEED("pieces", job->pieces.n[0] == d && within(&job->pieces, 0, nodes));
   NEED("sides", within(&job->sides, 0, d));
   NEED("controlled", within(&job->controlled, 0, d));
   NEED("own", within(&job->own, 0, d));
@@ -109,6 +111,7 @@ EXPORT const char *core_check_march(const March *job, int64_t lanes) {
   NEED("laws", job->laws.n[0] ? job->laws.n[1] == lanes : sides == 0);
   NEED("settings", job->settings.n[0] == controlled);
   NEED("memory", job->memory.n[0] == controlled);
+  NEED("outside", job->outside.n[0] == controlled && job->outside.n[1] == 3);
   for (int64_t k = 0; k < controlled; k++) {
     NEED("settings", job->settings.at[k].period >= 1.0 && job->settings.at[k].lag >= 0.0);
     NEED("memory", (double)job->memory.n[1] >= RING + job->settings.at[k].lag + 1.0);

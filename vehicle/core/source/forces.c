@@ -52,7 +52,8 @@ INLINE void remove_own(const March *job, int64_t d, int64_t groups, int64_t laws
   }
 }
 
-/* Nodes of the inverse law of each damper: velocity without its force, 1/length, force, rise of the force. */
+/* Nodes of the inverse law of each damper: velocity without its force, 1/length, force, rise of the force. One car keeps
+ * those of the last step if neither the effect g of the force on its velocity nor its friction limit changed. */
 INLINE void invert_laws(const March *job, int64_t d, int64_t sums, V *effect, V *node) {
   const Sections *r = &job->rows;
   int64_t nodes = r->pieces + 1;
@@ -60,13 +61,16 @@ INLINE void invert_laws(const March *job, int64_t d, int64_t sums, V *effect, V 
   for (int64_t i = 0; i < d; i++, node += 4 * nodes) {
     const V *law = t + r->law + 3 * nodes * i;
     V own = t[r->gain + i * sums + i] + t[r->stick + i] * t[r->ramp + i * d + i];
+    V *inverse = t + r->inverse + 2 * i, limit = t[r->limit + i];
     effect[i] = own;
     arriving[i] -= own * t[r->hold + i];
-    for (int64_t k = 0; k < nodes; k++) {
-      V force = law[3 * k + 1] + law[3 * k + 2] * t[r->limit + i];
+    if (!SINGLE && inverse[0][0] == own[0] && inverse[1][0] == limit[0]) continue;
+    inverse[0] = own, inverse[1] = limit;
+    for (int64_t k = 0; k <= job->pieces.at[i]; k++) {
+      V force = law[3 * k + 1] + law[3 * k + 2] * limit;
       node[4 * k] = law[3 * k] + own * force, node[4 * k + 2] = force;
     }
-    for (int64_t k = 0; k < r->pieces; k++) {
+    for (int64_t k = 0; k < job->pieces.at[i]; k++) {
       node[4 * k + 1] = all(1) / (node[4 * k + 4] - node[4 * k]);
       node[4 * k + 3] = node[4 * k + 6] - node[4 * k + 2];
     }
@@ -103,7 +107,7 @@ INLINE void solve(const March *job, int64_t d, int64_t groups, int64_t laws) {
     for (int64_t i = 0; i < d; i++) {
       const V *at = node + 4 * nodes * i, *law = t + r->law + 3 * nodes * i;
       V f = at[2], hold = law[1], a = arriving[i];
-      for (int64_t k = 0; k < r->pieces; k++) {
+      for (int64_t k = 0; k < job->pieces.at[i]; k++) {
         V share = vmin(vmax((a - at[4 * k]) * at[4 * k + 1], zero), one);
         f += at[4 * k + 3] * share;
         hold += (law[3 * k + 4] - law[3 * k + 1]) * share;

@@ -20,8 +20,8 @@
   typedef struct { _Alignas(8) type *at; int64_t n[dimensions]; } name;
 #define EACH_ARRAY(A) \
   A(Vector, double, 1) A(Table, double, 2) A(Tables3, double, 3) A(Index, int64_t, 1) A(Indices, int64_t, 2) \
-  A(Words, uint32_t, 1) A(Records, DamperLaw, 1) A(RecordTable, DamperLaw, 2) A(Settings, Setting, 1) \
-  A(OwnLaws, OwnLaw, 1) A(Lanes, void, 1) A(Reals, REAL, 2)
+  A(Words, uint32_t, 1) A(Texts, char, 2) A(Records, DamperLaw, 1) A(RecordTable, DamperLaw, 2) \
+  A(Settings, Setting, 1) A(OwnLaws, OwnLaw, 1) A(Lanes, void, 1) A(Reals, REAL, 2)
 
 /* ---- laws, see laws.h ---- */
 
@@ -65,7 +65,7 @@
   F(int64_t, corners) F(int64_t, rubbers) F(int64_t, layers) F(int64_t, slip) F(int64_t, level) F(int64_t, gain) \
   F(int64_t, ramp) F(int64_t, law) F(int64_t, pieces) F(int64_t, limit) F(int64_t, full) F(int64_t, inputs) \
   F(int64_t, viscous) F(int64_t, velocity) F(int64_t, earlier) F(int64_t, hold) F(int64_t, stuck) \
-  F(int64_t, stick) F(int64_t, sensors) F(int64_t, past) F(int64_t, direct) F(int64_t, spring) F(int64_t, give) \
+  F(int64_t, stick) F(int64_t, inverse) F(int64_t, sensors) F(int64_t, past) F(int64_t, direct) F(int64_t, spring) F(int64_t, give) \
   F(int64_t, share) F(int64_t, slider) F(int64_t, place) F(int64_t, rest) F(int64_t, corner) F(int64_t, own) \
   F(int64_t, excess) F(int64_t, heard) F(int64_t, stiff) F(int64_t, stroke) F(int64_t, part) F(int64_t, weight) \
   F(int64_t, reach) F(int64_t, anchor) F(int64_t, middle) F(int64_t, ahead) F(int64_t, work)
@@ -78,9 +78,11 @@
  * are kept; check_every: samples between two checks; always: levels at every sample.
  * table, poles: numbers of the cars, see table_layout and step_factors. x: states of the previous sample and of a block
  * of samples. changes: changes of the poles from sample to sample, or empty. y: outputs of past samples and of a block.
- * peaks: squares of rotations, minimum and maximum of the watched levels. owners: damper of each group; sides: dampers
- * with a side force; laws: of dampers with a friction limit that varies, or empty; controlled, settings, memory:
- * controlled dampers; own, own_laws: dampers with a law by address. rates: z' at the beginning, mean z', z, V tan(beta) - z' of each step; plate_z: z of the samples
+ * peaks: squares of rotations, minimum and maximum of the watched levels. owners: damper of each group; pieces:
+ * number of segments of each damper law, the others have no length; sides: dampers with a side force; laws: of dampers
+ * with a friction limit that varies, or empty; controlled, settings, memory, outside: controlled dampers, and what acts
+ * on them beside their law: its share [-], a coefficient [N s/m], half of a force [N]; own, own_laws: dampers with a law
+ * by address. rates: z' at the beginning, mean z', z, V tan(beta) - z' of each step; plate_z: z of the samples
  * and their differences. positions, levels, rotations: weights of outputs in tiles; tyre_of: level of the tyre of each
  * law; wanted: row of each channel; offset: static values (channels, lanes); weights: of the second difference; cars:
  * row of each lane in out, (channels, cars, samples). */
@@ -88,11 +90,25 @@
   F(Sections, rows) F(int64_t, inputs) F(int64_t, sums) F(int64_t, plates) F(int64_t, every) \
   F(int64_t, tyres) F(int64_t, plate_inputs) F(int64_t, step) F(int64_t, first) F(int64_t, loads) \
   F(int64_t, watched) F(int64_t, check_every) F(int64_t, always) F(int64_t, dampers) F(Lanes, table) \
-  F(Lanes, poles) F(Lanes, x) F(Lanes, changes) F(Lanes, y) F(Lanes, peaks) F(Index, owners) F(Index, sides) \
-  F(RecordTable, laws) F(Index, controlled) F(Settings, settings) F(Table, memory) F(Index, own) \
-  F(OwnLaws, own_laws) F(Reals, rates) \
+  F(Lanes, poles) F(Lanes, x) F(Lanes, changes) F(Lanes, y) F(Lanes, peaks) F(Index, owners) F(Index, pieces) \
+  F(Index, sides) F(RecordTable, laws) F(Index, controlled) F(Settings, settings) F(Table, memory) F(Table, outside) \
+  F(Index, own) F(OwnLaws, own_laws) F(Reals, rates) \
   F(Reals, plate_z) F(Lanes, positions) F(Lanes, levels) F(Lanes, rotations) F(Index, tyre_of) F(Index, wanted) \
   F(Table, offset) F(Reals, weights) F(Index, cars) F(Tables3, out)
+
+/* A car without Python, in an FMU or a page; `vehicle.runs.fmu.car_numbers`. march: its tables, without the memory of a
+ * run. step: h [s]. dampers: laws; inner: first and last node of each law that matter while its curve is that of the car;
+ * parameters: first values of the tunable parameters (dampers, 6). start: states at
+ * rest by z' of each plate; sensor_start: sensors by z' and z; law_start: displacements of the laws that are no rubber
+ * friction, likewise; law_corners: their breakpoints and slope changes. rows: of outputs, then of watched quantities,
+ * over states and z; by_force, by_slope, by_law: over damper forces, forces on slopes and forces of laws at the same
+ * instant; fixed: static values; kinds: kind and damper of each output; limits: lowest and highest value of each
+ * watched quantity; notices: what a value beyond means; names: of plates, then of dampers. */
+#define EMBEDDED_FIELDS(F) \
+  F(March, march) F(double, step) F(Records, dampers) F(Indices, inner) F(Table, parameters) F(Lanes, start) \
+  F(Table, sensor_start) \
+  F(Table, law_start) F(Tables3, law_corners) F(Lanes, rows) F(Table, by_force) F(Table, by_slope) F(Table, by_law) \
+  F(Vector, fixed) F(Indices, kinds) F(Table, limits) F(Texts, names) F(Texts, notices)
 
 /* ---- rows of MuJoCo: `element_records`, `step_records` and `sampling` of vehicle/engines/simulation ---- */
 
@@ -217,7 +233,7 @@
   S(DamperLaw, DAMPER_LAW_FIELDS) S(Setting, SETTING_FIELDS) S(Call, CALL_FIELDS) S(OwnLaw, OWN_LAW_FIELDS)
 #define EACH_RECORD(S) \
   S(Controller, CONTROLLER_FIELDS) S(Sections, SECTIONS_FIELDS) S(March, MARCH_FIELDS) \
-  S(SparseRows, SPARSE_ROWS_FIELDS) S(Ticket, TICKET_FIELDS) S(Fields, FIELDS_FIELDS) \
+  S(Embedded, EMBEDDED_FIELDS) S(SparseRows, SPARSE_ROWS_FIELDS) S(Ticket, TICKET_FIELDS) S(Fields, FIELDS_FIELDS) \
   S(Bushings, BUSHINGS_FIELDS) S(RubberFriction, RUBBER_FRICTION_FIELDS) S(Rotations, ROTATIONS_FIELDS) \
   S(Springs, SPRINGS_FIELDS) S(Dampers, DAMPERS_FIELDS) S(Presliding, PRESLIDING_FIELDS) \
   S(SideForces, SIDE_FORCES_FIELDS) S(Controls, CONTROLS_FIELDS) S(OwnDampers, OWN_DAMPERS_FIELDS) \
@@ -234,5 +250,9 @@ EACH_LAW(RECORD)
 EACH_ARRAY(ARRAY)
 EACH_RECORD(RECORD)
 
+#ifdef EMBEDDED
+#define EXPORT /* in another library, whose functions alone are seen */
+#else
 #define EXPORT __attribute__((visibility("default")))
+#endif
 #endif

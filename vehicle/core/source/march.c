@@ -27,7 +27,8 @@ static void slope_forces(const March *job, const REAL *rate, V *row) {
 
 /* Settings of the controlled dampers. The poles contain the softest one; the excess e = c - cmin acts on the mean
  * velocity of a step, f = -e (v + v+)/2: second order, and dissipative at any step. This is the damper curve F_c = e v.
- * A control law has branches and a memory: it runs for one car, in double precision. */
+ * Coefficient and force from outside the law, as the commands of an FMU, are a part of this curve. A control law has
+ * branches and a memory: it runs for one car, in double precision. */
 static void control(const March *job) {
   const Sections *r = &job->rows;
   V *t = table_of(job);
@@ -37,9 +38,12 @@ static void control(const March *job) {
     double *memory = job->memory.at + k * job->memory.n[1];
     int64_t i = job->controlled.at[k], nodes = r->pieces + 1;
     act(law, job->step, (double)sensor[1][0], (double)sensor[0][0], memory);
-    V half = all((REAL)(0.5 * (memory[PRESENT] - law->softest))), *node = t + r->law + 3 * nodes * i;
-    t[r->hold + i] = half * t[r->velocity + i];
-    for (int64_t n = 0; n < nodes; n++) node[3 * n + 1] = half * node[3 * n];
+    const double *outside = job->outside.at + 3 * k;
+    V half = all((REAL)(0.5 * (outside[0] * (memory[PRESENT] - law->softest) + outside[1])));
+    V push = all((REAL)outside[2]), *node = t + r->law + 3 * nodes * i;
+    t[r->hold + i] = half * t[r->velocity + i] + push;
+    t[r->inverse + 2 * i] = (V){0}; /* its nodes move */
+    for (int64_t n = 0; n < nodes; n++) node[3 * n + 1] = half * node[3 * n] + push;
   }
 }
 
@@ -58,6 +62,7 @@ static void own_laws(const March *job) {
     double force = own_force(law, end, v);
     V *node = t + r->law + 3 * nodes * i;
     t[r->hold + i] = all((REAL)(0.5 * own_force(law, x, v)));
+    t[r->inverse + 2 * i] = (V){0}; /* its nodes move */
     for (int64_t n = 0; n < nodes; n++) node[3 * n + 1] = all((REAL)(0.5 * (force + slope * ((double)node[3 * n][0] - v))));
   }
 }

@@ -31,11 +31,12 @@ CONSTANT = ("coulomb", "presliding")
 
 
 @lru_cache(maxsize=64)
-def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
+def damper_nodes(damper: Damper, whole: bool = False) -> tuple[Table, float, Vector]:
     """Return the data of a damper.
 
     Args:
         damper: laws of the damper.
+        whole: with its outer segments, for a curve that changes during a run.
 
     Returns:
         Its record, the velocity of full friction [m/s], 0 without a friction line, and the nodes of its law without
@@ -46,7 +47,7 @@ def damper_nodes(damper: Damper) -> tuple[Table, float, Vector]:
     base_slope, end_segments = curve.least_slope, ((-BEYOND, curve.slopes[0]), (BEYOND, curve.slopes[-1]))
     # The curve of a controlled damper, and the line for a law by address, change in each step.
     changing = damper.controlled is not None or damper.function is not None
-    ends = [end for end, slope in end_segments if slope > base_slope or changing]
+    ends = [end for end, slope in end_segments if slope > base_slope or changing or whole]
     nodes = np.unique(np.concatenate([curve.knots, ends, [-full, full]]))
     excess_force = curve.force(nodes) - curve.force(0.0) - base_slope * nodes
     if damper.friction_law == "presliding":
@@ -67,15 +68,17 @@ class CarTable:
         static: side forces of each car at rest; (2 k,), none by default.
         heard: contributions of the forces of the laws over displacement to the sensors of each car; (sensors, laws),
             none by default.
+        whole: damper laws with their outer segments, see `damper_nodes`.
 
     Attributes:
-        plates: number m of driven plates.
+        dampers, plates: numbers d of dampers and m of driven plates.
         states: number of terms of an output in a column: states of a sample, and plate displacements.
         inputs, sums: numbers of inputs of a step, and of damper velocities and sensors.
         initial: states of the first sample; (..., columns).
         rows: first rows of the sections.
         table: the table, which the time stepping changes; (rows, columns).
         poles: factors of the poles in blocks, see `_packed_poles`; (rows, columns).
+        pieces: largest number of segments of each damper law; (d,).
         laws: records of the dampers if a friction limit depends on the velocity, (d, columns) or, in double precision,
             (d, 1); otherwise empty.
     """
@@ -89,6 +92,7 @@ class CarTable:
         sensors: Sequence[Outputs],
         static: Sequence[Vector] = (),
         heard: Sequence[Vector] = (),
+        whole: bool = False,
     ) -> None:
         self.element, lanes = element, aligned_table(1, element).shape[1]
         split = lanes if element == DOUBLE else 1
@@ -105,29 +109,36 @@ class CarTable:
         pairs, reals = (-(-max(getattr(car, name) for car in cars) // split) for name in ("pairs", "reals"))
         # Real poles begin a block, so that the sums of a car do not depend on the poles of others.
         pairs = BLOCK // 2 * -(-2 * pairs // BLOCK)
-        self.pairs, self.plates, self.states = pairs, m, 2 * pairs + reals + 2 * (d + m) + g
+        self.dampers, self.pairs, self.plates, self.states = d, pairs, m, 2 * pairs + reals + 2 * (d + m) + g
         count = len(sensors[0].poles)
         self.inputs, self.sums = cars[0].step.shape[1] - 1, d + g + count
-        damper_data = [[damper_nodes(damper) for damper in data_of_car] for data_of_car in dampers]
-        node_count = max((len(nodes) for data_of_car in damper_data for _, _, nodes in data_of_car), default=1)
-        sizes = {"slip": (d + g) * m, "level": g * m, "gain": (d + g) ** 2, "ramp": (d + g) * d}
+        damper_data = [[damper_nodes(damper, whole) for damper in data_of_car] for data_of_car in dampers]
+        node_counts = np.max([[len(nodes) for _, _, nodes in data_of_car] for data_of_car in damper_data], axis=0)
+        node_count, self.pieces = int(np.max(node_counts, initial=1)), np.asarray(node_counts - 1, dtype=np.int64)
+        sizes = {
+            "slip": (d + g) * m,
+            "level": g * m,
+            "gain": (d + g) ** 2,
+            "ramp": (d + g) * d,
+            "full": d,
+            "viscous": d,
+        }
+        sizes |= {"direct": count * (2 * (d + m) + g), "rest": len(static[0]) if static else 0}
+        sizes |= dict.fromkeys(("spring", "give", "share"), groups * e)
+        sizes |= {"corner": 3 * (laws - rubbers) * corners, "own": laws, "heard": count * laws}
+        sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach"), rubbers * layers)
+        # The sections from `law` on change during a run: the state of a car without its poles.
         sizes |= {"law": 3 * d * node_count, "inputs": self.inputs}
-        sizes |= dict.fromkeys(("limit", "full", "viscous", "velocity", "earlier", "hold", "stuck", "stick"), d)
-        sizes |= {"sensors": count, "past": count, "direct": count * (2 * (d + m) + g), "place": groups}
-        sizes["rest"] = len(static[0]) if static else 0
-        sizes |= dict.fromkeys(("spring", "give", "share", "slider"), groups * e)
-        sizes |= {"corner": 3 * (laws - rubbers) * corners, "own": laws, "excess": laws, "heard": count * laws}
-        sizes |= dict.fromkeys(("stiff", "stroke", "part", "weight", "reach", "anchor", "middle"), rubbers * layers)
-        sizes["ahead"] = rubbers
+        sizes |= dict.fromkeys(("limit", "velocity", "earlier", "hold", "stuck", "stick"), d) | {"inverse": 2 * d}
+        sizes |= {"sensors": count, "past": count, "place": groups, "slider": groups * e, "excess": laws}
+        sizes |= {"anchor": rubbers * layers, "middle": rubbers * layers, "ahead": rubbers}
         sizes |= {"work": d * (2 + 4 * node_count) + groups * (2 + 4 * e) + self.sums}
         section_ends = np.cumsum([0, *sizes.values()]).tolist()
         first_rows = dict(zip(sizes, section_ends, strict=False))
         blocks = -(-(2 * pairs + reals) // BLOCK)
         pole_rows = blocks * BLOCK * (1 + self.inputs + self.sums)
-        self.table, self.poles, self.initial = (
-            aligned_table(rows, element) for rows in (section_ends[-1], pole_rows, self.states - m)
-        )
-        self.initial[-m:] = start[1][:, None]
+        self.table, self.poles = (aligned_table(rows, element) for rows in (section_ends[-1], pole_rows))
+        self.initial = self.at_rest(start)
         record = np.zeros((d, lanes), dtype=RECORD)
         rows_of_cars = [car.rows(car_sensors.poles) for car, car_sensors in zip(cars, sensors, strict=True)]
         for lane, (car, part) in enumerate(self.lanes):
@@ -165,9 +176,6 @@ class CarTable:
             values["full"] = np.array([full for _, full, _ in damper_data[car]])
             for name, array in values.items():
                 self.table[first_rows[name] :, lane][: array.size] = array.ravel()
-            pair_start, real_start = (states[part] for states in cars[car].start(*start))
-            self.initial[: 2 * len(pair_start), lane] = np.ascontiguousarray(pair_start).view(np.float64)
-            self.initial[2 * pairs :, lane][: len(real_start)] = real_start
         for name in ("stuck", "stick"):
             self.table[first_rows[name] :][:d] = self.table[first_rows["full"] :][:d] > 0.0
         iterations = cars[0].iterations if element == DOUBLE else cars[0].single_iterations
@@ -187,6 +195,20 @@ class CarTable:
         varying = sizes["rest"] > 0
         varying |= any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
+
+    def at_rest(self, start: Vector) -> Table:
+        """Return the states of the first sample of cars at rest over moving plates; (states - m, columns).
+
+        Args:
+            start: (z, z') of the driven plates at the first instant; (2, m).
+        """
+        initial = aligned_table(self.states - self.plates, self.element)
+        initial[-self.plates :] = start[1][:, None]
+        for lane, (car, part) in enumerate(self.lanes):
+            pair_start, real_start = (states[part] for states in self.cars[car].start(*start))
+            initial[: 2 * len(pair_start), lane] = np.ascontiguousarray(pair_start).view(np.float64)
+            initial[2 * self.pairs :, lane][: len(real_start)] = real_start
+        return initial
 
     def tiles(self, weights: Sequence[Vector]) -> Table:
         """Arrange the weights of outputs in tiles of TILE outputs, zero for the outputs that fill the last tile.

@@ -44,6 +44,7 @@ class Feedback(NamedTuple):
         memory: states of their laws, with delayed settings; (k, ...).
         own: indices of the dampers with a law by address; (j,).
         own_laws: their records of `vehicle.model.laws.law_by_address`; (j,).
+        outside: share of the law [-], and coefficient [N s/m] and half force [N] from outside; (k, 3).
         owners: index of the damper of each group of Jenkins elements; (g,).
         sides: indices of the dampers whose friction limit depends on their side force; (k,).
     """
@@ -55,6 +56,7 @@ class Feedback(NamedTuple):
     memory: Vector
     own: npt.NDArray[np.int64]
     own_laws: npt.NDArray[Any]
+    outside: Vector
     owners: npt.NDArray[np.int64]
     sides: npt.NDArray[np.int64]
 
@@ -147,6 +149,7 @@ def feedback_at_rest(
         memory=memory,
         own=np.array([index for index, _ in own], dtype=np.int64),
         own_laws=np.array([law_by_address(name).record(timestep) for _, name in own], dtype=RECORD),
+        outside=np.tile([1.0, 0.0, 0.0], (len(controlled), 1)),
         owners=owners,
         sides=sides,
     )

@@ -16,7 +16,7 @@ from vehicle.engines.linear.car_matrices import CarMatrices
 from vehicle.engines.linear.displacement_laws import forces_at_start
 from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
-from vehicle.engines.reduced.feedback import feedback_at_rest, sensor_laws, sensor_outputs
+from vehicle.engines.reduced.feedback import Feedback, feedback_at_rest, sensor_laws, sensor_outputs
 from vehicle.engines.reduced.load_outputs import load_outputs
 from vehicle.engines.reduced.plate_samples import plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
@@ -57,6 +57,52 @@ def time_steps(signal: Signal, record_rate: float, longest: float) -> tuple[int,
     return int(np.floor(signal.duration / interval + 1e-6)) + 1, int(np.ceil(interval / longest - 1e-9))
 
 
+def packed_cars(
+    models: Sequence[PoleModel],
+    factors: Sequence[CarFactors],
+    dampers: Sequence[Sequence[Damper]],
+    tyre_load: Sequence[Mapping[str, float] | None],
+    start: Vector,
+    timestep: float,
+    element: np.dtype[Any],
+    whole: bool = False,
+) -> tuple[CarTable, Feedback]:
+    """Return table and feedback of cars at rest for the core.
+
+    Args:
+        models, factors, dampers: pole models, factors and damper laws of the cars.
+        tyre_load: static tyre loads [N] of the cars; None if no current loads act on slopes.
+        start, element, whole: see `CarTable`.
+        timestep: time step [s].
+    """
+    columns = factors[0].columns
+    sensors = [
+        sensor_outputs(model, laws, columns, static)
+        for model, laws, static in zip(models, dampers, tyre_load, strict=True)
+    ]
+    sides = [model.matrices.sides for model in models]
+    heard = [
+        sensor_laws(model, laws, columns, static)
+        for model, laws, static in zip(models, dampers, tyre_load, strict=True)
+        if model.laws
+    ]
+    cars = CarTable(factors, dampers, start, element, sensors, [side.static for side in sides], heard, whole)
+    owners, tyres = factors[0].sliders.dampers, len(columns) if tyre_load[0] is not None else 0
+    return cars, feedback_at_rest(dampers[0], owners, sides[0].dampers, tyres, factors[0].plate_inputs, timestep)
+
+
+def march_fields(cars: CarTable, feedback: Feedback, reading: OutputTiles) -> dict[str, Any]:
+    """Return the fields of the record March that stay in a run, without its memory.
+
+    Args:
+        cars, feedback: cars and their feedback, see `packed_cars`.
+        reading: their outputs.
+    """
+    fields = reading._asdict() | feedback._asdict()
+    fields |= {"rows": cars.rows, "table": cars.table, "poles": cars.poles, "laws": cars.laws, "pieces": cars.pieces}
+    return fields | {"inputs": cars.inputs, "sums": cars.sums, "plates": cars.plates, "dampers": cars.dampers}
+
+
 class GroupRun:
     """Run of a group: cars with equal channels on one signal, or one car in double precision.
 
@@ -90,36 +136,8 @@ class GroupRun:
         steps = int(np.floor(signal.duration / interval + 1e-6)) * every
         self.plates = plate_samples(signal, self.timestep, steps, AHEAD * every)
         start = self.plates[:1].reshape(-1, 3).T[:2]
-        columns = factors[0].columns
-        sensors = [
-            sensor_outputs(model, laws, columns, static if present_load else None)
-            for model, laws, static in zip(models, dampers, tyre_load, strict=True)
-        ]
-        tyres = len(columns) if present_load else 0
-        self.feedback = feedback_at_rest(
-            dampers[0],
-            factors[0].sliders.dampers,
-            models[0].matrices.sides.dampers,
-            tyres,
-            factors[0].plate_inputs,
-            self.timestep,
-        )
-        self.start, self.cars = (
-            start,
-            CarTable(
-                factors,
-                dampers,
-                start,
-                element,
-                sensors,
-                [model.matrices.sides.static for model in models],
-                [
-                    sensor_laws(model, laws, columns, static if present_load else None)
-                    for model, laws, static in zip(models, dampers, tyre_load, strict=True)
-                    if model.laws
-                ],
-            ),
-        )
+        self.start, loads_of_tyres = start, tyre_load if present_load else [None] * len(models)
+        self.cars, self.feedback = packed_cars(models, factors, dampers, loads_of_tyres, start, self.timestep, element)
 
     def fill(self, table: Vector, rows_of_cars: Sequence[int], channels: Sequence[str]) -> list[Validity]:
         """Simulate the cars and fill their rows of the table.
@@ -241,9 +259,7 @@ class GroupRun:
         kept = self.element == SINGLE and self.models[0].slope.shape[1] > 0
         changes = aligned_table(((INNER_BLOCK + 1) * cars.rows.states + BLOCK) * kept, self.element)
         x[: len(cars.initial)] = cars.initial
-        constant = reading._asdict() | self.feedback._asdict()
-        constant |= {"rows": cars.rows, "table": cars.table, "poles": cars.poles, "laws": cars.laws}
-        constant |= {"inputs": cars.inputs, "sums": cars.sums, "plates": m, "dampers": len(self.dampers[0])}
+        constant = march_fields(cars, self.feedback, reading)
         constant |= {"every": every, "x": x, "changes": changes, "y": y, "peaks": peaks, "out": table}
         constant |= {"cars": np.array(rows_of_cars, dtype=np.int64)}
         march = core().core_march_f if self.element == SINGLE else core().core_march_d

@@ -57,6 +57,8 @@ class TableRows(NamedTuple):
         velocity, earlier: current velocities and those of the last step.
         hold, stuck, stick: current halves of F_c, 1 if the damper was stuck at the end of the last step, 1 if stuck
             during the whole step.
+        inverse: effect of its force on the velocity of each damper and its limit, for which the work space has its
+            inverse law.
         sensors, past: sensors of `vehicle.engines.reduced.feedback` at the beginning of a step and of the last step.
         direct: contributions of the inputs up to z', and of z, to each sensor.
         spring, give, share: stiffness k of the Jenkins elements, 1/k (0 without), and their shares of the limit.
@@ -99,6 +101,7 @@ class TableRows(NamedTuple):
     hold: int
     stuck: int
     stick: int
+    inverse: int
     sensors: int
     past: int
     direct: int

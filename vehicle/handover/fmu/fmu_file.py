@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parent
 BINARIES = FOLDER / "binaries"
-"""Libraries, built by tools/fmu_runtime.py."""
+"""Libraries, built by tools/core.py."""
 
 PLATFORMS = {
     "x86_64-linux": ("linux64", ".so"),
@@ -70,7 +70,7 @@ def write_fmu(
 ) -> WrittenFmu:
     """Write a car as an FMU for co-simulation.
 
-    The FMU is the car of the reduced engine (linear except for the dampers) at a fixed internal step.
+    The FMU is the car of the reduced engine at a fixed internal step.
 
     Args:
         car: the car.
@@ -83,8 +83,8 @@ def write_fmu(
         Path, variables and platforms of the file.
 
     Raises:
-        ConfigurationError: a value is out of range, a channel does not exist, the car is unstable, or the C runtime
-            lacks a law of its dampers.
+        ConfigurationError: a value is out of range, a channel does not exist, the car is unstable, or has a
+            controller in an FMU.
         MissingPartError: the libraries are not in the package.
     """
     if str(fmi) not in FMI_VERSIONS:
@@ -102,7 +102,7 @@ def write_fmu(
     speed = car.vehicle.driving.speed if car.vehicle.driving.rolling else 0.0
     description = (
         f"{car.vehicle.name}, {f'rolling at {3.6 * speed:.4g} km/h' if speed else 'on plates'}; valid for small "
-        "rotations and tyres in contact (warnings say where not). Inputs belong to the END of a communication step: a "
+        "rotations (warnings say where not). Inputs belong to the END of a communication step: a "
         "master that gives them at its beginning moves the car one step late. Communication steps are multiples of "
         f"{step:g} s."
     )
@@ -128,7 +128,7 @@ def _libraries(fmi: str) -> dict[str, bytes]:
             continue
         if not library.is_file():
             raise MissingPartError(
-                f"{library}: is missing; build the libraries with python tools/fmu_runtime.py, or install the package "
+                f"{library}: is missing; build the libraries with python tools/core.py fmu, or install the package "
                 "again"
             )
         entries[f"binaries/{folder}/{library.name}"] = library.read_bytes()

@@ -1,19 +1,20 @@
 """Outputs of an FMU as rows over the poles of the car: channels, displacements, sensors, and what must stay in limits.
 
-Output = fixed + Re(rows xi) + direct terms of the plates, of damper forces and of slope forces at the same instant.
+Output = fixed + Re(rows xi) + direct terms of the plates, and of damper forces, slope forces and forces g of laws over
+displacement at the same instant.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.linear.load_rows import stop_rows
-from vehicle.engines.reduced.load_outputs import direct_forces, direct_slopes, load_outputs
+from vehicle.engines.linear.load_rows import LoadRows, stop_rows
+from vehicle.engines.reduced.load_outputs import direct_forces, direct_laws, direct_slopes, load_outputs
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.validity import LARGEST_ANGLE, rotating_bodies, rotation_outputs, tyre_outputs
 from vehicle.errors import ConfigurationError
@@ -60,20 +61,24 @@ class OutputRows:
     Attributes:
         outputs: rows over the poles and the plates.
         fixed: static values; (k,).
-        force, slope: rows over damper forces and slope forces at the same instant; (k, d), (k, m).
+        force, slope, law: rows over damper forces, slope forces and forces of laws at the same instant; (k, d), (k, m),
+            (k, laws).
     """
 
     outputs: Outputs
     fixed: Vector
     force: Vector
     slope: Vector
+    law: Vector
 
     def part(self, indices: Sequence[int]) -> OutputRows:
         """Return the rows with these indices, in their order."""
         at = list(indices)
         poles, height, velocity = self.outputs.poles[at], self.outputs.height[at], self.outputs.velocity[at]
         outputs = Outputs(poles=poles, height=height, velocity=velocity)
-        return OutputRows(outputs=outputs, fixed=self.fixed[at], force=self.force[at], slope=self.slope[at])
+        return OutputRows(
+            outputs=outputs, fixed=self.fixed[at], force=self.force[at], slope=self.slope[at], law=self.law[at]
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -100,9 +105,9 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
     """Return the outputs of a car: channels, displacements of the points, sensors of controlled dampers.
 
     Raises:
-        ConfigurationError: no output is left, or a damper with a recorded force has a stop that acts at rest.
+        ConfigurationError: no output is left.
     """
-    model, vehicle = car.poles.without_laws(), car.vehicle
+    model, vehicle = car.poles, car.vehicle
     system, d = model.matrices.system, len(vehicle.composition.dampers)
     units, dampers = channel_units(channels), [damper.name for damper in vehicle.composition.dampers]
     outputs: list[Output] = []
@@ -126,36 +131,27 @@ def car_outputs(car: Car, channels: Sequence[str]) -> tuple[list[Output], Output
     for name in channels:
         if name in tyres:
             rows = _linear(model, model.outputs([name]), np.array([car.static.tyre_load[tyres[name]]]))
-            add(Output(name=name, unit="N", meaning="vertical force of the tyre on the wheel"), rows)
-    # While this car is valid, a stop with a clearance has no force.
+            add(
+                Output(name=name, unit="N", meaning="vertical force of the tyre on the wheel"),
+                replace(rows, law=_excess_of_tyres(model, [system.inputs.index(tyres[name])])),
+            )
     stops = stop_rows(model.matrices, [damper.law for damper in vehicle.composition.dampers])
-    acting = [name for name, force, row in zip(stops.names, stops.static, stops.displacement, strict=True)
-              if force or row.any()]  # fmt: skip
     for index, damper in enumerate(dampers):
         nothing = _linear(model, _no_outputs(model))
         for ending, reading, title in (
             ("velocity", VELOCITY, "velocity of the damper, extension positive"),
-            ("force", FORCE, "force of the damper at the instant, with friction, gas and force command"),
+            ("force", FORCE, "force of the damper at the instant, with friction, gas, stop and force command"),
             ("coefficient", COEFFICIENT, "damping coefficient in the last step"),
         ):
             name = f"{damper}_{ending}"
             if name in channels:
-                if reading == FORCE and name.replace("_force", "_stop_force") in acting:
-                    raise ConfigurationError(
-                        f"{name}: the stop of this damper acts at rest, and an FMU and the sliders of a report do not "
-                        "have its force; leave this channel out, or move the stop away from rest"
-                    )
-                add(Output(name=name, unit=units[name], meaning=title, kind=reading, damper=index), nothing)
+                stop = stops.only([f"{damper}_stop_force"] if reading == FORCE else [])
+                rows = _loads(model, stop) if stop.names else nothing
+                add(Output(name=name, unit=units[name], meaning=title, kind=reading, damper=index), rows)
     loads = [name for name in channels if name in vehicle.load_channels]
     if loads:
         rows_of_loads = car.load_rows.only(loads)
-        rows = OutputRows(
-            outputs=load_outputs(model, rows_of_loads),
-            fixed=rows_of_loads.static,
-            force=direct_forces(model, rows_of_loads),
-            slope=_of_plates(model, direct_slopes(model, rows_of_loads)),
-        )
-        for name, row in zip(rows_of_loads.names, _each(rows), strict=True):
+        for name, row in zip(rows_of_loads.names, _each(_loads(model, rows_of_loads)), strict=True):
             add(Output(name=name, unit=units[name], meaning=LOAD_MEANING[units[name]]), row)
     rates = model.matrices.sensors @ (model.modal * model.poles) if model.matrices.sensors.size else model.slip[:0]
     no_plates = np.zeros((len(rates), len(system.inputs)))
@@ -177,6 +173,23 @@ def _no_outputs(model: PoleModel) -> Outputs:
     return Outputs(poles=np.zeros((1, len(model.poles)), dtype=complex), height=zeros, velocity=zeros)
 
 
+def _loads(model: PoleModel, loads: LoadRows) -> OutputRows:
+    """Return loads with their direct terms."""
+    return OutputRows(
+        outputs=load_outputs(model, loads),
+        fixed=loads.static,
+        force=direct_forces(model, loads),
+        slope=_of_plates(model, direct_slopes(model, loads)),
+        law=direct_laws(model, loads),
+    )
+
+
+def _excess_of_tyres(model: PoleModel, plates: Sequence[int]) -> Vector:
+    """Return the rows of tyre loads over the forces g of the laws, -1 for the own tyre; (plates, laws)."""
+    tyres = np.array([law.plate for law in model.laws], dtype=int)
+    return np.where(np.array(plates, dtype=int)[:, None] == tyres, -1.0, 0.0)
+
+
 def _linear(model: PoleModel, outputs: Outputs, fixed: Vector | None = None) -> OutputRows:
     """Return linear outputs without further direct terms, except for static values."""
     count = len(outputs.poles)
@@ -185,6 +198,7 @@ def _linear(model: PoleModel, outputs: Outputs, fixed: Vector | None = None) -> 
         fixed=np.zeros(count) if fixed is None else fixed,
         force=np.zeros((count, model.force.shape[1])),
         slope=np.zeros((count, len(model.matrices.system.inputs))),
+        law=np.zeros((count, len(model.laws))),
     )
 
 
@@ -194,13 +208,18 @@ def _of_plates(model: PoleModel, rows: Vector) -> Vector:
 
 
 def _second_derivative(model: PoleModel, displacements: Outputs) -> OutputRows:
-    """Return the second derivatives of displacements Re(rows xi), with xi' = s xi + b_z z + b_c z' + e f."""
+    """Return the second derivatives of displacements Re(rows xi).
+
+    xi' = s xi + b_z z + b_c z' + e f, with f = -g for a law over displacement.
+    """
     rate = displacements.poles * model.poles
     outputs = Outputs(
         poles=rate * model.poles, height=(rate @ model.height).real, velocity=(rate @ model.velocity).real
     )
     slope = _of_plates(model, (rate @ model.slope).real)
-    return OutputRows(outputs=outputs, fixed=np.zeros(len(rate)), force=(rate @ model.force).real, slope=slope)
+    law = -(rate @ model.scalar_force[:, model.groups :]).real
+    force = (rate @ model.force).real
+    return OutputRows(outputs=outputs, fixed=np.zeros(len(rate)), force=force, slope=slope, law=law)
 
 
 def _each(rows: OutputRows) -> list[OutputRows]:
@@ -220,6 +239,7 @@ def joined_rows(parts: Sequence[OutputRows]) -> OutputRows:
         fixed=np.concatenate([part.fixed for part in parts]),
         force=np.concatenate([part.force for part in parts]),
         slope=np.concatenate([part.slope for part in parts]),
+        law=np.concatenate([part.law for part in parts]),
     )
 
 
@@ -230,29 +250,27 @@ def motion_rows(car: Car, rows: Vector) -> OutputRows:
         car: the car.
         rows: rows over the displacements u of the velocity coordinates; (k, n).
     """
-    model = car.poles.without_laws()
+    model = car.poles
     no_plates = np.zeros((len(rows), len(model.matrices.system.inputs)))
     return _linear(model, Outputs(poles=rows @ model.modal, height=no_plates, velocity=no_plates))
 
 
 def watched_outputs(car: Car) -> Watched:
-    """Return the watched motions of a car, their limits, and a notice for each: tyres, tables, then rotations.
+    """Return the watched motions of a car, their limits, and a notice for each: linear tyres, then rotations.
 
     The limits are those of `vehicle.engines.reduced.validity`, for each axis of a rotation.
     """
     model, matrices = car.poles, car.poles.matrices
     wheels, bodies = matrices.system.inputs, rotating_bodies(matrices)
+    linear = [index for index, wheel in enumerate(wheels) if wheel not in matrices.one_sided]
     load = np.array([car.static.tyre_load[wheel] for wheel in wheels])
-    # Tables come before tyres that cannot pull.
-    tables = [law for law in model.laws if not law.one_sided]
-    parts = [_linear(model, tyre_outputs(model), load)]
-    parts.append(_linear(model, model.law_outputs.part(slice(0, len(tables)))))
-    parts.append(_linear(model, rotation_outputs(model, bodies)))
-    limits = [(0.0, np.inf)] * len(wheels)
-    limits += [(law.low, law.high) for law in tables]
-    limits += [(-LARGEST_ANGLE, LARGEST_ANGLE)] * (3 * len(bodies))
-    notices = [f"tyre {wheel} would lift off; this car is linear there, so the result is not valid" for wheel in wheels]
-    notices += [f"{law.name} left the linear segment of its table" for law in tables]
+    tyres = replace(_linear(model, tyre_outputs(model), load), law=_excess_of_tyres(model, range(len(wheels))))
+    parts = [tyres.part(linear), _linear(model, rotation_outputs(model, bodies))]
+    limits = [(0.0, np.inf)] * len(linear) + [(-LARGEST_ANGLE, LARGEST_ANGLE)] * (3 * len(bodies))
+    notices = [
+        f"tyre {wheels[index]} would lift off; it is linear in this car (one_sided = false), so the result is not valid"
+        for index in linear
+    ]
     notices += [
         f"{body} turned by more than {LARGEST_ANGLE:g} rad about {axis}; this car is valid up to there"
         for body in bodies

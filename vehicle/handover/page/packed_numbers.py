@@ -15,12 +15,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.reduced.table_layout import BLOCK
 from vehicle.handover.fmu.car_numbers import CarNumbers
 
 Vector = npt.NDArray[np.float64]
 
-WORD = 8
-"""Size of a word [byte]."""
+WORD, PARTS = 8, 4
+"""Size of a word [byte]; words of a row of a table."""
 
 EXACT, SHORT = 8, 4
 """Bytes of a coefficient of the car of the run, and of further cars."""
@@ -42,15 +43,6 @@ ALPHABET = bytes.maketrans(b"<", b",")
 ORDERS = range(2, 7)
 """Orders of the differences of heights; the order with the shortest text is taken."""
 
-HEADER = 22
-"""Words before the arrays: identification, token, step and sizes."""
-
-MODEL = (
-    *("pair_change", "pair_inputs", "pair_sums", "real_change", "real_inputs", "real_sums", "slip", "level", "gain"),
-    *("ramp", "direct", "sensor_start", "start", "rows", "by_force", "by_tyre"),
-)
-"""Arrays that follow from the poles; the others are parameters, and stay exact."""
-
 LEVELS = 32767
 """Maximum integer of a height in the page: steps of 1/32767 of the peak, 90 dB below it."""
 
@@ -63,33 +55,36 @@ def text(content: bytes) -> str:
 def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[tuple[int, int]]:
     """Return the runs of words of the numbers of a car: count, and bytes of each word.
 
+    Factors of the poles, effects of the forces, and rows of outputs are rounded; all else stays exact.
+
     Args:
         numbers: the numbers.
         coarse_outputs: number of outputs at the end that are stored with `COARSE`.
         exact: all other coefficients in double precision; otherwise with the bytes of further cars.
     """
-    lengths, runs = numbers.lengths, [(HEADER, WORD)]
     short, cancelling = (EXACT, EXACT) if exact else (SHORT, CANCELLING)
-    # Inputs of the poles: damper forces, their slopes, Jenkins elements, z' and mean z' of the plates, then others.
-    before, means = 2 * len(numbers.dampers) + lengths["owner"] + len(numbers.plates), len(numbers.plates)
-    inputs = lengths["pair_inputs"] // lengths["pair_change"]
-    for name, count in lengths.items():
-        size = short if name in MODEL else WORD
-        if name == "watched_rows":
-            size = COARSE[short]
-        elif name == "start" and not exact:
-            size = START
-        elif name == "rows":
-            coarse = count // len(numbers.outputs) * coarse_outputs
-            runs.append((count - coarse, cancelling))
-            count, size = coarse, COARSE[short]
-        elif name in ("pair_inputs", "real_inputs"):
-            width = count // inputs
-            runs += [(before * width, size), (means * width, cancelling)]
-            count = (inputs - before - means) * width
-        runs.append((count, size))
-    stored = sum(count for count, _ in runs)
-    return [*runs, (len(numbers.content) // WORD - stored, WORD)]
+    cars, sizes = numbers.table, np.full(len(numbers.content) // WORD, WORD)
+
+    def of(path: str) -> npt.NDArray[np.int_]:
+        """Return the sizes of the words of an array."""
+        offset, size = numbers.places[path]
+        return sizes[offset // WORD :][: size // WORD]
+
+    for path in ("start", "sensor_start", "rows", "by_force", "by_slope", "by_law"):
+        of(path)[:] = short
+    of("start")[:] = EXACT if exact else START
+    # Inputs of the poles: damper forces, their slopes, scalar elements, z' and mean z' of the plates, then others.
+    before = 2 * cars.dampers + len(cars.cars[0].strokes) + cars.plates
+    poles = of("march.poles").reshape(-1, 1 + cars.inputs + cars.sums, BLOCK * PARTS)
+    poles[:] = short
+    poles[:, 1 + before :][:, : cars.plates] = cancelling
+    table, rows = of("march.table").reshape(-1, PARTS), cars.rows
+    table[rows.slip : rows.full] = table[rows.direct : rows.rest] = short
+    outputs = of("rows").reshape(-1, cars.states * PARTS)
+    outputs[: len(numbers.outputs)] = cancelling
+    outputs[len(numbers.outputs) - coarse_outputs :] = COARSE[short]
+    ends = [*(np.flatnonzero(np.diff(sizes)) + 1).tolist(), len(sizes)]
+    return [(end - begin, int(sizes[begin])) for begin, end in zip([0, *ends], ends, strict=False)]
 
 
 def packed(content: bytes, runs: Sequence[tuple[int, int]]) -> dict[str, Any]:

@@ -175,8 +175,8 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
 
 
 def _module() -> bytes:
-    """Return the WebAssembly module, built by tools/fmu_runtime.py."""
-    return resources.files("vehicle.handover.fmu").joinpath("binaries/wasm32/car.wasm").read_bytes()
+    """Return the WebAssembly module, built by tools/core.py."""
+    return resources.files("vehicle.handover.fmu").joinpath("binaries/wasm32-wasi/page.wasm").read_bytes()
 
 
 def _finite(record: dict[str, Any]) -> dict[str, Any]:

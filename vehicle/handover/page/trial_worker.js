@@ -69,7 +69,7 @@ class Trial {
     new Float64Array(buffer, places.plates, plates.length).set(plates);
     new Int32Array(buffer, places.outputs, outputs.length).set(outputs);
     const done = module.run_car(this.car, places.parameters, places.plates, samples, data.interval, places.outputs, outputs.length, places.values);
-    if (done < samples) throw new Error(this.text(module.last_message()));
+    if (done < samples) throw new Error(`at ${(data.interval * done).toPrecision(3)} s the motion of the car is no longer finite`);
     const values = new Float64Array(module.memory.buffer, places.values, outputs.length * samples);
     return outputs.map((_, k) => values.slice(k * samples, (k + 1) * samples));
   }

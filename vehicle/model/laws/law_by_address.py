@@ -125,10 +125,11 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
     ends = law.force(np.array([-STEP, STEP]))
     if not (np.isfinite(at_rest).all() and np.isfinite(ends).all()):
         raise ConfigurationError(f"damper law {name!r}: the force at rest or at {STEP:.3g} m/s is not a finite number")
-    if np.max(np.abs(at_rest)) > AT_REST * np.max(np.abs(ends)):
+    largest = float(np.max(np.abs(at_rest)))
+    if largest > AT_REST * np.max(np.abs(ends)):
         raise ConfigurationError(
-            f"damper law {name!r}: found a force of {float(np.max(np.abs(at_rest))):.4g} N at rest, must be zero at every "
-            "displacement; a gas force and a spring are the parameters gas_force and stop of the damper"
+            f"damper law {name!r}: found a force of {largest:.4g} N at rest, must be zero at every displacement; a gas "
+            "force and a spring are the parameters gas_force and stop of the damper"
         )
     viscous = float(ends[1] - ends[0]) / (2.0 * STEP)
     if viscous < 0.0:

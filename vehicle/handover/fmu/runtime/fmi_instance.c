@@ -61,8 +61,8 @@ Instance *new_instance(const char *name, const char *token, const char *resource
 
 void free_instance(Instance *self) {
   if (!self) return;
+  free_state(&self->state);
   free_car(self->state.car);
-  free(self->state.block);
   free(self);
 }
 
@@ -114,7 +114,7 @@ int set_values(Instance *self, const uint32_t *references, size_t count, const d
 
 int advance_instance(Instance *self, double point, double length) {
   char message[MESSAGE];
-  State *s = &self->state;
+  Motion *s = &self->state;
   if (!require(self, "do step", STEPPING, STEPPING)) return 0;
   double done = s->steps[0];
   if (!communication_step(s, point, length, message)) {
@@ -123,7 +123,7 @@ int advance_instance(Instance *self, double point, double length) {
     return fail(self, "%s", message);
   }
   for (int64_t k = new_notice(s); k >= 0; k = new_notice(s)) {
-    snprintf(self->message, sizeof self->message, "at %g s: %s", s->time[0], s->car->notice + k * NOTICE);
+    snprintf(self->message, sizeof self->message, "at %g s: %s", s->time[0], notice_of(s->car, k));
     if (self->log) self->log(self, 0, self->message);
   }
   return 1;

@@ -10,7 +10,7 @@ enum { LABEL = 256 };
 enum { INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED, FAILED };
 
 typedef struct Instance {
-  State state;
+  Motion state;
   char name[LABEL];
   char message[MESSAGE];           /* text of the last error or notice */
   int experiment;                  /* FMI 2: 1 after fmi2SetupExperiment */

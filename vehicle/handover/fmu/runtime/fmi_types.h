@@ -1,7 +1,7 @@
 /* Types of the C interfaces of FMI 2.0 and 3.0 (https://fmi-standard.org) that co-simulation needs.
  *
  * With FMI_HEADERS_OF_STANDARD the headers of the standard take the place of these lines: the compiler then compares
- * every function of fmi2.c and fmi3.c with its declaration there (tools/fmu_runtime.py does so). */
+ * every function of fmi2.c and fmi3.c with its declaration there (tools/core.py does so on request). */
 #ifndef FMI_TYPES_H
 #define FMI_TYPES_H
 
@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#undef EXPORT /* of the core */
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
 #else
