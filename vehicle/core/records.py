@@ -75,10 +75,10 @@ def _text() -> str:
 
 def _listed(macro: str, entry: str) -> list[tuple[str, ...]]:
     """Return the entries of a macro of layout.h: the arguments of each F(...), S(...) or A(...)."""
-    found = re.search(rf"^#define {macro}\({entry}\)(.*)$", _text(), flags=re.MULTILINE)
-    if found is None:
+    definition = re.search(rf"^#define {macro}\({entry}\)(.*)$", _text(), flags=re.MULTILINE)
+    if definition is None:
         raise KeyError(macro)
-    return [tuple(re.split(r",\s*", arguments)) for arguments in re.findall(rf"\b{entry}\(([^)]*)\)", found[1])]
+    return [tuple(re.split(r",\s*", arguments)) for arguments in re.findall(rf"\b{entry}\(([^)]*)\)", definition[1])]
 
 
 @cache
@@ -100,7 +100,7 @@ def structure(name: str) -> type[ctypes.Structure]:
     if name in array_kinds():
         fields = [("at", ctypes.c_uint64), ("n", ctypes.c_int64 * array_kinds()[name].dimensions)]
     else:
-        fields = [(field, NUMBERS.get(kind) or structure(kind)) for kind, field in records()[name]]
+        fields = [(field, NUMBERS.get(type_name) or structure(type_name)) for type_name, field in records()[name]]
     return type(name, (ctypes.Structure,), {"_fields_": fields})
 
 
@@ -108,7 +108,7 @@ def structure(name: str) -> type[ctypes.Structure]:
 def dtype(name: str) -> np.dtype[Any]:
     """Return the numpy type of a record of numbers, for arrays of records."""
     kinds = {"double": np.float64, "int64_t": np.int64}
-    return np.dtype([(field, kinds[kind]) for kind, field in records()[name]], align=True)
+    return np.dtype([(field, kinds[type_name]) for type_name, field in records()[name]], align=True)
 
 
 def layout() -> list[int]:
@@ -142,14 +142,14 @@ def packed(name: str, record: Any) -> Packed:
     Raises:
         TypeError: type, dimensions, order or alignment of an array differs from its kind.
     """
-    words, kept = list[int](), list[Any]()
+    integers, kept = list[int](), list[Any]()
 
     def address_of(array: npt.NDArray[Any]) -> int:
         kept.append(array)
         return int(array.__array_interface__["data"][0])
 
-    _add(words, name, record, address_of)
-    return Packed(structure(name).from_buffer(bytearray(struct.pack(f"{len(words)}q", *words))), tuple(kept))
+    _add(integers, name, record, address_of)
+    return Packed(structure(name).from_buffer(bytearray(struct.pack(f"{len(integers)}q", *integers))), tuple(kept))
 
 
 def checked(name: str, record: Packed, *sizes: int) -> Packed:
@@ -177,11 +177,11 @@ class Stored(NamedTuple):
     Attributes:
         content: the structure, then the arrays, each at a multiple of `LANE_BYTES`, little-endian; addresses are
             offsets from the beginning of the file.
-        places: offset in the file and size of each array by the path of its field, as "march.table" [byte].
+        extents: offset in the file and size of each array by the path of its field, as "march.table" [byte].
     """
 
     content: bytes
-    places: dict[str, tuple[int, int]]
+    extents: dict[str, tuple[int, int]]
 
 
 def stored(name: str, record: Any, begin: int) -> Stored:
@@ -194,59 +194,59 @@ def stored(name: str, record: Any, begin: int) -> Stored:
     Raises:
         TypeError: see `packed`.
     """
-    words, arrays, places = list[int](), list[bytes](), list[tuple[int, int]]()
+    integers, arrays, extents = list[int](), list[bytes](), list[tuple[int, int]]()
     end = begin + ctypes.sizeof(structure(name))
 
     def offset_of(array: npt.NDArray[Any]) -> int:
         nonlocal end
         filled = -end % LANE_BYTES
         arrays.append(b"\0" * filled + array.tobytes())
-        places.append((end + filled, array.nbytes))
+        extents.append((end + filled, array.nbytes))
         end += len(arrays[-1])
-        return places[-1][0]
+        return extents[-1][0]
 
-    _add(words, name, record, offset_of)
-    content = struct.pack(f"<{len(words)}q", *words) + b"".join(arrays)
-    return Stored(content, dict(zip(_array_paths(name), places, strict=True)))
+    _add(integers, name, record, offset_of)
+    content = struct.pack(f"<{len(integers)}q", *integers) + b"".join(arrays)
+    return Stored(content, dict(zip(_array_paths(name), extents, strict=True)))
 
 
 def _array_paths(name: str, before: str = "") -> list[str]:
     """Return the paths of the arrays of a record."""
     paths = list[str]()
-    for kind, field in records()[name]:
-        if kind in array_kinds():
+    for type_name, field in records()[name]:
+        if type_name in array_kinds():
             paths.append(before + field)
-        elif kind not in NUMBERS:
-            paths += _array_paths(kind, f"{before}{field}.")
+        elif type_name not in NUMBERS:
+            paths += _array_paths(type_name, f"{before}{field}.")
     return paths
 
 
-def _add(words: list[int], name: str, record: Any, place: Callable[[npt.NDArray[Any]], int]) -> None:
-    """Append the fields of a record as 64-bit words; `place` returns the address of an array."""
+def _add(integers: list[int], name: str, record: Any, address_of: Callable[[npt.NDArray[Any]], int]) -> None:
+    """Append the fields of a record as 64-bit words; `address_of` returns the address of an array."""
     kinds, read = array_kinds(), record.__getitem__ if isinstance(record, Mapping) else partial(getattr, record)
-    for kind, field in records()[name]:
-        value, wanted = read(field), kinds.get(kind)
+    for type_name, field in records()[name]:
+        value, wanted = read(field), kinds.get(type_name)
         if wanted is not None:
             if not _fits(wanted, value):
                 raise TypeError(
                     f"{name}.{field}: {value.dtype} {value.shape} is no {wanted.element} of {wanted.dimensions} "
                     "dimensions in C order"
                 )
-            words += (place(value), *value.shape[: wanted.dimensions])
-        elif kind == "double":
-            words.append(struct.unpack("q", struct.pack("d", value))[0])
-        elif kind == "int64_t":
-            words.append(int(value))
+            integers += (address_of(value), *value.shape[: wanted.dimensions])
+        elif type_name == "double":
+            integers.append(struct.unpack("q", struct.pack("d", value))[0])
+        elif type_name == "int64_t":
+            integers.append(int(value))
         else:
-            _add(words, kind, value, place)
+            _add(integers, type_name, value, address_of)
 
 
-def _fits(kind: ArrayKind, array: npt.NDArray[Any]) -> bool:
+def _fits(expected: ArrayKind, array: npt.NDArray[Any]) -> bool:
     """Return True for an array with type, dimensions, order and alignment of a kind."""
-    if kind.element == "void":
+    if expected.element == "void":
         fits = array.ndim == 2 and array.shape[1] * array.itemsize == LANE_BYTES
         fits &= array.dtype in ELEMENTS["REAL"] and (array.ctypes.data % LANE_BYTES == 0 or array.size == 0)
     else:
-        types = ELEMENTS.get(kind.element) or (dtype(kind.element),)
-        fits = array.ndim == kind.dimensions and array.dtype in types
+        types = ELEMENTS.get(expected.element) or (dtype(expected.element),)
+        fits = array.ndim == expected.dimensions and array.dtype in types
     return fits and array.flags.c_contiguous

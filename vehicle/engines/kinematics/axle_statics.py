@@ -301,8 +301,8 @@ class AxleStatics:
 
     def _open(self, gaps: Vector, travel: Sequence[float]) -> Vector:
         """Return the gaps of the ideal joints, followed by those of the wheel heights [m]."""
-        heights = [self.places(index)[0][2] - rest[0][2] for index, rest in enumerate(self.at_rest)]
-        return np.concatenate([gaps.ravel(), np.array(heights) - travel])
+        raised = [self.places(index)[0][2] - begin[0][2] for index, begin in enumerate(self.at_rest)]
+        return np.concatenate([gaps.ravel(), np.array(raised) - travel])
 
     def contact(self, index: int) -> Vector:
         """Return the point at which the horizontal force of the ground acts on a wheel, vehicle axes [m]; (3,).

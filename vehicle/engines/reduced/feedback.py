@@ -84,9 +84,9 @@ def sensor_outputs(
     if sides.dampers.size:
         forces = sides.displacement @ model.modal + sides.velocity @ (model.modal * model.poles)
         rates = np.concatenate([rates, forces + sides.branch @ model.branch])
-    own = [index for index, damper in enumerate(dampers) if damper.function is not None]
-    if own:
-        rates = np.concatenate([rates, model.matrices.system.slide_rows[own] @ model.modal])
+    by_address = [index for index, damper in enumerate(dampers) if damper.function is not None]
+    if by_address:
+        rates = np.concatenate([rates, model.matrices.system.slide_rows[by_address] @ model.modal])
     no_plates = np.zeros((len(rates), len(inputs)))
     velocities = Outputs(poles=rates, height=no_plates, velocity=no_plates)
     if tyre_load is None:
@@ -116,8 +116,8 @@ def sensor_laws(
     tyres = [[-1.0 / load if law.plate == tyre else 0.0 for law in model.laws] for tyre, load in loads]
     others = np.zeros((len(matrices.sensors), len(model.laws)))
     shape = (-1, len(model.laws))
-    own = np.zeros((sum(damper.function is not None for damper in dampers), len(model.laws)))
-    return np.concatenate([np.reshape(tyres, shape), others, matrices.sides.laws.reshape(shape), own])
+    by_address = np.zeros((sum(damper.function is not None for damper in dampers), len(model.laws)))
+    return np.concatenate([np.reshape(tyres, shape), others, matrices.sides.laws.reshape(shape), by_address])
 
 
 def feedback_at_rest(
@@ -140,15 +140,15 @@ def feedback_at_rest(
     settings = in_steps(np.reshape(numbers, (-1, NUMBERS)), timestep)
     memory = np.zeros((len(controlled), RING + 1 + int(np.max(settings["lag"], initial=0.0))))
     memory[:] = settings["softest"][:, None]
-    own = [(index, damper.function) for index, damper in enumerate(dampers) if damper.function is not None]
+    by_address = [(index, damper.function) for index, damper in enumerate(dampers) if damper.function is not None]
     return Feedback(
         tyres=tyres,
         plate_inputs=plate_inputs,
         controlled=np.array(controlled, dtype=np.int64),
         settings=settings,
         memory=memory,
-        own=np.array([index for index, _ in own], dtype=np.int64),
-        own_laws=np.array([law_by_address(name).record(timestep) for _, name in own], dtype=RECORD),
+        own=np.array([index for index, _ in by_address], dtype=np.int64),
+        own_laws=np.array([law_by_address(name).record(timestep) for _, name in by_address], dtype=RECORD),
         outside=np.tile([1.0, 0.0, 0.0], (len(controlled), 1)),
         owners=owners,
         sides=sides,

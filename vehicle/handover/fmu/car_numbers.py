@@ -62,7 +62,7 @@ class CarNumbers:
         plates, dampers: names of the wheels with plates and of the dampers.
         outputs: the outputs.
         parameters: first values of the parameters; (dampers, `PARAMETERS`).
-        places: offset in the file and size of each array by its path in the record [byte].
+        extents: offset in the file and size of each array by its path in the record [byte].
         table: the table of the car, whose sections begin at `table.rows`.
     """
 
@@ -74,7 +74,7 @@ class CarNumbers:
     dampers: tuple[str, ...]
     outputs: tuple[Output, ...]
     parameters: Vector
-    places: dict[str, tuple[int, int]]
+    extents: dict[str, tuple[int, int]]
     table: CarTable
 
 
@@ -152,7 +152,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         "names": _texts(names, NAME),
         "notices": _texts(watched.notices, NOTICE),
     }
-    body, places = stored("Embedded", record, HEADER)
+    body, extents = stored("Embedded", record, HEADER)
     body += b"\0" * (-len(body) % 8)
     described = "\n".join([body.hex(), *(f"{output.name} {output.unit}" for output in outputs)])
     token = "{" + hashlib.sha256(described.encode()).hexdigest()[:32] + "}"
@@ -166,7 +166,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
         dampers=tuple(damper.name for damper in composition),
         outputs=tuple(outputs),
         parameters=parameters,
-        places=places,
+        extents=extents,
         table=cars,
     )
 

@@ -67,7 +67,7 @@ def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[
 
     def of(path: str) -> npt.NDArray[np.int_]:
         """Return the sizes of the words of an array."""
-        offset, size = numbers.places[path]
+        offset, size = numbers.extents[path]
         return sizes[offset // WORD :][: size // WORD]
 
     for path in ("start", "sensor_start", "rows", "by_force", "by_slope", "by_law"):
@@ -85,7 +85,7 @@ def byte_runs(numbers: CarNumbers, coarse_outputs: int, *, exact: bool) -> list[
     outputs[len(numbers.outputs) - coarse_outputs :] = COARSE[short]
     # The parts of a row of the table are equal, except for sums over the poles.
     times = np.ones_like(sizes)
-    offset = numbers.places["march.table"][0] // WORD
+    offset = numbers.extents["march.table"][0] // WORD
     parts = np.frombuffer(numbers.content, dtype="<u8")[offset:][: table.size].reshape(-1, PARTS)
     times[offset:][: table.size] = np.repeat(np.where(np.all(parts == parts[:, :1], axis=1), PARTS, 1), PARTS)
     ends = [*(np.flatnonzero(np.diff(sizes) | np.diff(times)) + 1).tolist(), len(sizes)]

@@ -9,16 +9,16 @@ from typing import Any, TypeVar
 Class = TypeVar("Class", bound=type)
 
 
-def setting(meaning: str, *, metavar: str = "", kind: type = float, choices: tuple[str, ...] = ()) -> Any:
+def setting(meaning: str, *, metavar: str = "", number_type: type = float, choices: tuple[str, ...] = ()) -> Any:
     """Declare a field of `RoadSettings`.
 
     Args:
         meaning: meaning with unit and default, for documentation and help.
         metavar: word for the value in the help.
-        kind: type of a number.
+        number_type: type of a number.
         choices: allowed texts, in place of a number.
     """
-    option = {"choices": choices} if choices else {"type": kind, "metavar": metavar}
+    option = {"choices": choices} if choices else {"type": number_type, "metavar": metavar}
     return field(default=None, metadata={"meaning": meaning, "option": option})
 
 
@@ -28,7 +28,7 @@ class RoadSettings:
 
     duration: float | None = setting("length [s]; 60, or the whole profile, by default", metavar="S")
     rate: float | None = setting("samples a second; 1000 by default", metavar="HZ")
-    seed: int | None = setting("one seed is one road; 1 by default", metavar="N", kind=int)
+    seed: int | None = setting("one seed is one road; 1 by default", metavar="N", number_type=int)
     coherence: float | None = setting("of the tracks: 1 equal, 0 unrelated; isotropic plane by default", metavar="G")
     patch: float | None = setting(
         "length of the contact patch that averages the road [m], 0 for none; 0.1 by default", metavar="M"
