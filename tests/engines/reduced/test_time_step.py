@@ -32,7 +32,7 @@ LAWS: list[dict[str, Any]] = [
 
 def solve(table, count):
     """Solve the forces of a step of cars in double precision."""
-    march = idle_march(rows=table.rows, table=table.table, dampers=count)
+    march = idle_march(rows=table.rows, table=table.table, dampers=count, pieces=table.pieces)
     core().core_solve_forces_d(ctypes.c_void_p(march.address))
 
 
