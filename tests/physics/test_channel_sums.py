@@ -80,7 +80,11 @@ def test_a_batch_has_the_stops_too():
     given = {"record_rate": car.vehicle.solver.record_rate, "channels": ["damper_fr_force"], "step": 5e-4}
     single = simulate_reduced(car.poles, signal, dampers=dampers, tyre_load=car.static.tyre_load, **given)
     batch = simulate_batch([car.poles], signal, dampers=[dampers], tyre_load=[car.static.tyre_load], **given)
-    np.testing.assert_array_equal(batch.recording(0)["damper_fr_force"], single["damper_fr_force"])
+    force = single["damper_fr_force"]
+    # The batch is in single precision, and adds the force of a stop that is free at rest to that of its damper.
+    np.testing.assert_allclose(
+        batch.recording(0)["damper_fr_force"], force, rtol=0.0, atol=1e-5 * np.max(np.abs(force))
+    )
 
 
 @pytest.mark.parametrize("engine", ENGINES)
