@@ -81,7 +81,8 @@ class CarFactors:
     """Factors of a car for a time step.
 
     Attributes:
-        columns: indices of the driven plates; (m,).
+        columns: indices of the driven plates; (m - l,).
+        lines: number l of histories of the applied forces, inputs like z' of a plate; m counts both.
         integrated: indices of the integrated poles, p pairs and q real poles; (p + q,).
         pairs: p.
         plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
@@ -100,6 +101,7 @@ class CarFactors:
     """
 
     columns: list[int]
+    lines: int
     integrated: npt.NDArray[np.intp]
     pairs: int
     plate_inputs: int
@@ -174,7 +176,7 @@ class CarFactors:
         Args:
             displacements, rates: z and z' of the driven plates at the first instant; (m,) each.
         """
-        eta = -self.direct[self.integrated, -2 * len(self.columns) :] @ np.append(rates, displacements)
+        eta = -self.direct[self.integrated, -2 * len(rates) :] @ np.append(rates, displacements)
         return eta[: self.pairs], eta[self.pairs :].real
 
     def rows(self, sensors: Complex) -> tuple[Vector, Vector, Vector, Vector]:
@@ -208,9 +210,9 @@ class CarFactors:
 
     def weights_of(self, outputs: Outputs) -> Vector:
         """Return the weights of linear outputs, with their direct terms of the plates."""
-        weights, m = self.weights(outputs.poles), len(self.columns)
-        weights[:, -2 * m : -m] += outputs.velocity[:, self.columns]
-        weights[:, -m:] += outputs.height[:, self.columns]
+        weights, m, plates = self.weights(outputs.poles), len(self.columns) + self.lines, len(self.columns)
+        weights[:, -2 * m :][:, :plates] += outputs.velocity[:, self.columns]
+        weights[:, -m:][:, :plates] += outputs.height[:, self.columns]
         return weights
 
 
@@ -248,7 +250,8 @@ def car_factors(
     if not models:
         return []
     h, driven = timestep, list(columns)
-    m, d, g = len(driven), models[0].force.shape[1], models[0].scalar_force.shape[1]
+    plates, lines = len(driven), models[0].applied.shape[1]
+    m, d, g = plates + lines, models[0].force.shape[1], models[0].scalar_force.shape[1]
     inputs_of_cars = [_Inputs(model, driven, None if exact else h) for model in models]
     # Compute the integrated poles of all cars at once.
     s, inputs, held, slope = (
@@ -274,18 +277,20 @@ def car_factors(
         first = part.stop
         # The other poles are quasi-static.
         quasi_static = car_inputs.both / -np.where(car_inputs.slow, 1.0, car_inputs.poles)[:, None]
-        plates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
-        direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, plates, car_inputs.static])
+        rates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
+        direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, rates, car_inputs.static])
         direct_factors[car_inputs.integrated, :-m] = direct[part]
         scalars = model.scalar_rows
         rows = np.concatenate([model.slip, scalars.poles])
         mean_force, ramp, mean_slider, rate, level = np.split(
             (rows @ direct_factors).real, np.cumsum([d, d, g, m]), axis=1
         )
-        rate[d:], level[d:] = rate[d:] + scalars.velocity[:, driven], level[d:] + scalars.height[:, driven]
+        rate[d:, :plates] += scalars.velocity[:, driven]
+        level[d:, :plates] += scalars.height[:, driven]
         factors_of_cars.append(
             CarFactors(
                 columns=driven,
+                lines=lines,
                 integrated=car_inputs.integrated,
                 pairs=int(np.count_nonzero(car_inputs.integrated < model.pairs)),
                 plate_inputs=m * bool(np.any(held)),
@@ -338,20 +343,21 @@ class _Inputs:
     Attributes:
         poles: poles s; (n,).
         slow: mask of the poles without a static value; (n,).
-        static: kappa; (n, m).
-        held: b_z of the slow poles; (n, m).
-        both: residues r of z' of the driven plates, and e of the forces; (n, m + d + g).
-        slope: residues of the slope forces of rolling tyres; (n, m) or (n, 0).
+        static: kappa, zero for applied forces; (n, m).
+        held: b_z of the slow poles, likewise; (n, m).
+        both: residues r of z' of the driven plates and of applied forces, and e of the forces; (n, m + d + g).
+        slope: residues of the slope forces of rolling tyres; (n, plates) or (n, 0).
         integrated: indices of the integrated poles.
     """
 
     def __init__(self, model: PoleModel, columns: list[int], timestep: float | None) -> None:
-        self.poles, height = model.poles, model.height[:, columns]
+        self.poles, height = model.poles, np.hstack([model.height[:, columns], np.zeros_like(model.applied)])
         self.slow = np.abs(model.poles) < SLOWEST
         slow = self.slow[:, None]
         self.static = np.where(slow, 0.0, -height / np.where(slow, 1.0, model.poles[:, None]))
         self.held = np.where(slow, height, 0.0)
-        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force, model.scalar_force])
+        rates = np.hstack([model.velocity[:, columns], model.applied])
+        self.both = np.hstack([rates - self.static, model.force, model.scalar_force])
         self.slope = model.slope[:, columns] if model.slope.shape[1] else model.slope
         self.integrated = np.arange(len(self.poles))
         if timestep is not None:

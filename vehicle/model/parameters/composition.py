@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeVar
 
 from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.axes import Axes
 from vehicle.model.parameters.force_elements import (
     Damper,
@@ -269,6 +270,49 @@ class PlacedWheel:
     steering_axis: tuple[tuple[str, Point], tuple[str, Point]] | None = None
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedForce:
+    """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque on a joint.
+
+    Attributes:
+        name: name of the force.
+        on: part that it acts on; empty for a torque on a joint.
+        at: point at which it acts [m].
+        force, moment: unit direction of the force and of the moment; one of both is zero.
+        against: part with the reaction at the same point; empty for none.
+        joint: joint with the torque, on its part and against the parent; empty for a force on a part.
+        law: its history.
+        speed: angular speed of its angle [rad/s].
+        path: see the module.
+    """
+
+    name: str
+    on: str
+    at: Point
+    force: Point
+    moment: Point
+    against: str
+    joint: str
+    law: AppliedForce
+    speed: float
+    path: str
+
+    @property
+    def ends(self) -> tuple[tuple[str, float], ...]:
+        """Parts with a force, each with its sign."""
+        return tuple((part, sign) for part, sign in ((self.on, 1.0), (self.against, -1.0)) if part)
+
+    @property
+    def harmonics(self) -> dict[float, complex]:
+        """Angular frequencies [rad/s] and complex amplitudes, see `AppliedForce.amplitudes`."""
+        return self.law.amplitudes(self.speed)
+
+    @property
+    def mean(self) -> float:
+        """Constant part [N or N m]."""
+        return self.law.mean if self.law.enabled else 0.0
+
+
 WITH_NUMBERS = ("parts", "connections", "springs", "joint_springs", "dampers")
 """Elements of a composition that have numbers."""
 
@@ -278,7 +322,7 @@ class Composition:
     """All elements of a car other than its trimmed body, in the order of the model.
 
     Attributes:
-        parts, connections, springs, joint_springs, dampers, outputs, wheels: elements, parents before children.
+        parts, connections, springs, joint_springs, dampers, outputs, wheels, forces: elements, parents before children.
         points: hardpoints by name, as "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
         meanings: meaning of each hardpoint, by its path.
@@ -291,6 +335,7 @@ class Composition:
     dampers: tuple[PlacedDamper, ...] = ()
     outputs: tuple[PlacedOutput, ...] = ()
     wheels: tuple[PlacedWheel, ...] = ()
+    forces: tuple[PlacedForce, ...] = ()
     points: Mapping[str, Point] = field(default_factory=dict)
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)
@@ -339,4 +384,6 @@ class Composition:
         points |= {
             part.name: part.seat for part in self.parts if part.seat is not None and part.seat not in points.values()
         }
-        return points | {output.point: output.at for output in self.outputs if output.on == "body"}
+        points |= {output.point: output.at for output in self.outputs if output.on == "body"}
+        on_body = [force for force in self.forces if "body" in (force.on, force.against)]
+        return points | {f"force/{force.name}": force.at for force in on_body if force.at not in points.values()}

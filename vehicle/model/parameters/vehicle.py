@@ -16,6 +16,7 @@ from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.driving import Driving, driving_of
 from vehicle.model.parameters.force_elements import Damper
+from vehicle.model.parameters.further_forces import new_forces
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.plausible import require_plausible, require_rolling
@@ -245,7 +246,7 @@ class Vehicle:
                 return field_quantity(kinds[sideless], inner)
         keys_of_point = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
         if "hardpoints" in keys_of_point[-2:-1] or (
-            keys_of_point[0] in ("outputs", "connection", "load") and keys_of_point[-1] == "at"
+            keys_of_point[0] in ("outputs", "connection", "load", "force") and keys_of_point[-1] == "at"
         ):
             meaning = self.composition.meanings.get(".".join(keys_of_point), "point of the car")
             return {"unit": "m", "meaning": meaning, "length": len(AXES)}
@@ -320,7 +321,7 @@ def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path
         ConfigurationError: an override is wrong.
     """
     texts = list(overrides)
-    merged = varied_table(table, texts, lambda: [*optional_paths(table, folder), *new_loads(texts)])
+    merged = varied_table(table, texts, lambda: [*optional_paths(table, folder), *new_loads(texts), *new_forces(texts)])
     if "/" in (name := _body_file(merged)):
         model_file = Path(name).expanduser()
         if not model_file.is_absolute():  # workers of a sweep may run elsewhere

@@ -22,6 +22,7 @@ from vehicle.engines.linear.step_error import accurate_step, require_accurate_st
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms, quadratic_forms
+from vehicle.engines.simulation.applied_forces import require_step_of_forces, step_for
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress
@@ -240,7 +241,7 @@ class Car:
         if self._from_terms:
             return self._from_terms.matrices
         # Chosen by the car, not by the functions compiled so far: equal cars have bitwise identical matrices.
-        return car_matrices(self.model.model, self.model.static)
+        return car_matrices(self.model.model, self.model.static, self.vehicle.composition.forces)
 
     @property
     def geometry(self) -> Car:
@@ -305,13 +306,15 @@ class Car:
         Raises:
             ConfigurationError: the given step is too large, or no step is small enough.
         """
+        forces = self.vehicle.composition.forces
         if self.vehicle.solver.timestep is not None and sets_step(self.origin["file"], self.overrides):
             if "mujoco" not in self._checked:
                 require_accurate_step(self.model, self.matrices)
+                require_step_of_forces(forces, self.vehicle.solver.step)
                 self._checked.add("mujoco")
             return self
         if self._stepped is None:
-            step = accurate_step(self.model, self.matrices)
+            step = step_for(forces, accurate_step(self.model, self.matrices))
             if step == self.vehicle.solver.timestep:
                 self._checked.add("mujoco")
                 return self
