@@ -42,6 +42,7 @@ def one_pole(pole, height, velocity):
         slope=np.zeros((1, 0), dtype=complex),
         scalar_rows=Outputs(poles=np.zeros((0, 1), dtype=complex), height=np.zeros((0, 2)), velocity=np.zeros((0, 2))),
         scalar_force=np.zeros((1, 0), dtype=complex),
+        applied=np.zeros((1, 0), dtype=complex),
         matrices=None,  # type: ignore[arg-type]
     )
 

@@ -32,7 +32,7 @@ from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.assembly.element_numbers import DECOUPLER, FLUID
-from vehicle.model.parameters.composition import PlacedForce
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.names import AXES
 from vehicle.signals.excitation.force_lines import ForceLines
 

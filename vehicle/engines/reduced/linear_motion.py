@@ -1,9 +1,10 @@
 """Linear motion of a car in a finished run of the reduced engine, from the forces and plates of its record.
 
 The inputs of the poles are the plates z and z', the slopes of rolling tyres, the nonlinear forces of dampers and of
-laws over displacement, and the histories of applied forces. With the spectrum X of an input, xi = b X / (s - p), and every linear quantity of the car is a
-row over the state S = (Re xi, Im xi, inputs): displacements u, velocities, accelerations, forces of the Maxwell
-branches and of ideal joints. The record is continued by a return to its start, so that it is periodic.
+laws over displacement, and the histories of applied forces. With the spectrum X of an input, xi = b X / (s - p), and
+every linear quantity of the car is a row over the state S = (Re xi, Im xi, inputs): displacements u, velocities,
+accelerations, forces of the Maxwell branches and of ideal joints. The record is continued by a return to its start, so
+that it is periodic.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ class MotionRows(NamedTuple):
 
 
 def input_effects(model: PoleModel) -> Complex:
-    """Return the effects of z, z', slopes, damper forces, forces of laws and applied forces on the poles; (p, inputs)."""
+    """Return the effects of z, z', slopes, forces of dampers and laws, and applied forces on the poles; (p, inputs)."""
     laws = model.scalar_force[:, model.groups :]
     return np.hstack([model.height, model.velocity, model.slope, -model.force, -laws, model.applied])
 
@@ -165,9 +166,7 @@ def plate_inputs(
     return plate_displacement, slopes[: model.slope.shape[1]]
 
 
-def run_inputs(
-    model: PoleModel, plates: tuple[Vector, Vector], channels: Mapping[str, Vector], time: Vector
-) -> Vector:
+def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mapping[str, Vector], time: Vector) -> Vector:
     """Return the inputs of the poles in a run, without z', in the order of `input_effects`; (inputs - w, n).
 
     Args:

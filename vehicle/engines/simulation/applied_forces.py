@@ -13,7 +13,7 @@ from vehicle.engines.simulation.step_weights import FOURTH_ORDER
 from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_numbers import FORCE, TORQUE
 from vehicle.model.parameters.applied_force import CRANK
-from vehicle.model.parameters.composition import PlacedForce
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.signals.excitation.force_lines import ForceLines
 
 Vector = npt.NDArray[np.float64]
@@ -28,6 +28,7 @@ GIVEN_ERROR = 5e-3
 
 RESOLVED = 0.2
 """Highest frequency over the record rate: accelerations are second differences of positions, 2.4 % low there."""
+
 
 def force_rows(model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> Vector:
     """Return the generalised force of a unit of each applied force in a position of the car; (f, n).
@@ -144,7 +145,8 @@ def applied_record(model: mujoco.MjModel, above: Sequence[Sequence[int]], modes:
     """
     names = [str(model.numeric(index).name) for index in range(model.nnumeric)]
     names = [name for name in names if name.startswith((FORCE, TORQUE))]
-    sites, directions, forces, torques, means, nodes, shapes = [], [], [], [], [], [], []
+    sites, forces, nodes, torques = list[int](), list[int](), list[int](), list[tuple[int, int]]()
+    directions, shapes, means = list[Vector](), list[Vector](), list[float]()
     for index, name in enumerate(names):
         *way, mean = _field(model, name).tolist()
         means.append(mean)

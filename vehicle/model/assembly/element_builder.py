@@ -28,13 +28,13 @@ from vehicle.model.parameters.composition import (
     JointSpring,
     PlacedConnection,
     PlacedDamper,
-    PlacedForce,
     PlacedOutput,
     PlacedPart,
     PlacedSpring,
     PlacedWheel,
 )
 from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 
 Vector = npt.NDArray[np.float64]
@@ -276,8 +276,11 @@ class ElementBuilder:
             if part == "body":
                 self._node_shape(name, force.at)
                 self._node_rotation(name, force.at)
-                if any(force.moment) and self.vehicle.body.flexible and force.at in self.nodes and (
-                    self.superelement.rotations.get(self.nodes[force.at]) is None
+                if (
+                    any(force.moment)
+                    and self.vehicle.body.flexible
+                    and force.at in self.nodes
+                    and (self.superelement.rotations.get(self.nodes[force.at]) is None)
                 ):
                     raise DataError(
                         f"{force.path}: a moment on the body, whose model has no rotations at {list(force.at)} m; "

@@ -24,12 +24,12 @@ from vehicle.model.parameters.composition import (
     JointSpring,
     PlacedConnection,
     PlacedDamper,
-    PlacedForce,
     PlacedPart,
     PlacedSpring,
 )
 from vehicle.model.parameters.force_elements import Damper, Tyre
 from vehicle.model.parameters.force_table import ForceTable
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 

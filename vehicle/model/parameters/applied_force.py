@@ -33,7 +33,8 @@ class AppliedForce:
         "Hz", "turns of the angle per second, in place of a part that turns", above=0.0, at_most=500.0, default=None
     )
     reference_frequency: float | None = quantity(
-        "Hz", "the amplitudes hold at this frequency of the angle and grow with its square; by default they are constant",
+        "Hz",
+        "the amplitudes hold at this frequency of the angle and grow with its square; by default they are constant",
         above=0.0, at_most=500.0, default=None,
     )  # fmt: skip
     mean: float = quantity(

@@ -83,6 +83,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         outputs=tuple(placed_outputs(car, further)),
         wheels=tuple(wheels),
         forces=tuple(forces),
+        speeds=places.speeds,
         points=points,
         kinds=parameter_kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},

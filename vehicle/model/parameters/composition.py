@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Self, TypeVar
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.axes import Axes
 from vehicle.model.parameters.force_elements import (
     Damper,
@@ -26,6 +25,7 @@ from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.toml_file import build
@@ -270,49 +270,6 @@ class PlacedWheel:
     steering_axis: tuple[tuple[str, Point], tuple[str, Point]] | None = None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PlacedForce:
-    """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque on a joint.
-
-    Attributes:
-        name: name of the force.
-        on: part that it acts on; empty for a torque on a joint.
-        at: point at which it acts [m].
-        force, moment: unit direction of the force and of the moment; one of both is zero.
-        against: part with the reaction at the same point; empty for none.
-        joint: joint with the torque, on its part and against the parent; empty for a force on a part.
-        law: its history.
-        speed: angular speed of its angle [rad/s].
-        path: see the module.
-    """
-
-    name: str
-    on: str
-    at: Point
-    force: Point
-    moment: Point
-    against: str
-    joint: str
-    law: AppliedForce
-    speed: float
-    path: str
-
-    @property
-    def ends(self) -> tuple[tuple[str, float], ...]:
-        """Parts with a force, each with its sign."""
-        return tuple((part, sign) for part, sign in ((self.on, 1.0), (self.against, -1.0)) if part)
-
-    @property
-    def harmonics(self) -> dict[float, complex]:
-        """Angular frequencies [rad/s] and complex amplitudes, see `AppliedForce.amplitudes`."""
-        return self.law.amplitudes(self.speed)
-
-    @property
-    def mean(self) -> float:
-        """Constant part [N or N m]."""
-        return self.law.mean if self.law.enabled else 0.0
-
-
 WITH_NUMBERS = ("parts", "connections", "springs", "joint_springs", "dampers")
 """Elements of a composition that have numbers."""
 
@@ -323,6 +280,7 @@ class Composition:
 
     Attributes:
         parts, connections, springs, joint_springs, dampers, outputs, wheels, forces: elements, parents before children.
+        speeds: angular speed [rad/s] of "crank" and of each wheel, as "wheel_fr"; 0 at rest.
         points: hardpoints by name, as "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
         meanings: meaning of each hardpoint, by its path.
@@ -336,6 +294,7 @@ class Composition:
     outputs: tuple[PlacedOutput, ...] = ()
     wheels: tuple[PlacedWheel, ...] = ()
     forces: tuple[PlacedForce, ...] = ()
+    speeds: Mapping[str, float] = field(default_factory=dict)
     points: Mapping[str, Point] = field(default_factory=dict)
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)
@@ -369,6 +328,24 @@ class Composition:
                 )
                 left -= chosen
         return None if left else replace(self, **updated)
+
+    def turning(self, name: str | None = None) -> tuple[str, float]:
+        """Return name and angular speed [rad/s] of what turns.
+
+        Args:
+            name: crank, a wheel, or a force with a frequency; by default the angle of the first force.
+
+        Raises:
+            ConfigurationError: nothing of this name turns.
+        """
+        own = {force.name: force.speed for force in self.forces if force.law.angle is None}
+        speeds = {each: speed for each, speed in {**self.speeds, **own}.items() if speed > 0.0}
+        first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
+        chosen = name or first or next(iter(speeds), None)
+        if chosen not in speeds:
+            turning = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns: drive, or set crank.rpm"
+            raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {turning}")
+        return chosen, speeds[chosen]
 
     def attachments(self) -> dict[str, Point]:
         """Return the points [m] of the trimmed body at which a force acts or an output is measured, by name."""

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.additions import named_part, named_point
+from vehicle.model.parameters.additions import named_part, named_point, new_loads
 from vehicle.model.parameters.applied_force import CRANK, AppliedForce
-from vehicle.model.parameters.composition import PlacedConnection, PlacedForce, PlacedPart, PlacedWheel
+from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.toml_file import build, convert, nearest
 from vehicle.model.parameters.wheel_forces import Imbalance
@@ -72,11 +73,12 @@ def force_places(
     )
 
 
-def new_forces(overrides: Iterable[str]) -> list[str]:
-    """Return the paths of overrides that set keys of a force; such a force is optional in a vehicle file."""
+def new_tables(overrides: Iterable[str]) -> list[str]:
+    """Return the paths of overrides that set keys of a load or of a force, which are optional in a vehicle file."""
     keys = "|".join((*PLACE_KEYS, *AppliedForce.__dataclass_fields__))
-    texts = [text.partition("=")[0].strip() for text in overrides]
-    return [text for text in texts if re.fullmatch(rf"force\.[A-Za-z0-9_-]+\.({keys})", text)]
+    texts = list(overrides)
+    names = [text.partition("=")[0].strip() for text in texts]
+    return new_loads(texts) + [name for name in names if re.fullmatch(rf"force\.[A-Za-z0-9_-]+\.({keys})", name)]
 
 
 def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
@@ -127,9 +129,7 @@ def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
     )
 
 
-def _torque(
-    path: str, table: Mapping[str, Any], places: ForcePlaces, law: AppliedForce, speed: float
-) -> PlacedForce:
+def _torque(path: str, table: Mapping[str, Any], places: ForcePlaces, law: AppliedForce, speed: float) -> PlacedForce:
     """Return the torque of a table on a joint."""
     for key in ("on", "at", "force", "moment", "against"):
         if key in table:
@@ -196,9 +196,7 @@ def wheel_forces(car: Mapping[str, Instance], wheels: Iterable[PlacedWheel], pla
                     moment=NONE,
                     against="",
                     joint="",
-                    law=AppliedForce(
-                        harmonics=((1.0, amplitude, mass.angle - behind),), angle=f"wheel_{wheel.name}"
-                    ),
+                    law=AppliedForce(harmonics=((1.0, amplitude, mass.angle - behind),), angle=f"wheel_{wheel.name}"),
                     speed=speed,
                     path=f"{wheel.axle}.imbalance",
                 )

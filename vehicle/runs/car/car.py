@@ -31,7 +31,7 @@ from vehicle.handed_down import HANDED
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
-from vehicle.model.parameters.additions import new_loads
+from vehicle.model.parameters.further_forces import new_tables
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.parameter_list import parameter_at
 from vehicle.model.parameters.paths import assignments
@@ -128,8 +128,7 @@ class Car:
         car._base, car._step = self, tuple(more)
         return car
 
-    # Made by the first variant of this car: the reference back to the car is a cycle, and the thousands of cars of a
-    # sweep, a megabyte each, must be freed without waiting for the garbage collector.
+    # Made by the first variant: a cycle, and the cars of a sweep must be freed without the garbage collector.
     @cached_property
     def _variants(self) -> VehicleVariants:
         return VehicleVariants(self.vehicle, self._home, self._anew)
@@ -198,7 +197,7 @@ class Car:
         """
         from vehicle.runs.car.car_data import source_file
 
-        return parameter_at(self.vehicle, path, source_file(self), lambda: [*self._optional, *new_loads([path])])
+        return parameter_at(self.vehicle, path, source_file(self), lambda: [*self._optional, *new_tables([path])])
 
     @cached_property
     def _optional(self) -> list[str]:
@@ -240,7 +239,6 @@ class Car:
         """Mass, damping and stiffness matrices of the same model in its design position."""
         if self._from_terms:
             return self._from_terms.matrices
-        # Chosen by the car, not by the functions compiled so far: equal cars have bitwise identical matrices.
         return car_matrices(self.model.model, self.model.static, self.vehicle.composition.forces)
 
     @property
@@ -384,11 +382,10 @@ class Car:
             SimulationError: the run could not be carried through.
         """
         if isinstance(source, Road):
-            drive = source.under(self.vehicle, self.overrides)
-            signal = drive.signal()
+            signal = (drive := source.under(self.vehicle, self.overrides)).signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
-            car = self.with_(drive.overrides) if drive.overrides else self
-            run = car.run(replace(signal, source=drive.name), progress, engine=engine, channels=channels)
+            car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
+            run = car.run(named, progress, engine=engine, channels=channels)
             return replace(run, skip=start, road=drive.summary(signal))
         wheel = self.vehicle.shaker_wheel
         signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)

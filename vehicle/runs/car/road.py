@@ -28,7 +28,8 @@ class Road(RoadSettings):
 
     Attributes:
         road: class of ISO 8608, "A" to "H"; an obstacle on a level road, as "cleat:20x50" (`Obstacle`); "level", for
-            a car that its own forces shake; or the file of a measured profile (columns distance, left, right [m]; OpenCRG; ERD), or of heights over time.
+            a car that its own forces shake; or the file of a measured profile (columns distance, left, right [m];
+            OpenCRG; ERD), or of heights over time.
         speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
         choice: channels of heights over time, their units and excerpt.
     """

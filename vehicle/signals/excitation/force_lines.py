@@ -1,7 +1,7 @@
 """Histories of applied forces: cosine and sine of each of their frequencies, which rise from rest like a road.
 
-A force F(t) = w(t) sum_j Re(Z_j exp(i W_j t)) is a sum over w cos(W_j t) and w sin(W_j t) with the coefficients Re Z_j and
--Im Z_j, so that any number of forces at one frequency has two histories.
+A force F(t) = w(t) sum_j Re(Z_j exp(i W_j t)) is a sum over w cos(W_j t) and w sin(W_j t) with the coefficients Re Z_j
+and -Im Z_j, so that any number of forces at one frequency has two histories.
 """
 
 from __future__ import annotations

@@ -250,6 +250,7 @@ class RoadDrive:
             "coherence": self.coherence,
             "contact_patch_m": self.patch,
             **({} if self.envelope is None else {"tyre_contact": self.envelope.words}),
+            **({"level": True} if self.road == LEVEL else {}),
             **({} if obstacle is None else {"obstacle": obstacle.words, "obstacle_s": list(self._times(obstacle))}),
             "behind_m": {name: behind for name, behind, _ in self.wheels},
             "words": signal.source,
