@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from tests.validation import validated
-from vehicle import Car, road
+from vehicle import Car, Run, road
 from vehicle.engines.reduced.batch_simulation import simulate_batch
+from vehicle.engines.simulation.recording import Energies
 from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -18,7 +19,7 @@ BASE = 8.3
 ORDERS = (1, 3, 7)
 HARMONICS = [[order, 20.0, 30.0 * order] for order in ORDERS]
 FREE = {"front.damper.coulomb_friction": 0.0}
-PLACES = {
+PLACES: dict[str, dict[str, object]] = {
     "moment on the engine": {"on": "engine", "moment": [0, 1, 0]},
     "force between knuckle and engine": {"on": "knuckle_fr", "force": [1, 0, 1], "against": "engine"},
     "force on the seat rail of the body": {"on": "body", "at": "seat_rail", "force": [0.3, 0, 1]},
@@ -38,13 +39,20 @@ def level(car: Car, duration: float) -> Signal:
     return Signal(time=time, displacement=dict.fromkeys(car.vehicle.wheels, np.zeros(time.size)))
 
 
-def lines_of(run, orders=ORDERS) -> np.ndarray:
+def energies_of(run: Run) -> Energies:
+    """The energy balance of a run of MuJoCo."""
+    energies = run.recording.statistics.energies
+    assert energies is not None
+    return energies
+
+
+def lines_of(run: Run, orders: tuple[int, ...] = ORDERS) -> np.ndarray:
     """Complex amplitudes of the channels from the last two seconds, by least squares; (channels, orders)."""
     last = run.time >= run.time[-1] - 2.0
     angle = 2.0 * np.pi * BASE * np.outer(run.time[last], orders)
     basis = np.hstack([np.cos(angle), np.sin(angle), np.ones((angle.shape[0], 1))])
     found = np.linalg.lstsq(basis, np.array([run[name][last] for name in CHANNELS]).T, rcond=None)[0]
-    return (found[: len(orders)] - 1j * found[len(orders) : -1]).T
+    return np.asarray((found[: len(orders)] - 1j * found[len(orders) : -1]).T)
 
 
 def solved(car: Car) -> np.ndarray:
@@ -101,7 +109,7 @@ def test_mujoco_answers_a_force_as_the_matrices_say_at_the_step_that_it_chooses(
         source="second derivation: matrices with the joints as constraints, line by line",
         peak=1e-3,
     )
-    assert run.recording.statistics.energies.residual < 5e-3
+    assert energies_of(run).residual < 5e-3
 
 
 def test_both_engines_agree_on_an_imbalance_whose_dampers_slip():
@@ -119,7 +127,7 @@ def test_both_engines_agree_on_an_imbalance_whose_dampers_slip():
         source="second derivation: MuJoCo",
         rel=5e-3,
     )
-    assert runs[0].recording.statistics.energies.residual < 5e-3
+    assert energies_of(runs[0]).residual < 5e-3
     batch = simulate_batch(
         [car.with_({"driving.speed": 140 / 3.6}).poles] * 8,
         runs[0].signal,
@@ -147,7 +155,7 @@ def test_a_mean_force_is_in_equilibrium_and_moves_nothing():
     assert rear == pytest.approx((600.0 * behind + 150.0) / base, rel=2e-3)
     run = car.run(level(car, 0.5))
     assert max(np.max(np.abs(run[name])) for name in car.vehicle.acceleration_channels) < 1e-6
-    assert run.recording.statistics.energies.work_in == pytest.approx(0.0, abs=1e-6)
+    assert energies_of(run).work_in == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_variant_with_another_imbalance_is_the_loaded_car():

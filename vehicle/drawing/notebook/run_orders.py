@@ -52,5 +52,5 @@ class RunOrders(OrderLines):
 
 def named_orders(lines: OrderLines, names: tuple[str, ...], units: tuple[str, ...], angle: str) -> RunOrders:
     """Return order lines with the names [-] and units of their channels."""
-    own = {field.name: getattr(lines, field.name) for field in fields(OrderLines)}
-    return RunOrders(**own, names=names, units=units, angle=angle)
+    numbers = {field.name: getattr(lines, field.name) for field in fields(OrderLines)}
+    return RunOrders(**numbers, names=names, units=units, angle=angle)

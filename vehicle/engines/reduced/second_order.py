@@ -188,13 +188,13 @@ def rms_errors(
     length = -(-time.size // (parts * every)) * every
     # Forces count from their mean, which the second order shifts; the static load is a thousand times a weak motion.
     forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
-    rest = np.where(forces, [float(channels[name][0]) for name in names], 0.0)[:, None]
+    reference = np.where(forces, [float(channels[name][0]) for name in names], 0.0)[:, None]
     sums, count = np.zeros((4, len(names))), 0
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
         spectra, samples = periodic_spectra(inputs(part), interval, every)
         spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
-        linear = np.array([channels[name][part][::every] for name in names]) - rest
+        linear = np.array([channels[name][part][::every] for name in names]) - reference
         coordinates = np.fft.irfft(spectra, samples, axis=1)
         more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
         sums += [np.sum(values**power, axis=1) for values in (linear, more) for power in (1, 2)]

@@ -28,6 +28,7 @@ import numpy.typing as npt
 
 from vehicle.engines.linear.damper_elements import SliderElements, no_sliders
 from vehicle.engines.linear.displacement_laws import DisplacementLaw
+from vehicle.engines.reduced.phi_functions import phi_functions
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 Vector = npt.NDArray[np.float64]
@@ -37,8 +38,8 @@ DELAY = 5e-4
 """Maximum error of a response at the end of the band, over its RMS in the band, due to all quasi-static poles.
 
 The error grows with the frequency, so the RMS of an output on a road with white z' is wrong by at most about
-DELAY/sqrt(3), 0.03 %: a fifth of the tolerance of comfort. The value is a choice: for 100 modified cars, comfort
-changes by less than 0.002 % from 5e-5 to 5e-3, and six of 14 real poles and two of 39 pairs are not integrated."""
+DELAY/sqrt(3), 0.03 %. The value is a choice: for 100 modified cars, comfort changes by less than 0.002 % from 5e-5 to
+5e-3."""
 
 STEPS_A_PERIOD = 20
 """Steps in a period of the highest frequency that a step resolves: 100 Hz at 0.5 ms."""
@@ -51,13 +52,12 @@ LARGEST_COUPLING = 0.01
 
 The change of a force is at most the change of its input, so an iteration reduces the largest error of a force,
 initially its change in the step, by rho. Two iterations leave rho^2, and rho^3 with two dampers (Gauss-Seidel): 1e-6,
-the round-off of sums in single precision. The dampers of the `focus` car, also at four corners, stay below 1e-3."""
+the round-off of sums in single precision."""
 
 ACCURACY = 1e-8
 """Error of a force over its change in the step, at which the iteration ends in double precision.
 
-A hundred-thousandth of the error of the step itself. `focus_road` with rubber friction along 14 axes needs 3 iterations
-(bound 8e-9) where 1e-9 needed 4, a fifth of the time of its run."""
+A hundred-thousandth of the error of the step; 1e-9 would cost `focus_road` with rubber friction a fifth of its time."""
 
 SINGLE_ACCURACY, SINGLE_ITERATIONS = 1e-6, 12
 """The same in single precision for cars with laws over displacement, the round-off of its sums, and the maximum number
@@ -69,11 +69,6 @@ function by one coordinate at a time, because the gains are symmetric and positi
 
 SLOWEST = 1e-2
 """Minimum |s| [rad/s] of a pole that can be integrated as a difference from its static value."""
-
-SERIES_BELOW = 2.0
-"""|x| below which the recursion is inaccurate and the series of phi is summed."""
-SERIES_TERMS = 30
-"""Terms of that series: 2^30 / 30! is far below round-off."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -210,26 +205,11 @@ class CarFactors:
 
     def weights_of(self, outputs: Outputs) -> Vector:
         """Return the weights of linear outputs, with their direct terms of the plates."""
-        weights, m, plates = self.weights(outputs.poles), len(self.columns) + self.lines, len(self.columns)
-        weights[:, -2 * m :][:, :plates] += outputs.velocity[:, self.columns]
-        weights[:, -m:][:, :plates] += outputs.height[:, self.columns]
+        weights, plates = self.weights(outputs.poles), len(self.columns)
+        rates, heights = np.hsplit(weights[:, -2 * (plates + self.lines) :], 2)
+        rates[:, :plates] += outputs.velocity[:, self.columns]
+        heights[:, :plates] += outputs.height[:, self.columns]
         return weights
-
-
-def phi_functions(x: Complex, highest: int) -> list[Complex]:
-    """Return phi_1 ... phi_highest at x, phi_k(x) = sum_i x^i / (i + k)!."""
-    use_recursion, zeros = np.abs(x) >= SERIES_BELOW, np.zeros_like(x)
-    safe, small = np.where(use_recursion, x, 1.0), np.where(use_recursion, 0.0, x)
-    recursive = [np.expm1(safe) / safe]
-    for k in range(1, highest):
-        recursive.append((recursive[-1] - 1.0 / factorial(k)) / safe)
-    values = []
-    for k, by_recursion in enumerate(recursive, start=1):
-        by_series = zeros
-        for i in reversed(range(SERIES_TERMS)):
-            by_series = by_series * small + 1.0 / factorial(i + k)
-        values.append(np.where(use_recursion, by_recursion, by_series))
-    return values
 
 
 def car_factors(
@@ -356,8 +336,8 @@ class _Inputs:
         slow = self.slow[:, None]
         self.static = np.where(slow, 0.0, -height / np.where(slow, 1.0, model.poles[:, None]))
         self.held = np.where(slow, height, 0.0)
-        rates = np.hstack([model.velocity[:, columns], model.applied])
-        self.both = np.hstack([rates - self.static, model.force, model.scalar_force])
+        rates = np.hstack([model.velocity[:, columns], model.applied]) - self.static
+        self.both = np.hstack([rates, model.force, model.scalar_force])
         self.slope = model.slope[:, columns] if model.slope.shape[1] else model.slope
         self.integrated = np.arange(len(self.poles))
         if timestep is not None:

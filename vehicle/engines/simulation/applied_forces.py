@@ -79,8 +79,8 @@ def highest_frequency(forces: Sequence[PlacedForce]) -> float:
     highest = 0.0
     for force in forces:
         sizes = {frequency: abs(amplitude) for frequency, amplitude in force.harmonics.items()}
-        least = MINOR * max(sizes.values(), default=0.0)
-        highest = max([highest, *(frequency for frequency, size in sizes.items() if size > least)])
+        threshold = MINOR * max(sizes.values(), default=0.0)
+        highest = max([highest, *(frequency for frequency, size in sizes.items() if size > threshold)])
     return highest / (2.0 * np.pi)
 
 

@@ -338,13 +338,13 @@ class Composition:
         Raises:
             ConfigurationError: nothing of this name turns.
         """
-        own = {force.name: force.speed for force in self.forces if force.law.angle is None}
-        speeds = {each: speed for each, speed in {**self.speeds, **own}.items() if speed > 0.0}
+        by_force = {force.name: force.speed for force in self.forces if force.law.angle is None}
+        speeds = {each: speed for each, speed in {**self.speeds, **by_force}.items() if speed > 0.0}
         first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
         chosen = name or first or next(iter(speeds), None)
         if chosen not in speeds:
-            turning = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns: drive, or set crank.rpm"
-            raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {turning}")
+            message = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns: drive, or set crank.rpm"
+            raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {message}")
         return chosen, speeds[chosen]
 
     def attachments(self) -> dict[str, Point]:

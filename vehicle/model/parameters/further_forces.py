@@ -105,11 +105,11 @@ def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
         raise ConfigurationError(f"{path}.harmonics: a wheel has whole orders; half orders are those of a crank")
     if "joint" in table:
         return _torque(path, table, places, law, speed)
-    given = [key for key in ("force", "moment") if key in table]
-    if len(given) != 1:
-        found = "both" if given else "none"
+    directions = [key for key in ("force", "moment") if key in table]
+    if len(directions) != 1:
+        found = "both" if directions else "none"
         raise ConfigurationError(f"{path}: found {found} of force and moment; set the direction of one of them")
-    direction = _direction(f"{path}.{given[0]}", table[given[0]])
+    direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
     on = named_part(path, table, "on", {*places.parts})
     against = named_part(path, table, "against", {*places.parts}) if "against" in table else ""
     if against == on:
@@ -119,8 +119,8 @@ def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
         name=name,
         on=on,
         at=at,
-        force=direction if given == ["force"] else NONE,
-        moment=direction if given == ["moment"] else NONE,
+        force=direction if directions == ["force"] else NONE,
+        moment=direction if directions == ["moment"] else NONE,
         against=against,
         joint="",
         law=law,

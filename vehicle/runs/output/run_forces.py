@@ -58,12 +58,12 @@ def _orders(run: Run) -> list[OrderSummary]:
     channels = [f"{point}_acc_{axis}" for point in POINTS for axis in AXES]
     channels += [f"knuckle_{wheel}_acc_z" for wheel in run.car.vehicle.wheels]
     channels = [name for name in channels if name in run.recording.channels]
-    turning: dict[float, tuple[float, str]] = {}
+    angles: dict[float, tuple[float, str]] = {}
     for force in run.car.vehicle.composition.forces:
         of = {None: "frequency", CRANK: CRANK}.get(force.law.angle, "wheels")
-        turning |= {frequency: (frequency / force.speed, of) for frequency in force.harmonics}
+        angles |= {frequency: (frequency / force.speed, of) for frequency in force.harmonics}
     orders: list[OrderSummary] = []
-    for frequency, (order, of) in sorted(turning.items()):
+    for frequency, (order, of) in sorted(angles.items()):
         turns = frequency / (2.0 * np.pi * order)
         try:
             lines = order_lines(run.time, np.array([run[name] for name in channels]), turns, [order], begin=run.skip)

@@ -81,8 +81,8 @@ def order_lines(
     found = np.zeros((segments, len(channels), len(orders)), dtype=complex)
     for segment in range(segments):
         part = slice(time.size - length - segment * step, time.size - segment * step)
-        turning = window * np.exp(-2j * np.pi * np.outer(frequency, time[part]))
-        found[segment] = (channels[:, part] - channels[:, part].mean(axis=1, keepdims=True)) @ turning.T
+        kernel = window * np.exp(-2j * np.pi * np.outer(frequency, time[part]))
+        found[segment] = (channels[:, part] - channels[:, part].mean(axis=1, keepdims=True)) @ kernel.T
     error = np.full(found.shape[1:], np.nan)
     if segments > 1:
         scatter = np.mean(np.abs(found - found.mean(axis=0)) ** 2, axis=0) * segments / (segments - 1)
