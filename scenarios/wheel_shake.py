@@ -104,15 +104,18 @@ def study(runs: CarRuns, folder: Path, options: argparse.Namespace) -> Findings:
              for road, name in ROADS.items() for speed in speeds for mass in grams}  # fmt: skip
     cases |= {(NO_FRICTION, speed, mass): ("level", speed, mass, free) for speed in speeds for mass in grams}
     pairs = [
-        tuple(Drive(vehicle, changes, runs.engine, road, speed, each, duration) for each in (mass, 0.0))
+        (
+            Drive(vehicle, changes, runs.engine, road, speed, mass, duration),
+            Drive(vehicle, changes, runs.engine, road, speed, 0.0, duration),
+        )
         for road, speed, mass, changes in cases.values()
     ]
     if runs.jobs > 1:
         with process_pool(min(runs.jobs, len(pairs))) as pool:
-            found = list(pool.map(shake, pairs))
+            results = list(pool.map(shake, pairs))
     else:
-        found = [shake(pair) for pair in pairs]
-    values = dict(zip(cases, found, strict=True))
+        results = [shake(pair) for pair in pairs]
+    values = dict(zip(cases, results, strict=True))
     name = _car(vehicle, runs.overrides).vehicle.name
     caption = (
         f"{name}, imbalance of the right front wheel; order 1 of the vertical acceleration of the seat rail, by the "
@@ -150,14 +153,14 @@ def friction_claims(values: Mapping[Key, float]) -> list[Claim]:
     Args:
         values: shake [m/s2 per kg m] by road, speed and mass.
     """
-    speeds, grams = (sorted({key[place] for key in values}) for place in (1, 2))
+    speeds, grams = sorted({speed for _, speed, _ in values}), sorted({mass for _, _, mass in values})
     speed = min(speeds, key=lambda each: abs(each - 140.0))
-    least, balanced = grams[0], min(grams, key=lambda mass: abs(mass - 20.0))
-    smooth, free = (values[name, speed, least] for name in ("smooth", NO_FRICTION))
+    lightest, balanced = grams[0], min(grams, key=lambda mass: abs(mass - 20.0))
+    smooth, free = (values[name, speed, lightest] for name in ("smooth", NO_FRICTION))
     freed = values["class A", speed, balanced] / values["smooth", speed, balanced]
     return [
         OWN_CHECK.statement(
-            f"shake by {least:g} g at {speed:g} km/h on a smooth road against dampers without friction",
+            f"shake by {lightest:g} g at {speed:g} km/h on a smooth road against dampers without friction",
             "larger",
             f"{smooth:.1f} against {free:.1f} m/s2 per kg m, {smooth / free:.2f} times",
             smooth > 1.2 * free,
@@ -190,7 +193,7 @@ def table(values: Mapping[Key, float]) -> str:
 
 def draw(path: Path, values: Mapping[Key, float], caption: str) -> None:
     """Write the shake over the mass: a panel for each speed, a curve for each road."""
-    speeds, roads = (list(dict.fromkeys(key[place] for key in values)) for place in (1, 0))
+    roads, speeds = list(dict.fromkeys(key[0] for key in values)), list(dict.fromkeys(key[1] for key in values))
     title = "Shake of the seat rail by an imbalance of one front wheel"
     with figure_file(path, (3.2 * len(speeds) + 1.5, 4.6), title, caption) as figure:
         axes = figure.subplots(1, len(speeds), sharey=True, squeeze=False)[0]
@@ -199,7 +202,11 @@ def draw(path: Path, values: Mapping[Key, float], caption: str) -> None:
                 points = {mass: value for (name, at, mass), value in values.items() if (name, at) == (road, speed)}
                 style = "--" if road == NO_FRICTION else "o-"
                 axis.plot([*points], [*points.values()], style, color=colour, markersize=4, label=road)
-            axis.set(xscale="log", title=f"{speed:g} km/h", xlabel="imbalance [g at 0.2 m]", ylim=(0.0, None))
+            axis.set(xscale="log", title=f"{speed:g} km/h", xlabel="imbalance [g at 0.2 m]")
+            grams = sorted({mass for _, _, mass in values})
+            axis.set_xticks(grams, [f"{mass:g}" for mass in grams])
+            axis.minorticks_off()
+        axes[0].set_ylim(0.0, 1.1 * max(values.values()))
         axes[0].set_ylabel("seat rail, vertical, order 1\n[m/s² per kg m]")
         axes[-1].legend(loc="best")
 

@@ -1,4 +1,4 @@
-"""`python -m scenarios.wheel_shake` as a user runs it: friction makes the shake of a balanced wheel, a road takes it."""
+"""`python -m scenarios.wheel_shake` as a user runs it: friction makes the shake of a wheel, a road takes it."""
 
 from __future__ import annotations
 

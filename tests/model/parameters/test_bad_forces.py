@@ -32,9 +32,9 @@ FORCES: dict[str, tuple[dict[str, object], str]] = {
     "negative amplitude": ({**ON, "harmonics": [[2, -40, 0]]}, "the amplitude must be at least 0"),
     "not a number": ({**ON, "harmonics": [[2, float("nan"), 0]]}, "must be three finite numbers"),
     "two numbers": ({**ON, "harmonics": [[2, 40]]}, "must be three finite numbers: order, amplitude, phase [deg]"),
-    "angle and frequency": ({**ON, "angle": "crank"}, "force.a.angle: must be given if no frequency is"),
-    "neither of them": ({**ON, "frequency": None}, "force.a.angle: must be given if no frequency is"),
-    "unknown angle": ({**ON, "frequency": None, "angle": "wheel"}, "nothing that turns; the nearest is wheel_"),
+    "angle and frequency": ({**ON, "angle": "crank"}, "force.a.angle: needed is either an angle"),
+    "neither of them": ({**ON, "frequency": None}, "force.a.angle: needed is either an angle"),
+    "unknown angle": ({**ON, "frequency": None, "angle": "wheel"}, "no angle; the nearest is wheel_"),
     "half an order of a wheel": (
         {**ON, "frequency": None, "angle": "wheel_fr", "harmonics": [[0.5, 40, 0]]},
         "a wheel has whole orders",

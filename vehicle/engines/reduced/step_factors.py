@@ -206,9 +206,9 @@ class CarFactors:
     def weights_of(self, outputs: Outputs) -> Vector:
         """Return the weights of linear outputs, with their direct terms of the plates."""
         weights, plates = self.weights(outputs.poles), len(self.columns)
-        rates, heights = np.hsplit(weights[:, -2 * (plates + self.lines) :], 2)
-        rates[:, :plates] += outputs.velocity[:, self.columns]
-        heights[:, :plates] += outputs.height[:, self.columns]
+        rate_weights, height_weights = np.hsplit(weights[:, -2 * (plates + self.lines) :], 2)
+        rate_weights[:, :plates] += outputs.velocity[:, self.columns]
+        height_weights[:, :plates] += outputs.height[:, self.columns]
         return weights
 
 

@@ -22,7 +22,7 @@ MINOR = 0.01
 """Share of the largest amplitude of a force below which a harmonic does not choose the time step."""
 
 STEP_ERROR = 1e-3
-"""Largest error of the answer to a force that a chosen time step leaves; a given step may leave `GIVEN_ERROR`."""
+"""Largest error of the response to a force with a chosen time step; with a given step it is `GIVEN_ERROR`."""
 
 GIVEN_ERROR = 5e-3
 
@@ -85,7 +85,7 @@ def highest_frequency(forces: Sequence[PlacedForce]) -> float:
 
 
 def step_for(forces: Sequence[PlacedForce], step: float, error: float = STEP_ERROR) -> float:
-    """Return the step, halved until the answer of a part to all forces is accurate: (w h)^2/12 at most `error`."""
+    """Return the step, halved until the response of a part to all forces is accurate: (w h)^2/12 at most `error`."""
     while (2.0 * np.pi * highest_frequency(forces) * step) ** 2 * FOURTH_ORDER > error:
         step *= 0.5
     return step
@@ -157,10 +157,10 @@ def applied_record(model: mujoco.MjModel, above: Sequence[Sequence[int]], modes:
             site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/{end}")
             if site < 0:
                 continue
-            shape, turning = (_field(model, f"{kind}/{name}/{end}") for kind in ("shape", "rotation"))
+            shape, rotation = (_field(model, f"{field}/{name}/{end}") for field in ("shape", "rotation"))
             if shape.size:
                 nodes.append(len(sites))
-                shapes.append(np.concatenate([shape, turning if turning.size else np.zeros(3 * modes)]))
+                shapes.append(np.concatenate([shape, rotation if rotation.size else np.zeros(3 * modes)]))
             sites.append(site)
             directions.append(sign * np.array(way))
             forces.append(index)

@@ -318,7 +318,7 @@ class Fluids(NamedTuple):
 
 
 class Applied(NamedTuple):
-    """Applied forces, with an element for each part that one acts on: e of them.
+    """Applied forces, e elements: one force on one part each.
 
     Attributes:
         sites: site of the point; (e,).

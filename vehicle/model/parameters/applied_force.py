@@ -1,4 +1,4 @@
-"""Forces that a vehicle file applies to parts of the car, beside its road: numbers of their histories."""
+"""Forces that a vehicle file applies to parts of the car: numbers of their histories."""
 
 from __future__ import annotations
 
@@ -48,23 +48,22 @@ class AppliedForce:
         validate(self)
         orders = []
         for harmonic in self.harmonics:
-            found = f"AppliedForce.harmonics: found {list(harmonic)}"
+            message = f"AppliedForce.harmonics: found {list(harmonic)}"
             if len(harmonic) != 3 or not all(map(math.isfinite, harmonic)):
-                raise ConfigurationError(f"{found}, must be three finite numbers: order, amplitude, phase [deg]")
+                raise ConfigurationError(f"{message}, must be three finite numbers: order, amplitude, phase [deg]")
             order, amplitude, _ = harmonic
             if order == 0.0:
-                raise ConfigurationError(f"{found}, of order 0; set mean for the constant part")
+                raise ConfigurationError(f"{message}, of order 0; set mean for the constant part")
             if not 0.0 < order <= HIGHEST_ORDER:
-                raise ConfigurationError(f"{found}; the order must be above 0 and at most {HIGHEST_ORDER:g}")
+                raise ConfigurationError(f"{message}; the order must be above 0 and at most {HIGHEST_ORDER:g}")
             if amplitude < 0.0:
-                raise ConfigurationError(f"{found}; the amplitude must be at least 0: add 180 degrees to the phase")
+                raise ConfigurationError(f"{message}; the amplitude must be at least 0: add 180 degrees to the phase")
             if order in orders:
-                raise ConfigurationError(f"{found}, a second harmonic of order {order:g}; give each order once")
+                raise ConfigurationError(f"{message}, a second harmonic of order {order:g}; give each order once")
             orders.append(order)
         if self.harmonics and (self.angle is None) == (self.frequency is None):
             raise ConfigurationError(
-                "AppliedForce.angle: must be given if no frequency is, and left out with one; it is crank, or a wheel, "
-                "as wheel_fr"
+                "AppliedForce.angle: needed is either an angle (crank, or a wheel, as wheel_fr) or a frequency [Hz]"
             )
 
     def amplitudes(self, speed: float) -> dict[float, complex]:

@@ -12,7 +12,7 @@ from vehicle.model.parameters.additions import further_connection, further_outpu
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.driving import Crank, crank_rpm
-from vehicle.model.parameters.further_forces import force_places, further_force, wheel_forces
+from vehicle.model.parameters.further_forces import force_targets, further_force, wheel_forces
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
 from vehicle.model.parameters.load_mass import Load
@@ -71,9 +71,9 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     carriers = {"body", *(part.name for part in parts if part.seat is None)}
     loads = [placed_load(name, entry, carriers, points) for name, entry in tables["load"].items()]
     body_cog: Point = convert(Point, table["body"]["cog"], "body.cog")
-    places = force_places(parts, points, wheels, connections, crank_rpm(table), body_cog)
-    forces = wheel_forces(car, wheels, places)
-    forces += [further_force(name, entry, places) for name, entry in tables["force"].items()]
+    targets = force_targets(parts, points, wheels, connections, crank_rpm(table), body_cog)
+    forces = wheel_forces(car, wheels, targets)
+    forces += [further_force(name, entry, targets) for name, entry in tables["force"].items()]
     composition = Composition(
         parts=(*parts, *loads),
         connections=tuple(connections),
@@ -83,7 +83,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         outputs=tuple(placed_outputs(car, further)),
         wheels=tuple(wheels),
         forces=tuple(forces),
-        speeds=places.speeds,
+        speeds=targets.speeds,
         points=points,
         kinds=parameter_kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},

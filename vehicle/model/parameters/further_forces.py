@@ -27,8 +27,8 @@ NONE = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ForcePlaces:
-    """What a force of the vehicle file can refer to.
+class ForceTargets:
+    """Parts, points, joints and angles that a force of the vehicle file can name.
 
     Attributes:
         parts: parts of the car and the trimmed body, with their centres of gravity [m].
@@ -43,14 +43,14 @@ class ForcePlaces:
     speeds: Mapping[str, float]
 
 
-def force_places(
+def force_targets(
     parts: Iterable[PlacedPart],
     points: Mapping[str, Point],
     wheels: Iterable[PlacedWheel],
     connections: Iterable[PlacedConnection],
     crank_rpm: float,
     body: Point,
-) -> ForcePlaces:
+) -> ForceTargets:
     """Return what a force can refer to.
 
     Args:
@@ -63,9 +63,10 @@ def force_places(
     speeds = {CRANK: crank_rpm * math.pi / 30.0} | {f"wheel_{wheel.name}": 0.0 for wheel in wheels}
     for tyre in connections:
         if tyre.rolling is not None:
-            speeds[tyre.carrier.replace("plate_", "wheel_", 1)] = tyre.rolling.speed / tyre.rolling.arm[2]
+            radius = getattr(tyre.law, "rolling_radius", None) or tyre.rolling.arm[2]
+            speeds[tyre.carrier.replace("plate_", "wheel_", 1)] = tyre.rolling.speed / radius
     joints = (joint.name for part in listed for joint in part.joints if joint.kind in ("hinge", "slide"))
-    return ForcePlaces(
+    return ForceTargets(
         parts={"body": body, **{part.name: part.cog for part in listed}},
         points=points,
         joints=tuple(joints),
@@ -81,13 +82,13 @@ def new_tables(overrides: Iterable[str]) -> list[str]:
     return new_loads(texts) + [name for name in names if re.fullmatch(rf"force\.[A-Za-z0-9_-]+\.({keys})", name)]
 
 
-def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
+def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
     """Return a force that the vehicle file adds.
 
     Args:
         name: name of the force.
         value: its table.
-        places: what it can refer to.
+        targets: what it can refer to.
 
     Raises:
         ConfigurationError: a name that does not exist, or a wrong value.
@@ -97,24 +98,24 @@ def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
     if not NAME_PATTERN.fullmatch(name):
         raise ConfigurationError(f"{path}: found {name!r}, must consist of letters, digits, '_', '.', '-'")
     law = build(AppliedForce, {key: inner for key, inner in table.items() if key not in PLACE_KEYS}, path)
-    if law.angle is not None and law.angle not in places.speeds:
-        near = nearest(law.angle, places.speeds)
-        raise ConfigurationError(f"{path}.angle: found {law.angle!r}, nothing that turns; the nearest is {near}")
-    speed = 2.0 * math.pi * law.frequency if law.frequency else places.speeds.get(law.angle or "", 0.0)
+    if law.angle is not None and law.angle not in targets.speeds:
+        near = nearest(law.angle, targets.speeds)
+        raise ConfigurationError(f"{path}.angle: found {law.angle!r}, no angle; the nearest is {near}")
+    speed = 2.0 * math.pi * law.frequency if law.frequency else targets.speeds.get(law.angle or "", 0.0)
     if law.angle not in (None, CRANK) and any(order % 1.0 for order, _, _ in law.harmonics):
         raise ConfigurationError(f"{path}.harmonics: a wheel has whole orders; half orders are those of a crank")
     if "joint" in table:
-        return _torque(path, table, places, law, speed)
+        return _torque(path, table, targets, law, speed)
     directions = [key for key in ("force", "moment") if key in table]
     if len(directions) != 1:
-        found = "both" if directions else "none"
-        raise ConfigurationError(f"{path}: found {found} of force and moment; set the direction of one of them")
+        number = "both" if directions else "none"
+        raise ConfigurationError(f"{path}: found {number} of force and moment; set the direction of one of them")
     direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
-    on = named_part(path, table, "on", {*places.parts})
-    against = named_part(path, table, "against", {*places.parts}) if "against" in table else ""
+    on = named_part(path, table, "on", {*targets.parts})
+    against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
     if against == on:
         raise ConfigurationError(f"{path}.against: found {against!r}, the part that the force acts on; name another")
-    at = named_point(path, table, places.points)[0] if "at" in table else places.parts[on]
+    at = named_point(path, table, targets.points)[0] if "at" in table else targets.parts[on]
     return PlacedForce(
         name=name,
         on=on,
@@ -129,14 +130,14 @@ def further_force(name: str, value: Any, places: ForcePlaces) -> PlacedForce:
     )
 
 
-def _torque(path: str, table: Mapping[str, Any], places: ForcePlaces, law: AppliedForce, speed: float) -> PlacedForce:
+def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: AppliedForce, speed: float) -> PlacedForce:
     """Return the torque of a table on a joint."""
     for key in ("on", "at", "force", "moment", "against"):
         if key in table:
-            raise ConfigurationError(f"{path}.{key}: belongs to a force on a part; leave it out beside joint")
+            raise ConfigurationError(f"{path}.{key}: belongs to a force on a part; a torque on a joint has no {key}")
     joint = convert(str, table["joint"], f"{path}.joint")
-    if joint not in places.joints:
-        near = nearest(joint, places.joints)
+    if joint not in targets.joints:
+        near = nearest(joint, targets.joints)
         raise ConfigurationError(f"{path}.joint: found {joint!r}, no hinge or slide; the nearest is {near}")
     if law.mean and joint.startswith("spin_"):
         raise ConfigurationError(
@@ -166,13 +167,15 @@ def _direction(path: str, value: Any) -> Point:
     return (x, y, z)
 
 
-def wheel_forces(car: Mapping[str, Instance], wheels: Iterable[PlacedWheel], places: ForcePlaces) -> list[PlacedForce]:
+def wheel_forces(
+    car: Mapping[str, Instance], wheels: Iterable[PlacedWheel], targets: ForceTargets
+) -> list[PlacedForce]:
     """Return the forces of the imbalances of all wheels: m r (V/R)^2 along x and along z, from the axle to the mass.
 
     Args:
         car: instances by name.
         wheels: wheels of the car.
-        places: what a force can refer to.
+        targets: what a force can refer to.
 
     Raises:
         ConfigurationError: a value is wrong.
@@ -183,7 +186,7 @@ def wheel_forces(car: Mapping[str, Instance], wheels: Iterable[PlacedWheel], pla
         if not instance.table_paths(side, "imbalance"):
             continue
         mass = instance.get(Imbalance, side, "imbalance")
-        speed = places.speeds[f"wheel_{wheel.name}"]
+        speed = targets.speeds[f"wheel_{wheel.name}"]
         x, y, z = wheel.center
         for axis, direction, behind in (("x", (1.0, 0.0, 0.0), 0.0), ("z", (0.0, 0.0, 1.0), 90.0)):
             amplitude = mass.mass * mass.radius * speed**2

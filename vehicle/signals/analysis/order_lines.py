@@ -78,20 +78,20 @@ def order_lines(
     window = np.hanning(length + 2)[1:-1]
     window *= 2.0 / window.sum()
     frequency = turns * np.array(orders, dtype=float)
-    found = np.zeros((segments, len(channels), len(orders)), dtype=complex)
+    amplitudes = np.zeros((segments, len(channels), len(orders)), dtype=complex)
     for segment in range(segments):
         part = slice(time.size - length - segment * step, time.size - segment * step)
         kernel = window * np.exp(-2j * np.pi * np.outer(frequency, time[part]))
-        found[segment] = (channels[:, part] - channels[:, part].mean(axis=1, keepdims=True)) @ kernel.T
-    error = np.full(found.shape[1:], np.nan)
+        amplitudes[segment] = (channels[:, part] - channels[:, part].mean(axis=1, keepdims=True)) @ kernel.T
+    error = np.full(amplitudes.shape[1:], np.nan)
     if segments > 1:
-        scatter = np.mean(np.abs(found - found.mean(axis=0)) ** 2, axis=0) * segments / (segments - 1)
+        scatter = np.mean(np.abs(amplitudes - amplitudes.mean(axis=0)) ** 2, axis=0) * segments / (segments - 1)
         # Variance of one part; the mean of overlapping segments counts as if they were fewer by their correlation.
         error = np.sqrt(0.5 * scatter / segments * (1.0 + 2.0 / 36.0))
     return OrderLines(
         orders=np.array(orders, dtype=float),
         frequency=frequency,
-        amplitude=found.mean(axis=0),
+        amplitude=amplitudes.mean(axis=0),
         error=error,
         segments=segments,
     )
