@@ -40,6 +40,7 @@ STUDIES = {
     "kinematics": "Axles of all cars over wheel travel and under load, and with one point moved.",
     "road": "Four wheels on the road: class, speed, damper friction, with and without an occupant.",
     "obstacles": "Cleats, bumps, potholes and stones over a row of speeds: peaks, doses, settling, with a film.",
+    "wheel_shake": "Imbalance of a wheel: shake of the seat over grams and speed, on smooth and rough roads.",
     "source_choice": "Sides, slip velocity, band edges and body that Bommer 2006 does not print, chosen together.",
     "published": "Every published result of the complete car beside ours.",
 }

@@ -59,7 +59,7 @@ ROOMS: dict[str, set[str]] = {
     "assembly": {"flexbody", "laws", "parameters", "shapes"},
     "simulation": {"assembly", "core", "excitation", "flexbody", "laws", "machine", "parameters"},
     "kinematics": {"assembly", "flexbody", "laws", "parameters", "simulation"},
-    "linear": {"assembly", "flexbody", "laws", "parameters", "simulation"},
+    "linear": {"assembly", "excitation", "flexbody", "laws", "parameters", "simulation"},
     "reduced": {"analysis", "core", "excitation", "laws", "linear", "parameters", "simulation", "threads"},
     "rendering": {"analysis", "assembly", "kinematics", "parameters", "shapes", "simulation", "threads"},
     "notebook": {"analysis", "records", "rendering", "simulation"},

@@ -25,6 +25,7 @@ SUBJECTS = {
     "Dampers and friction": "Force laws of dampers, Coulomb and Stribeck friction, tables, degressive valves.",
     "Bushings, springs and stops": "Laws of connections, Maxwell branches, attachments to the body, tables, stops.",
     "Tyres": "Tyres on a moving plate, tyres that can lift off, rolling tyres.",
+    "Applied forces": "Forces and moments on parts, torques on joints, imbalance of rolling wheels, orders.",
     "Suspension kinematics": "Wheel travel, camber and toe of struts and twist beams; compliance of an axle.",
     "Body models": "Beams, imported finite elements, reduction by Rubin and by Craig and Bampton, modal tests.",
     "Integration in MuJoCo": "Time integration: order of convergence, step, energy, compiled laws, FRFs from runs.",

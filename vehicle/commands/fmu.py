@@ -84,6 +84,8 @@ def _job(options: argparse.Namespace) -> None:
         f"step {1e3 * fmu.step:g} ms; inputs belong to the end of a communication step; displacement and velocity of "
         "each plate are needed"
     )
+    if forces := [force.name for force in car.vehicle.composition.forces if force.law.harmonics]:
+        print(f"note: the harmonics of {', '.join(forces)} are not in the FMU; means are")
 
 
 main = command(parser, _job)

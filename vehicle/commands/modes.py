@@ -49,6 +49,22 @@ def parser() -> Parser:
         help="write the mode of --animate as a film of three cycles, 4 s, that can be repeated without a seam; "
         "runs/mode_<frequency>_hz.mp4 by default",
     )
+    parser.add_argument(
+        "--decoupling",
+        metavar="PART",
+        help="modes of a part on its mounts, as engine: shares of its kinetic energy in three translations and three "
+        "rotations about its centre of gravity, and its torque roll axis",
+    )
+    decoupled = parser.scoped_group(
+        "a decoupling", needs="--decoupling", active=lambda options: bool(options.decoupling)
+    )
+    decoupled.add_argument("--grounded", action="store_true", help="with the body fixed; by default in the car")
+    decoupled.add_argument(
+        "--aim", type=float, metavar="PERCENT", help="mark the modes whose largest share is below this; none by default"
+    )
+    decoupled.add_argument(
+        "--crankshaft", default="0,1,0", metavar="X,Y,Z", help="direction of the crankshaft; across the car by default"
+    )
     files = parser.scoped_group(
         "files", needs="--uff or --video", active=lambda options: options.uff is not None or options.video is not None
     )
@@ -69,6 +85,9 @@ def _job(options: argparse.Namespace) -> None:
             raise ConfigurationError(f"--uff {options.uff}: {mend}")
     speed = [] if options.speed is None else [f"driving.speed={options.speed / 3.6!r}"]
     car = Car.load(options.vehicle, [*options.overrides, *speed])
+    if options.decoupling is not None:
+        print(_decoupling(options, car))
+        return
     figures: Sequence[MotionFigure] = ()
     reason = ""
     try:
@@ -85,6 +104,31 @@ def _job(options: argparse.Namespace) -> None:
     if options.animate is not None:
         table["film"] = _film(options, car)
     print(json.dumps(table, indent=2, allow_nan=False) if options.json else report(table, figures))
+
+
+def _decoupling(options: argparse.Namespace, car: Any) -> str:
+    """Return the decoupling of a part as a table or as JSON.
+
+    Raises:
+        ConfigurationError: no free part has this name, or an option is wrong.
+    """
+    from vehicle.engines.linear.decoupling import decoupling
+    from vehicle.runs.car.decoupling_text import decoupling_json, decoupling_table
+
+    if options.aim is not None and not 0.0 < options.aim <= 100.0:
+        raise ConfigurationError(f"--aim {options.aim:g}: must be above 0 and at most 100 percent")
+    try:
+        x, y, z = map(float, options.crankshaft.split(","))
+    except ValueError:
+        raise ConfigurationError(f"--crankshaft {options.crankshaft}: must be three numbers, as 0,1,0") from None
+    engine_modes = decoupling(
+        car.matrices,
+        options.decoupling,
+        grounded=options.grounded,
+        stuck=options.damper == "stuck",
+        crankshaft=(x, y, z),
+    )
+    return decoupling_json(engine_modes) if options.json else decoupling_table(engine_modes, options.aim)
 
 
 def _check_film_options(options: argparse.Namespace) -> None:

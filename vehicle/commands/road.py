@@ -116,13 +116,14 @@ def class_or_profile(text: str) -> str | Path:
         ConfigurationError: the value has another form.
     """
     from vehicle.signals.excitation.obstacle import SHAPES, is_obstacle
+    from vehicle.signals.excitation.road_drive import LEVEL
 
     if len(text) > 1 and not Path(text).is_file():
-        if is_obstacle(text):
+        if is_obstacle(text) or text == LEVEL:
             return text
         raise ConfigurationError(
-            f"--road {text}: no class of ISO 8608 (A to H), no file of a measured profile, and no obstacle "
-            f"({', '.join(SHAPES)})"
+            f"--road {text}: no class of ISO 8608 (A to H), no file of a measured profile, no obstacle "
+            f"({', '.join(SHAPES)}), and not {LEVEL}"
         )
     return text.upper() if len(text) == 1 else Path(text)
 

@@ -26,10 +26,12 @@ def summary_text(summary: RunSummary) -> str:
     moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
     begin, end = summary["evaluated_s"]
     span = f", evaluated from {begin:g} to {end:g} s" if begin > 0.0 else ""
+    level = f"plate RMS {', '.join(moved)}" if moved else "plates at rest"
     lines = [
-        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, plate RMS "
-        f"{', '.join(moved)}; tyres {summary['tyre']}",
+        f"input       {summary['input']['file']}, {summary['input']['duration_s']:g} s{span}, {level}; tyres "
+        f"{summary['tyre']}",
     ]
+    lines += _forces(summary)
     if first:
         lines += [
             f"damper      slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
@@ -39,7 +41,7 @@ def summary_text(summary: RunSummary) -> str:
             f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
             f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
         ]
-    for wheel, plate, peaks in _peaks(summary):
+    for wheel, plate, peaks in _peaks(summary) if summary["frf"] is not None else ():
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
             if channel not in peaks:
                 continue
@@ -56,6 +58,14 @@ def summary_text(summary: RunSummary) -> str:
     lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
     lines += [f"note        {text}" for text in summary["notices"]]
     return "\n".join(lines)
+
+
+def _forces(summary: RunSummary) -> list[str]:
+    """Return the lines of applied forces, and of the amplitudes at their frequencies."""
+    from vehicle.runs.report.order_words import force_rows, order_sentences
+
+    lines = [f"force       {name.removeprefix('force ')}: {text}" for name, text in force_rows(summary)]
+    return lines + [f"order       {text}" for text in order_sentences(summary)]
 
 
 def _comfort(summary: RunSummary) -> list[str]:

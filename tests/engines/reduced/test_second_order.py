@@ -155,7 +155,7 @@ def test_second_order_from_patterns_of_the_motion(name: str) -> None:
         f"damper_{wheel}_{kind}": still[0] for wheel in car(name).vehicle.wheels for kind in ("force", "velocity")
     }
     record |= {f"law_{index}": still[0] for index in range(len(model.laws))}
-    inputs = run_inputs(model, (heights(), still[: model.slope.shape[1]]), record)
+    inputs = run_inputs(model, (heights(), still[: model.slope.shape[1]]), record, np.arange(samples) / RATE)
     second = SecondOrder(model, car(name).quadratic_forms, model.matrices.viscous)
     spectra = state_spectra(model, np.fft.rfft(inputs, axis=1), 1.0 / RATE, samples)
     state = np.fft.irfft(spectra, samples, axis=1)

@@ -6,8 +6,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.validation import foreign, validated
+from vehicle.engines.reduced.phi_functions import SERIES_BELOW, phi_functions
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
-from vehicle.engines.reduced.step_factors import SERIES_BELOW, SLOWEST, car_factors, phi_functions
+from vehicle.engines.reduced.step_factors import SLOWEST, car_factors
 
 STEP = 0.01
 
@@ -42,6 +43,7 @@ def one_pole(pole, height, velocity):
         slope=np.zeros((1, 0), dtype=complex),
         scalar_rows=Outputs(poles=np.zeros((0, 1), dtype=complex), height=np.zeros((0, 2)), velocity=np.zeros((0, 2))),
         scalar_force=np.zeros((1, 0), dtype=complex),
+        applied=np.zeros((1, 0), dtype=complex),
         matrices=None,  # type: ignore[arg-type]
     )
 

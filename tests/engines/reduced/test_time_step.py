@@ -41,6 +41,7 @@ def table_of(gain, laws, element):
     d = len(laws)
     factors = CarFactors(
         columns=[0],
+        lines=0,
         integrated=np.arange(1),
         pairs=0,
         plate_inputs=0,

@@ -5,6 +5,7 @@
  * property of the library in the process, like the callbacks themselves: locate sets it once.
  */
 #include <stddef.h>
+#include "applied.h"
 #include "modes.h"
 #include "prediction.h"
 #include "rolling.h"
@@ -61,6 +62,15 @@ static void store_sparse(void *data, const SparseRows *p) {
   *size = (int)p->values.n[0];
 }
 
+/* Forces that act on the coordinates explicitly, as `push`: of rolling tyres, of the course control, applied ones. */
+static void explicit_forces(const Now *o, const Layout *e, const Weights *c, State *s) {
+  double *push = s->push.at;
+  for (int64_t i = 0; i < s->push.n[0]; i++) push[i] = 0.0;
+  rolling_forces(o, e, c, s);
+  applied_forces(o, e, s);
+  for (int64_t i = 0; i < s->push.n[0]; i++) o->f->qfrc_applied.at[i] += push[i];
+}
+
 /* Rewrite all rows and applied forces of a state. */
 void NAME(rewrite)(Simulation *simulation, void *data) {
   const Now now = now_of(simulation, data), *o = &now;
@@ -86,7 +96,7 @@ void NAME(rewrite)(Simulation *simulation, void *data) {
   dampers(o, e, c, s);
   generalised_forces(o, e, s);
   rotations(o, e, c, s);
-  rolling_forces(o, e, c, s);
+  explicit_forces(o, e, c, s);
   joint_forces(o, e, s);
   if (simulation->solution.size > 0) {
     predict(o, e, s, &simulation->solution);

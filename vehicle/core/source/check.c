@@ -167,6 +167,16 @@ EXPORT const char *core_check_simulation(const Simulation *s, int64_t positions,
   NEED("tyres", within(&e->tyres, 0, elements) && s->state.plate_velocity.n[0] == e->tyres.n[0]);
   NEED("reach", e->reach.n[1] == 4 && column_within(&e->reach, 0, rows));
   NEED("joints", e->joints.n[0] == 0 || (e->joints.n[1] == 3 && column_within(&e->joints, 2, rows)));
+  const Applied *a = &e->applied;
+  const int64_t forces = s->state.applied.n[0], ends = a->sites.n[0];
+  NEED("applied.means", a->means.n[0] == forces);
+  NEED("applied.sites", within(&a->sites, 0, sites) && a->directions.n[0] == ends && a->forces.n[0] == ends);
+  NEED("applied.forces", within(&a->forces, 0, forces) && column_within(&a->torques, 1, forces));
+  NEED("applied.dofs", column_within(&a->dofs, 0, ends) && column_within(&a->dofs, 1, speeds));
+  NEED("applied.dofs", column_within(&a->dofs, 2, bodies) && column_within(&a->torques, 0, speeds));
+  NEED("applied.nodes", within(&a->nodes, 0, ends) && a->shapes.n[0] == a->nodes.n[0]);
+  NEED("applied.shapes", a->shapes.n[0] == 0 || a->shapes.n[1] == 6 * e->modes.size);
+  NEED("push", s->state.push.n[0] == (ends + a->torques.n[0] + e->rolling.tyres.n[0] > 0 ? speeds : 0));
   NEED("fluids.elements", within(&e->fluids.elements, 0, elements) && within(&e->fluids.dofs, 0, speeds));
   return NULL;
 }

@@ -172,6 +172,10 @@
 #define ROUND_TYRES_FIELDS(F) \
   F(Index, tyres) F(Index, hubs) F(Vector, radii) F(Indices, dofs)
 
+#define APPLIED_FIELDS(F) \
+  F(Index, sites) F(Table, directions) F(Index, forces) F(Indices, dofs) F(Index, nodes) F(Table, shapes) \
+  F(Indices, torques) F(Vector, means)
+
 #define FLUIDS_FIELDS(F) \
   F(Index, elements) F(Index, dofs) F(Index, places) F(Vector, factors)
 
@@ -179,7 +183,7 @@
   F(Bushings, bushings) F(RubberFriction, rubber) F(Rotations, rotations) F(Springs, springs) \
   F(Dampers, dampers) F(Presliding, presliding) F(SideForces, sides) F(Controls, controls) F(OwnDampers, own) F(Tables, tables) \
   F(Modes, modes) F(ModalSpace, space) F(Rolling, rolling) F(RoundTyres, round) F(Fluids, fluids) \
-  F(Indices, joints) F(Index, tyres) F(Indices, reach) F(int64_t, row_count) F(int64_t, velocity_count)
+  F(Applied, applied) F(Indices, joints) F(Index, tyres) F(Indices, reach) F(int64_t, row_count) F(int64_t, velocity_count)
 
 #define WEIGHTS_FIELDS(F) \
   F(double, timestep) F(Vector, preload) F(Table, decay) F(Table, gain) F(Table, slope) F(Table, average) \
@@ -193,7 +197,7 @@
   F(Vector, stretch) F(Table, deflection) F(Table, modal) F(Vector, modal_force) F(Vector, modal_rate) \
   F(Vector, modal_pull) F(Table, heading) F(Table, turning) F(Table, slope) F(Vector, push) F(Table, contact) \
   F(Table, rubber) F(Table, slider) F(Vector, stroke) F(Vector, limit) F(Vector, coefficient) F(Table, sensed) \
-  F(Table, past) F(Vector, steps) F(Table, speeds)
+  F(Table, past) F(Vector, steps) F(Table, speeds) F(Vector, applied)
 
 #define SOLUTION_FIELDS(F) \
   F(int64_t, size) F(Indices, inertia) F(Indices, groups) F(Index, columns) F(Indices, singles) \
@@ -210,7 +214,8 @@
 
 #define PLATES_FIELDS(F) \
   F(Table, height) F(Table, velocity) F(Table, acceleration) F(Table, slope) F(Index, mocap) \
-  F(Table, mocap_position) F(Table, row_velocity) F(Table, row_acceleration) F(Vector, row_slope)
+  F(Table, mocap_position) F(Table, row_velocity) F(Table, row_acceleration) F(Vector, row_slope) \
+  F(Table, force) F(Vector, applied)
 
 #define SOURCES_FIELDS(F) \
   F(Vector, position) F(Vector, velocity) F(Vector, acceleration) F(Table, orientation) \
@@ -239,7 +244,8 @@
   S(SideForces, SIDE_FORCES_FIELDS) S(Controls, CONTROLS_FIELDS) S(OwnDampers, OWN_DAMPERS_FIELDS) \
   S(Tables, TABLES_FIELDS) \
   S(Modes, MODES_FIELDS) S(ModalSpace, MODAL_SPACE_FIELDS) S(Rolling, ROLLING_FIELDS) \
-  S(RoundTyres, ROUND_TYRES_FIELDS) S(Fluids, FLUIDS_FIELDS) S(Layout, LAYOUT_FIELDS) \
+  S(RoundTyres, ROUND_TYRES_FIELDS) S(Fluids, FLUIDS_FIELDS) S(Applied, APPLIED_FIELDS) \
+  S(Layout, LAYOUT_FIELDS) \
   S(Weights, WEIGHTS_FIELDS) S(State, STATE_FIELDS) S(Solution, SOLUTION_FIELDS) \
   S(Simulation, SIMULATION_FIELDS) S(Order, ORDER_FIELDS) S(Plates, PLATES_FIELDS) S(Sources, SOURCES_FIELDS) \
   S(Samples, SAMPLES_FIELDS) S(Loop, LOOP_FIELDS)

@@ -94,13 +94,12 @@ static void hold_course(const Now *o, const Layout *e, double *push) {
   push[yaw] -= hold[2] * angle + hold[5] * rate[yaw] + ahead * side;
 }
 
-/* Apply road slope, aligning and gyroscopic moments on the hubs, and the course control.
+/* Add road slope, aligning and gyroscopic moments on the hubs, and the course control to `push`.
  *
  * The static horizontal tyre forces, mN from SLIDING_SHARE of the trim, act on the hub and rotate no wheel. */
 static void rolling_forces(const Now *o, const Layout *e, const Weights *c, State *s) {
   const Rolling *r = &e->rolling;
   double *push = s->push.at;
-  for (int64_t i = 0; i < s->push.n[0]; i++) push[i] = 0.0;
   for (int64_t n = 0; n < r->tyres.n[0]; n++) {
     const int64_t tyre = r->tyres.at[n], row = AT(e->bushings.rows, tyre, 0), spin = r->spins.at[n];
     const double *frame = frame_of(o, r->hubs.at[n]), *turning = ROW(s->turning, n);
@@ -125,6 +124,5 @@ static void rolling_forces(const Now *o, const Layout *e, const Weights *c, Stat
     push[dof] += load[0] * velocity[0] + dot3(load + 1, motion_of(o, dof));
   }
   hold_course(o, e, push);
-  for (int64_t i = 0; i < s->push.n[0]; i++) o->f->qfrc_applied.at[i] += push[i];
 }
 #endif

@@ -9,7 +9,7 @@ static void copy(double *to, const double *from, int64_t count) {
   for (int64_t i = 0; i < count; i++) to[i] = from[i];
 }
 
-/* Plate heights of a step, and the plate motion of the tyre rows. */
+/* Plate heights of a step, the plate motion of the tyre rows, and the applied forces. */
 static void move_plates(int64_t step, const Plates *p) {
   for (int64_t plate = 0; plate < p->mocap.n[0]; plate++) {
     AT(p->mocap_position, p->mocap.at[plate], 2) = AT(p->height, step, plate);
@@ -17,6 +17,7 @@ static void move_plates(int64_t step, const Plates *p) {
     AT(p->row_acceleration, plate, 2) = AT(p->acceleration, step, plate);
     p->row_slope.at[plate] = AT(p->slope, step, plate);
   }
+  copy(p->applied.at, ROW(p->force, step), p->force.n[1]);
 }
 
 /* MuJoCo's velocity is that of the middle of a step; `half` times the acceleration extrapolates to the present. */

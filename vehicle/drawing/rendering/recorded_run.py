@@ -92,6 +92,8 @@ def level_words(recording: Recording, wheel: str, rms: float) -> str:
         wheel: wheel of the plate.
         rms: RMS of the plate displacement [m].
     """
+    if rms == 0.0:
+        return "at rest"
     if event_of(recording, [wheel]) is None:
         return f"RMS {1e3 * rms:.3g} mm"
     return f"{1e3 * np.max(np.abs(recording[f'plate_{wheel}_displacement'])):.3g} mm bump"

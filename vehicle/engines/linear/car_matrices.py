@@ -6,8 +6,8 @@ simulation applies, so it contains the geometric stiffness of gravity and preloa
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import mujoco
@@ -25,13 +25,16 @@ from vehicle.engines.linear.damper_elements import (
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP, DisplacementLaw, displacement_laws
 from vehicle.engines.linear.rolling_terms import rolling_terms
 from vehicle.engines.linear.system import LinearSystem
+from vehicle.engines.simulation.applied_forces import force_lines, force_rows
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.law_arrays import fluid_coordinates, model_numbers
 from vehicle.engines.simulation.row_layout import numeric, places_of, wheels_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.model.assembly.element_numbers import DECOUPLER, FLUID
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.names import AXES
+from vehicle.signals.excitation.force_lines import ForceLines
 
 Vector = npt.NDArray[np.float64]
 
@@ -66,6 +69,8 @@ class CarMatrices:
             the road, a part of the inputs of `system`; (n, w), (n, 0) for standing tyres.
         modal: velocity coordinates of the flexible modes.
         fluids: velocity coordinates of fluids and decouplers of hydromounts, by names as "fluid of hydromount".
+        force_rows: generalised force of a unit of each applied force; (f, n).
+        lines, coefficients: frequencies of these forces, and their coefficients on the histories; (f, lines).
     """
 
     system: LinearSystem
@@ -88,18 +93,31 @@ class CarMatrices:
     sliders: SliderElements = field(default_factory=no_sliders)
     sides: SideRows = field(default_factory=no_side_forces)
     slope: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+    force_rows: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+    lines: ForceLines = field(default_factory=ForceLines)
+    coefficients: Vector = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def without_forces(self) -> CarMatrices:
+        """Return the matrices without applied forces."""
+        return replace(self, force_rows=self.force_rows[:0], lines=ForceLines(), coefficients=np.zeros((0, 0)))
+
+    @property
+    def applied(self) -> Vector:
+        """Generalised forces per unit of each history of the applied forces; (n, lines)."""
+        return self.force_rows.T.reshape(self.system.size, -1) @ self.coefficients
 
     def __repr__(self) -> str:
         """One line."""
         return f"CarMatrices({len(self.system.mass)} coordinates, {len(self.dampers)} dampers)"
 
 
-def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
+def car_matrices(model: mujoco.MjModel, static: StaticTrim, forces: Sequence[PlacedForce] = ()) -> CarMatrices:
     """Read the matrices of a trimmed car from its model.
 
     Args:
         model: compiled and trimmed car (not yet prepared for stepping).
         static: preloads of the car.
+        forces: applied forces of the car, in the order of the model.
 
     Returns:
         The matrices.
@@ -116,6 +134,7 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
     dofs, still = e.dampers.dofs, np.zeros(len(e.tyres))
     rows_of_bodies = _body_rows(model, data)
     laws = law_matrices(rows, jacobian, joint_dampers(model), static.preload)
+    lines, coefficients = force_lines(forces)
     rolling_bodies = set(model.dof_bodyid[e.rolling.spins].tolist())
     return CarMatrices(
         system=LinearSystem(
@@ -154,6 +173,9 @@ def car_matrices(model: mujoco.MjModel, static: StaticTrim) -> CarMatrices:
             name.replace("/", " of ", 1): int(model.joint(name).dofadr[0])
             for name in fluid_coordinates(rows.laws, model_numbers(model))
         },
+        force_rows=force_rows(model, data, e) if forces else np.zeros((0, model.nv)),
+        lines=lines,
+        coefficients=coefficients,
     )
 
 

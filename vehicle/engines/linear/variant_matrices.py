@@ -27,6 +27,7 @@ import scipy
 from vehicle.engines.linear.body_change import BodyChange, body_change, same_body
 from vehicle.engines.linear.car_matrices import CarMatrices, differences, law_matrices
 from vehicle.engines.linear.displacement_laws import DIFFERENCE_STEP
+from vehicle.engines.simulation.applied_forces import force_lines
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.force_curves import curve_of
 from vehicle.engines.simulation.rows import Rows, joint_dampers, joint_springs
@@ -158,10 +159,14 @@ class VariantTerms:
             else {name: to_new(row) for name, row in reference.outputs.items()},
             **laws.system,
         )
+        lines, coefficients = force_lines(vehicle.composition.forces)
         matrices = replace(
             self.matrices,
             system=system,
             sensors=to_new(self.matrices.sensors),
+            force_rows=to_new(self.matrices.force_rows),
+            lines=lines,
+            coefficients=coefficients,
             body_rows=parts.rows,
             body_masses=parts.masses,
             body_centres={**self.matrices.body_centres, "body": np.array(vehicle.body.cog)},
@@ -265,6 +270,8 @@ def same_geometry(vehicle: Vehicle, other: Vehicle) -> bool:
         and _differ_only_in(car.springs, reference.springs, "law")
         and _differ_only_in(car.joint_springs, reference.joint_springs, "law")
         and _differ_only_in(car.dampers, reference.dampers, "law")
+        and _differ_only_in(car.forces, reference.forces, "law", "speed")
+        and [force.mean for force in car.forces] == [force.mean for force in reference.forces]
     )
 
 

@@ -206,7 +206,8 @@ def _loaded(stops: LoadRows) -> bool:
 
 
 def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:
-    """Return what is equal in a group: dampers with Jenkins elements, their number, dampers with side forces, laws."""
+    """Return what is equal in a group: dampers with Jenkins elements or side forces, laws, frequencies of forces."""
     sliders, sides = model.matrices.sliders, model.matrices.sides
     laws = tuple((law.element, law.one_sided, law.friction) for law in model.laws)
-    return tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist()), laws
+    elements = tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist()), laws
+    return *elements, model.matrices.lines.frequencies

@@ -62,7 +62,7 @@ class CarTable:
     Args:
         cars: factors of the cars.
         dampers: damper laws of each car.
-        start: (z, z') of the driven plates at the first instant; (2, m).
+        start: (z, z') of the driven plates at the first instant, then of the applied forces; (2, m).
         element: number type.
         sensors: sensors of each car, see `vehicle.engines.reduced.feedback.sensor_outputs`.
         static: side forces of each car at rest; (2 k,), none by default.
@@ -71,7 +71,7 @@ class CarTable:
         whole: damper laws with their outer segments, see `damper_nodes`.
 
     Attributes:
-        dampers, plates: numbers d of dampers and m of driven plates.
+        dampers, plates: numbers d of dampers and m of driven plates and histories of applied forces.
         states: number of terms of an output in a column: states of a sample, and plate displacements.
         inputs, sums: numbers of inputs of a step, and of damper velocities and sensors.
         initial: states of the first sample; (..., columns).
@@ -152,8 +152,9 @@ class CarTable:
             values["slip"] = slip if part.start == 0 else 0.0 * slip
             values["limit"], values["viscous"] = record["friction_limit"][:, lane], record["viscous_damping"][:, lane]
             car_sensors, columns = sensors[car], cars[car].columns
+            z, rate = start[:, : len(columns)]
             values["direct"] = cars[car].weights_of(car_sensors)[:, cars[car].states :]
-            values["sensors"] = car_sensors.height[:, columns] @ start[0] + car_sensors.velocity[:, columns] @ start[1]
+            values["sensors"] = car_sensors.height[:, columns] @ z + car_sensors.velocity[:, columns] @ rate
             sliders = cars[car].sliders
             values |= {"level": cars[car].levels if part.start == 0 else 0.0 * cars[car].levels}
             values |= {"rest": static[car]} if static else {}
@@ -166,7 +167,7 @@ class CarTable:
                     name: numbers.reshape(rubbers, split, layers)[:, part.start] for name, numbers in elements.items()
                 }
                 values |= {
-                    "excess": forces_at_start(cars[car].laws, cars[car].columns, start),
+                    "excess": forces_at_start(cars[car].laws, columns, start[:, : len(columns)]),
                     "heard": heard[car] if heard else np.zeros(0),
                 }
             values |= {"spring": sliders.stiffness, "share": sliders.limit}

@@ -18,7 +18,7 @@ from vehicle.engines.linear.load_rows import LoadRows
 from vehicle.engines.reduced.car_table import CarTable, damper_nodes
 from vehicle.engines.reduced.feedback import Feedback, feedback_at_rest, sensor_laws, sensor_outputs
 from vehicle.engines.reduced.load_outputs import load_outputs
-from vehicle.engines.reduced.plate_samples import plate_samples
+from vehicle.engines.reduced.plate_samples import InputSamples, plate_samples
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 from vehicle.engines.reduced.step_factors import CarFactors
 from vehicle.engines.reduced.table_layout import (
@@ -135,7 +135,9 @@ class GroupRun:
         self.driven, self.element = signal.wheels, element
         steps = int(np.floor(signal.duration / interval + 1e-6)) * every
         self.plates = plate_samples(signal, self.timestep, steps, AHEAD * every)
-        start = self.plates[:1].reshape(-1, 3).T[:2]
+        lines = models[0].matrices.lines
+        self.inputs = InputSamples(self.plates, lines, self.timestep) if len(lines) else self.plates
+        start = self.inputs[0:1].reshape(-1, 3).T[:2]
         self.start, loads_of_tyres = start, tyre_load if present_load else [None] * len(models)
         self.cars, self.feedback = packed_cars(models, factors, dampers, loads_of_tyres, start, self.timestep, element)
 
@@ -210,9 +212,10 @@ class GroupRun:
         for lane, (car, _) in enumerate(self.cars.lanes):
             # First sample: a car at rest over plates with any displacement.
             outputs, columns = linear[car], self.factors[car].columns
-            initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ self.start.ravel()
+            start = self.start[:, : len(columns)]
+            initial = np.hstack([outputs.height[:, columns], outputs.velocity[:, columns]]) @ start.ravel()
             first_sample[levels:, lane][: len(initial)] = initial
-            excess = forces_at_start(laws, columns, self.start)
+            excess = forces_at_start(laws, columns, start)
             first_sample[curves:, lane] = excess
             for law, force in zip(laws, excess, strict=True):
                 if law.plate >= 0:
@@ -266,7 +269,7 @@ class GroupRun:
         sample, end = 1, table.shape[2] + AHEAD
         while sample < end:
             size, step = min(SAMPLES, end - sample), (sample - 1) * every
-            plates = self.plates[step : step + size * every + 1]
+            plates = self.inputs[step : step + size * every + 1]
             rates = np.zeros((len(plates), 4 * m), dtype=self.element)
             rates[:, :m], rates[:, 2 * m : 3 * m], rates[:, 3 * m :] = plates[:, 1::3], plates[:, 0::3], plates[:, 2::3]
             rates[:-1, m : 2 * m] = np.diff(plates[:, 0::3], axis=0) / self.timestep

@@ -1,9 +1,10 @@
 """Linear motion of a car in a finished run of the reduced engine, from the forces and plates of its record.
 
 The inputs of the poles are the plates z and z', the slopes of rolling tyres, the nonlinear forces of dampers and of
-laws over displacement. With the spectrum X of an input, xi = b X / (s - p), and every linear quantity of the car is a
-row over the state S = (Re xi, Im xi, inputs): displacements u, velocities, accelerations, forces of the Maxwell
-branches and of ideal joints. The record is continued by a return to its start, so that it is periodic.
+laws over displacement, and the histories of applied forces. With the spectrum X of an input, xi = b X / (s - p), and
+every linear quantity of the car is a row over the state S = (Re xi, Im xi, inputs): displacements u, velocities,
+accelerations, forces of the Maxwell branches and of ideal joints. The record is continued by a return to its start, so
+that it is periodic.
 """
 
 from __future__ import annotations
@@ -53,8 +54,9 @@ class MotionRows(NamedTuple):
 
 
 def input_effects(model: PoleModel) -> Complex:
-    """Return the effects of z, z', slopes, damper forces and forces of laws on the poles; (p, inputs)."""
-    return np.hstack([model.height, model.velocity, model.slope, -model.force, -model.scalar_force[:, model.groups :]])
+    """Return the effects of z, z', slopes, forces of dampers and laws, and applied forces on the poles; (p, inputs)."""
+    laws = model.scalar_force[:, model.groups :]
+    return np.hstack([model.height, model.velocity, model.slope, -model.force, -laws, model.applied])
 
 
 def motion_rows(model: PoleModel) -> MotionRows:
@@ -77,6 +79,7 @@ def motion_rows(model: PoleModel) -> MotionRows:
             matrices.slope.reshape(n, -1),
             -system.slide_rows.T,
             -law_rows(matrices.laws, n).T,
+            matrices.applied,
         ]
     )
     needed = system.mass @ acceleration + system.damping @ velocity + system.stiffness @ displacement
@@ -163,12 +166,13 @@ def plate_inputs(
     return plate_displacement, slopes[: model.slope.shape[1]]
 
 
-def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mapping[str, Vector]) -> Vector:
-    """Return the inputs of the poles in a run, without z': z, slopes, forces of dampers and of laws; (inputs - w, n).
+def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mapping[str, Vector], time: Vector) -> Vector:
+    """Return the inputs of the poles in a run, without z', in the order of `input_effects`; (inputs - w, n).
 
     Args:
         model: the car.
         plates: see `plate_inputs`.
+        time: times of the n samples [s].
         channels: record with damper forces and velocities, and "law_<index>".
     """
     dampers = [
@@ -176,4 +180,4 @@ def run_inputs(model: PoleModel, plates: tuple[Vector, Vector], channels: Mappin
         for damper, viscous in zip(model.matrices.damper_names, model.matrices.viscous, strict=True)
     ]
     laws = [channels[f"law_{index}"] for index in range(len(model.laws))]
-    return np.vstack([*plates, *dampers, *laws])
+    return np.vstack([*plates, *dampers, *laws, *model.matrices.lines.values(time).T])

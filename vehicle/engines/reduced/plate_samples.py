@@ -1,4 +1,7 @@
-"""Displacement and velocity of the driven plates at the ends of the steps, computed once per signal.
+"""Displacement and velocity of the driven plates at the ends of the steps, and the same of applied forces.
+
+An applied force F is an input like the velocity z' of a plate that exerts no other force: its "displacement" is the
+integral of F, of which only the difference over a step counts.
 
 Displacements are from the first sample of the signal: the car stands in equilibrium on plates at that height.
 
@@ -14,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.engines.simulation.recorded_acceleration import continued
+from vehicle.signals.excitation.force_lines import ForceLines
 from vehicle.signals.excitation.signal import Signal
 
 Vector = npt.NDArray[np.float64]
@@ -54,6 +58,28 @@ class LongPlateSamples:
                 excess = values[1] - (values[0] - 2.0 * values[1] + values[2]) / 24.0
             columns.append(excess)
         return np.stack(columns, axis=1)
+
+
+class InputSamples:
+    """Rows of `plate_samples`, followed by (integral of h, h, 0) of each history h of applied forces.
+
+    Args:
+        plates: rows of the plates.
+        lines: frequencies of the forces.
+        step: time step [s].
+    """
+
+    def __init__(self, plates: Vector | LongPlateSamples, lines: ForceLines, step: float) -> None:
+        self.plates, self.lines, self.step = plates, lines, step
+
+    def __getitem__(self, part: slice) -> Vector:
+        """Return consecutive rows; the integrals begin at zero in each slice."""
+        plates = self.plates[part]
+        time = self.step * (part.start + np.arange(len(plates)))
+        columns = np.zeros((len(time), len(self.lines), 3))
+        columns[1:, :, 0] = self.step * np.cumsum(self.lines.means(time[:-1], self.step), axis=0)
+        columns[:, :, 1] = self.lines.values(time)
+        return np.hstack([plates, columns.reshape(len(time), 3 * len(self.lines))])
 
 
 def plate_samples(signal: Signal, step: float, steps: int, beyond: int) -> Vector | LongPlateSamples:

@@ -67,6 +67,7 @@ class PoleModel:
         branch: forces f_b = Re(branch xi) of the Maxwell branches; (b, p).
         slope: effect of the velocity of each plate due to the static load on the slope, a part of b_c; (p, w), (p, 0)
             for standing tyres.
+        applied: effect of each history of the applied forces; (p, lines).
         matrices: matrices of the car.
         scalar_rows: displacements x of the g scalar elements: groups of Jenkins elements, then the laws.
         scalar_force: effect of their forces; (p, g).
@@ -82,6 +83,7 @@ class PoleModel:
     modal: Complex
     branch: Complex
     slope: Complex
+    applied: Complex
     matrices: CarMatrices
     scalar_rows: Outputs
     scalar_force: Complex
@@ -107,6 +109,10 @@ class PoleModel:
         return replace(
             self, scalar_rows=self.scalar_rows.part(groups), scalar_force=self.scalar_force[:, groups], laws=()
         )
+
+    def without_forces(self) -> PoleModel:
+        """Return the model without applied forces."""
+        return replace(self, applied=self.applied[:, :0], matrices=self.matrices.without_forces())
 
     def outputs(self, channels: Sequence[str]) -> Outputs:
         """Return the rows of acceleration channels, as displacements, and of dynamic tyre force channels.
@@ -152,11 +158,13 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
     scalars = np.concatenate(
         [matrices.sliders.rows.reshape(-1, matrices.system.size), law_rows(matrices.laws, matrices.system.size)]
     )
-    further = np.zeros((len(form.state), matrices.slope.shape[1] + len(scalars)))
+    lines = len(matrices.lines)
+    further = np.zeros((len(form.state), matrices.slope.shape[1] + len(scalars) + lines))
     if further.size:
         mass = form.basis.T @ form.system.mass @ form.basis
         slope = matrices.slope.reshape(len(form.basis), -1)
-        further[form.velocities] = np.linalg.solve(mass, form.basis.T @ np.hstack([slope, scalars.T]))
+        effects = np.hstack([slope, scalars.T, matrices.applied])
+        further[form.velocities] = np.linalg.solve(mass, form.basis.T @ effects)
     inputs = np.hstack([form.input, form.input_rate, form.friction, further])
     poles, vectors = np.linalg.eig(form.state)
     selected = np.concatenate([np.flatnonzero(poles.imag > 0.0), np.flatnonzero(poles.imag == 0.0)])
@@ -178,7 +186,8 @@ def pole_model(matrices: CarMatrices) -> PoleModel:
         slope=residues[:, forces:slopes],
         matrices=matrices,
         scalar_rows=_scalar_rows(matrices, scalars @ modal, poles[selected]),
-        scalar_force=residues[:, slopes:],
+        scalar_force=residues[:, slopes : residues.shape[1] - lines],
+        applied=residues[:, residues.shape[1] - lines :],
         laws=matrices.laws,
     )
 

@@ -150,7 +150,10 @@ def _state_products(model: PoleModel) -> Vector:
     frequency = np.arange(PERIOD // 2 + 1) * RATE / PERIOD
     noise = np.fft.rfft(random.standard_normal((count - wheels, PERIOD)), axis=1)
     noise[:wheels] /= 2.0 * np.pi * np.maximum(frequency, frequency[1])
-    noise[wheels + model.slope.shape[1] :] *= FORCE_LEVEL / (1.0 + frequency / 20.0)
+    # Histories of applied forces have unit amplitude.
+    noise[wheels + model.slope.shape[1] : len(noise) - len(model.matrices.lines)] *= FORCE_LEVEL / (
+        1.0 + frequency / 20.0
+    )
     spectra = state_spectra(model, noise, 1.0 / RATE, PERIOD)[:, frequency <= BAND]
     parts = np.hstack([spectra.real, spectra.imag])
     return np.asarray(parts @ parts.T * (2.0 / PERIOD**2))

@@ -161,7 +161,7 @@ def rms_errors_of(
 
     def inputs(part: slice) -> Vector:
         block = {name: values[part] for name, values in record.items()}
-        return run_inputs(model, plate_inputs(model, signal, time[part], block, tyre_load), block)
+        return run_inputs(model, plate_inputs(model, signal, time[part], block, tyre_load), block, time[part])
 
     channels = {name: record[name] for name in names}
     return rms_errors(SecondOrder(model, forms, damping), inputs, channels, time)
@@ -186,20 +186,20 @@ def rms_errors(
     rows = [second.channels.index(name) for name in names]
     parts = max(round(time.size * interval / WINDOW), 1)
     length = -(-time.size // (parts * every)) * every
-    sums, count = np.zeros((3, len(names))), 0
+    # Forces count from their mean, which the second order shifts; the static load is a thousand times a weak motion.
+    forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
+    reference = np.where(forces, [float(channels[name][0]) for name in names], 0.0)[:, None]
+    sums, count = np.zeros((4, len(names))), 0
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
         spectra, samples = periodic_spectra(inputs(part), interval, every)
         spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
-        linear = np.array([channels[name][part][::every] for name in names])
+        linear = np.array([channels[name][part][::every] for name in names]) - reference
         coordinates = np.fft.irfft(spectra, samples, axis=1)
         more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
-        sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
+        sums += [np.sum(values**power, axis=1) for values in (linear, more) for power in (1, 2)]
         count += linear.shape[1]
-    forces = np.array([not name.endswith(("_acc_x", "_acc_y", "_acc_z")) for name in names])
-    # Forces without their static part, which the second order leaves as it is.
-    static = np.where(forces, sums[0] ** 2 / max(count, 1), 0.0)
-    linear, more = sums[1] - static, sums[2] - static
+    linear, more = (sums[k + 1] - np.where(forces, sums[k] ** 2 / max(count, 1), 0.0) for k in (0, 2))
     moving = (linear > 0.0) & (more > 0.0)
     errors = np.sqrt(linear, where=moving, out=np.ones(len(names)))
     errors /= np.sqrt(more, where=moving, out=np.ones(len(names)))

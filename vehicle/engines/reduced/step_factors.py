@@ -28,6 +28,7 @@ import numpy.typing as npt
 
 from vehicle.engines.linear.damper_elements import SliderElements, no_sliders
 from vehicle.engines.linear.displacement_laws import DisplacementLaw
+from vehicle.engines.reduced.phi_functions import phi_functions
 from vehicle.engines.reduced.pole_model import Outputs, PoleModel
 
 Vector = npt.NDArray[np.float64]
@@ -37,8 +38,8 @@ DELAY = 5e-4
 """Maximum error of a response at the end of the band, over its RMS in the band, due to all quasi-static poles.
 
 The error grows with the frequency, so the RMS of an output on a road with white z' is wrong by at most about
-DELAY/sqrt(3), 0.03 %: a fifth of the tolerance of comfort. The value is a choice: for 100 modified cars, comfort
-changes by less than 0.002 % from 5e-5 to 5e-3, and six of 14 real poles and two of 39 pairs are not integrated."""
+DELAY/sqrt(3), 0.03 %. The value is a choice: for 100 modified cars, comfort changes by less than 0.002 % from 5e-5 to
+5e-3."""
 
 STEPS_A_PERIOD = 20
 """Steps in a period of the highest frequency that a step resolves: 100 Hz at 0.5 ms."""
@@ -51,13 +52,12 @@ LARGEST_COUPLING = 0.01
 
 The change of a force is at most the change of its input, so an iteration reduces the largest error of a force,
 initially its change in the step, by rho. Two iterations leave rho^2, and rho^3 with two dampers (Gauss-Seidel): 1e-6,
-the round-off of sums in single precision. The dampers of the `focus` car, also at four corners, stay below 1e-3."""
+the round-off of sums in single precision."""
 
 ACCURACY = 1e-8
 """Error of a force over its change in the step, at which the iteration ends in double precision.
 
-A hundred-thousandth of the error of the step itself. `focus_road` with rubber friction along 14 axes needs 3 iterations
-(bound 8e-9) where 1e-9 needed 4, a fifth of the time of its run."""
+A hundred-thousandth of the error of the step; 1e-9 would cost `focus_road` with rubber friction a fifth of its time."""
 
 SINGLE_ACCURACY, SINGLE_ITERATIONS = 1e-6, 12
 """The same in single precision for cars with laws over displacement, the round-off of its sums, and the maximum number
@@ -70,18 +70,14 @@ function by one coordinate at a time, because the gains are symmetric and positi
 SLOWEST = 1e-2
 """Minimum |s| [rad/s] of a pole that can be integrated as a difference from its static value."""
 
-SERIES_BELOW = 2.0
-"""|x| below which the recursion is inaccurate and the series of phi is summed."""
-SERIES_TERMS = 30
-"""Terms of that series: 2^30 / 30! is far below round-off."""
-
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarFactors:
     """Factors of a car for a time step.
 
     Attributes:
-        columns: indices of the driven plates; (m,).
+        columns: indices of the driven plates; (m - l,).
+        lines: number l of histories of the applied forces, inputs like z' of a plate; m counts both.
         integrated: indices of the integrated poles, p pairs and q real poles; (p + q,).
         pairs: p.
         plate_inputs: number of plates whose z is an input; m for a car with slow poles, else 0.
@@ -100,6 +96,7 @@ class CarFactors:
     """
 
     columns: list[int]
+    lines: int
     integrated: npt.NDArray[np.intp]
     pairs: int
     plate_inputs: int
@@ -174,7 +171,7 @@ class CarFactors:
         Args:
             displacements, rates: z and z' of the driven plates at the first instant; (m,) each.
         """
-        eta = -self.direct[self.integrated, -2 * len(self.columns) :] @ np.append(rates, displacements)
+        eta = -self.direct[self.integrated, -2 * len(rates) :] @ np.append(rates, displacements)
         return eta[: self.pairs], eta[self.pairs :].real
 
     def rows(self, sensors: Complex) -> tuple[Vector, Vector, Vector, Vector]:
@@ -208,26 +205,11 @@ class CarFactors:
 
     def weights_of(self, outputs: Outputs) -> Vector:
         """Return the weights of linear outputs, with their direct terms of the plates."""
-        weights, m = self.weights(outputs.poles), len(self.columns)
-        weights[:, -2 * m : -m] += outputs.velocity[:, self.columns]
-        weights[:, -m:] += outputs.height[:, self.columns]
+        weights, plates = self.weights(outputs.poles), len(self.columns)
+        rate_weights, height_weights = np.hsplit(weights[:, -2 * (plates + self.lines) :], 2)
+        rate_weights[:, :plates] += outputs.velocity[:, self.columns]
+        height_weights[:, :plates] += outputs.height[:, self.columns]
         return weights
-
-
-def phi_functions(x: Complex, highest: int) -> list[Complex]:
-    """Return phi_1 ... phi_highest at x, phi_k(x) = sum_i x^i / (i + k)!."""
-    use_recursion, zeros = np.abs(x) >= SERIES_BELOW, np.zeros_like(x)
-    safe, small = np.where(use_recursion, x, 1.0), np.where(use_recursion, 0.0, x)
-    recursive = [np.expm1(safe) / safe]
-    for k in range(1, highest):
-        recursive.append((recursive[-1] - 1.0 / factorial(k)) / safe)
-    values = []
-    for k, by_recursion in enumerate(recursive, start=1):
-        by_series = zeros
-        for i in reversed(range(SERIES_TERMS)):
-            by_series = by_series * small + 1.0 / factorial(i + k)
-        values.append(np.where(use_recursion, by_recursion, by_series))
-    return values
 
 
 def car_factors(
@@ -248,7 +230,8 @@ def car_factors(
     if not models:
         return []
     h, driven = timestep, list(columns)
-    m, d, g = len(driven), models[0].force.shape[1], models[0].scalar_force.shape[1]
+    plates, lines = len(driven), models[0].applied.shape[1]
+    m, d, g = plates + lines, models[0].force.shape[1], models[0].scalar_force.shape[1]
     inputs_of_cars = [_Inputs(model, driven, None if exact else h) for model in models]
     # Compute the integrated poles of all cars at once.
     s, inputs, held, slope = (
@@ -274,18 +257,20 @@ def car_factors(
         first = part.stop
         # The other poles are quasi-static.
         quasi_static = car_inputs.both / -np.where(car_inputs.slow, 1.0, car_inputs.poles)[:, None]
-        plates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
-        direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, plates, car_inputs.static])
+        rates, damper_forces, slider_forces = np.split(quasi_static, [m, m + d], axis=1)
+        direct_factors = np.hstack([damper_forces, 0.5 * damper_forces, slider_forces, rates, car_inputs.static])
         direct_factors[car_inputs.integrated, :-m] = direct[part]
         scalars = model.scalar_rows
         rows = np.concatenate([model.slip, scalars.poles])
         mean_force, ramp, mean_slider, rate, level = np.split(
             (rows @ direct_factors).real, np.cumsum([d, d, g, m]), axis=1
         )
-        rate[d:], level[d:] = rate[d:] + scalars.velocity[:, driven], level[d:] + scalars.height[:, driven]
+        rate[d:, :plates] += scalars.velocity[:, driven]
+        level[d:, :plates] += scalars.height[:, driven]
         factors_of_cars.append(
             CarFactors(
                 columns=driven,
+                lines=lines,
                 integrated=car_inputs.integrated,
                 pairs=int(np.count_nonzero(car_inputs.integrated < model.pairs)),
                 plate_inputs=m * bool(np.any(held)),
@@ -338,20 +323,21 @@ class _Inputs:
     Attributes:
         poles: poles s; (n,).
         slow: mask of the poles without a static value; (n,).
-        static: kappa; (n, m).
-        held: b_z of the slow poles; (n, m).
-        both: residues r of z' of the driven plates, and e of the forces; (n, m + d + g).
-        slope: residues of the slope forces of rolling tyres; (n, m) or (n, 0).
+        static: kappa, zero for applied forces; (n, m).
+        held: b_z of the slow poles, likewise; (n, m).
+        both: residues r of z' of the driven plates and of applied forces, and e of the forces; (n, m + d + g).
+        slope: residues of the slope forces of rolling tyres; (n, plates) or (n, 0).
         integrated: indices of the integrated poles.
     """
 
     def __init__(self, model: PoleModel, columns: list[int], timestep: float | None) -> None:
-        self.poles, height = model.poles, model.height[:, columns]
+        self.poles, height = model.poles, np.hstack([model.height[:, columns], np.zeros_like(model.applied)])
         self.slow = np.abs(model.poles) < SLOWEST
         slow = self.slow[:, None]
         self.static = np.where(slow, 0.0, -height / np.where(slow, 1.0, model.poles[:, None]))
         self.held = np.where(slow, height, 0.0)
-        self.both = np.hstack([model.velocity[:, columns] - self.static, model.force, model.scalar_force])
+        rates = np.hstack([model.velocity[:, columns], model.applied]) - self.static
+        self.both = np.hstack([rates, model.force, model.scalar_force])
         self.slope = model.slope[:, columns] if model.slope.shape[1] else model.slope
         self.integrated = np.arange(len(self.poles))
         if timestep is not None:

@@ -317,12 +317,36 @@ class Fluids(NamedTuple):
     factors: Vector
 
 
+class Applied(NamedTuple):
+    """Applied forces, e elements: one force on one part each.
+
+    Attributes:
+        sites: site of the point; (e,).
+        directions: direction of the force, then of the moment, in world axes; signed; (e, 6).
+        forces: index of the force; (e,).
+        dofs: rows of element, velocity coordinate that moves its part, and its tree.
+        nodes: elements at nodes of the flexible body; (k,).
+        shapes: displacement along x of all modes, y, z, then rotation, of these nodes; (k, 6 modes).
+        torques: rows of velocity coordinate and force of the torques on joints.
+        means: constant part of each force [N or N m]; (f,).
+    """
+
+    sites: Index
+    directions: Table
+    forces: Index
+    dofs: Indices
+    nodes: Index
+    shapes: Table
+    torques: Indices
+    means: Vector
+
+
 class Layout(NamedTuple):
     """Elements of a car and their constraint rows.
 
     Attributes:
         bushings, rubber, rotations, springs, dampers, presliding, sides, controls, own, tables, modes, space,
-            rolling, round, fluids: records of the elements.
+            rolling, round, fluids, applied: records of the elements.
         joints: rows of the ideal ball joints without a law; (k, 3).
         tyres: indices among the bushings of the tyres, in the order of the plates; (t,).
         reach: nonzero columns of the rows with explicit forces: first row, number of rows (3 or 1), first column, end.
@@ -344,6 +368,7 @@ class Layout(NamedTuple):
     rolling: Rolling
     round: RoundTyres
     fluids: Fluids
+    applied: Applied
     joints: Indices
     tyres: Index
     reach: Indices

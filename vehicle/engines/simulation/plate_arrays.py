@@ -115,19 +115,29 @@ class PlateBlock:
         level: height of the plates at rest [m]; (w,).
         unit: divisor of the first row of each block.
         minimum: minimum number of rows of a block.
+        forces: function that returns the applied forces of a slice of the rows, (rows, f).
 
     Attributes:
         motion: rows of the block.
         offset: index of the first row of the block.
         height, velocity, acceleration, slope: values for the plates and for the tyre rows; (block, w).
+        force: applied forces; (block, f).
     """
 
     def __init__(
-        self, of: Callable[[slice], PlateArrays], rows: int, level: Vector, *, unit: int, minimum: int
+        self,
+        of: Callable[[slice], PlateArrays],
+        rows: int,
+        level: Vector,
+        *,
+        unit: int,
+        minimum: int,
+        forces: Callable[[slice], Vector],
     ) -> None:
-        self.of, self.rows, self.level, self.unit = of, rows, level, unit
+        self.of, self.rows, self.level, self.unit, self.forces = of, rows, level, unit, forces
         shape = min(max(BLOCK, minimum), rows), len(level)
         self.height, self.velocity, self.acceleration, self.slope = np.zeros((4, *shape))
+        self.force = np.zeros((shape[0], forces(slice(0, 1)).shape[1]))
         self._load(0)
 
     def _load(self, offset: int) -> None:
@@ -138,6 +148,7 @@ class PlateBlock:
         self.height[:size] = self.level + self.motion.displacement
         self.velocity[:size], self.acceleration[:size] = self.motion.row_velocity, self.motion.acceleration
         self.slope[:size] = self.motion.slope_velocity
+        self.force[:size] = self.forces(slice(offset, self.end))
 
     def reach(self, first: int, last: int) -> int:
         """Make the block contain the rows first to last, at most `minimum` - `unit` rows, and return its offset."""

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.simulation.applied_forces import applied_record
 from vehicle.engines.simulation.damper_rows import damper_rows, presliding_rows, side_forces, whole_numbers
 from vehicle.engines.simulation.element_records import (
     Bushings,
@@ -148,6 +149,7 @@ def read_layout(model: mujoco.MjModel) -> Layout:
             places=whole_numbers([model.joint(name).qposadr[0] for _, name in moved]),
             factors=np.zeros(0),
         ),
+        applied=applied_record(model, [_above(model, body) for body in range(model.nbody)], modes),
         joints=_triples(rows_of([name for name in balls if name not in names])),
         tyres=whole_numbers(sorted((index for index in plates if plates[index] >= 0), key=lambda index: plates[index])),
         reach=whole_numbers(nonzero, 4),

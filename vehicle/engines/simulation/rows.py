@@ -285,13 +285,16 @@ def _at_rest(layout: Layout) -> State:
     shapes |= {"stretch": layout.tables.at.shape, "deflection": (2, layout.modes.mode_shapes.shape[1])}
     rolling = len(layout.rolling.tyres)
     shapes |= {"heading": (2, rolling), "turning": (rolling, 6), "slope": (rolling, 4)}
-    shapes |= {"push": (layout.velocity_count if rolling else 0,)}
+    applied = [len(layout.applied.forces), len(layout.applied.torques)]
+    shapes |= {"push": (layout.velocity_count if rolling or any(applied) else 0,)}
+    shapes |= {"applied": layout.applied.means.shape}
     shapes |= {"contact": (2, len(layout.bushings.one_sided)), "modal": (2, layout.modes.size)}
     if layout.space.mass.size:
         shapes["modal"] = (2, layout.space.mass.size)
     shapes |= dict.fromkeys(("modal_force", "modal_rate", "modal_pull"), (layout.space.spread.shape[1],))
     state = State(**{name: np.zeros(shapes[name]) for name in State._fields})
     state.last_time[0] = -1.0
+    state.applied[:] = layout.applied.means
     state.coefficient[:] = layout.dampers.laws["viscous_damping"]
     state.past[:] = layout.controls.laws["softest"][:, None]
     return state

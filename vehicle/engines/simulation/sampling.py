@@ -10,7 +10,7 @@ from vehicle.engines.simulation.element_records import Index, Indices, ModalSpac
 
 
 class Plates(NamedTuple):
-    """Motion of the plates over the steps (steps, t), and its destination arrays."""
+    """Motion of the plates over the steps (steps, t), applied forces (steps, f), and their destination arrays."""
 
     height: Table
     velocity: Table
@@ -21,6 +21,8 @@ class Plates(NamedTuple):
     row_velocity: Table
     row_acceleration: Table
     row_slope: Vector
+    force: Table
+    applied: Vector
 
 
 class Sources(NamedTuple):

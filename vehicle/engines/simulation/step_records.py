@@ -68,7 +68,7 @@ class State(NamedTuple):
         heading: heading of the rolling wheels [rad], present and previous; (2, w).
         turning: angular velocity of the hubs [rad/s], present x, y, z and previous; (w, 6).
         slope: explicit force along x [N] and moment [N m] on the hubs; (w, 4).
-        push: generalised force of all explicit forces of a rolling car; (nv,), empty on a shaker.
+        push: generalised force of all explicit and applied forces; (nv,), empty for a car on a shaker without them.
         contact: elastic force of one-sided elements [N], and r' at the last evaluation [m/s]; (2, k).
         rubber: forces of the Jenkins elements of the bushings [N] and their displacements [m], at the present time and
             then at the previous time; (4, m).
@@ -79,6 +79,7 @@ class State(NamedTuple):
         past: memory of the controlled dampers, see `vehicle.model.laws.control_laws`; (k, ...).
         steps: index of the present step; (1,).
         speeds: velocities [m/s] of the dampers by address at the present time and at the last one; (k, 2).
+        applied: applied forces at the present time, averaged over three steps [N or N m]; (f,).
     """
 
     plate_velocity: Table
@@ -116,6 +117,7 @@ class State(NamedTuple):
     past: Table
     steps: Vector
     speeds: Table
+    applied: Vector
 
 
 class SparseRows(NamedTuple):

@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.simulation.applied_forces import averaged_forces
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.compiled import CompiledRows, SteppingLoop
@@ -75,7 +76,14 @@ def simulate(
     level = data.mocap_pos[mocap, 2].copy()
     unit = every * pose_every
     motion = partial(PlateArrays.of, signal, step, count, car.vehicle.wheels, AHEAD * every)
-    block = PlateBlock(motion, count + 1 + AHEAD * every, level, unit=unit, minimum=(CHUNK + 1) * every + unit)
+    block = PlateBlock(
+        motion,
+        count + 1 + AHEAD * every,
+        level,
+        unit=unit,
+        minimum=(CHUNK + 1) * every + unit,
+        forces=partial(averaged_forces, car.vehicle.composition.forces, step),
+    )
     plates = Plates(
         height=block.height,
         velocity=block.velocity,
@@ -86,6 +94,8 @@ def simulate(
         row_velocity=rows.state.plate_velocity,
         row_acceleration=rows.state.plate_acceleration,
         row_slope=rows.state.slope_velocity,
+        force=block.force,
+        applied=rows.state.applied,
     )
     compiled = CompiledRows(rows)
     recorder = Recorder(

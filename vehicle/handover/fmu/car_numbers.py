@@ -124,7 +124,7 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
                 f"skyhook, and in the other simulator {damper.name}_control = 0 and {damper.name}_coefficient_command "
                 "from the controller"
             )
-    model, wheels = car.poles, car.poles.matrices.system.inputs
+    model, wheels = car.poles.without_forces(), car.poles.matrices.system.inputs
     columns, rolling = list(range(len(wheels))), model.slope.shape[1] > 0
     loads, m = car.static.tyre_load if rolling else None, len(wheels)
     (factors,) = car_factors([model], step, columns, exact=True, present_load=rolling)

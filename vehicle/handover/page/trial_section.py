@@ -40,9 +40,12 @@ def _numbers(run: FinishedRun) -> str:
         run: the run.
 
     Raises:
-        ConfigurationError: see `trial_data`; the road is seen through cams; a moving plate is not recorded.
+        ConfigurationError: see `trial_data`; the car has applied forces; the road is seen through cams; a moving plate
+            is not recorded.
         KeyError: the summary is that of an older version.
     """
+    if run.car.vehicle.composition.forces:
+        raise ConfigurationError("the car in the browser has no forces of powertrain and wheels")
     begin, _ = run.summary.get("evaluated_s") or (0.0, 0.0)
     road = run.summary["input"].get("road") or {}
     if road.get("tyre_contact"):

@@ -8,12 +8,14 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.errors import DataError
 from vehicle.model.assembly.element_numbers import (
     TURNING,
     connection_name,
     connection_numbers,
     damper_numbers,
     fluid_name,
+    force_fields,
     hold_numbers,
     joint_numbers,
     mass_numbers,
@@ -32,6 +34,7 @@ from vehicle.model.parameters.composition import (
     PlacedWheel,
 )
 from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 
 Vector = npt.NDArray[np.float64]
@@ -258,6 +261,31 @@ class ElementBuilder:
     def add_hold(self) -> None:
         """Write the constants of the hold of the course of a rolling car, which acts on the trimmed body."""
         self._numerics(hold_numbers(self.vehicle))
+
+    def add_force(self, force: PlacedForce) -> None:
+        """Add the site of an applied force on each of its parts, and its directions; the callback of a run applies it.
+
+        Raises:
+            DataError: a moment acts on a flexible body at a node without rotations.
+        """
+        self._numerics(force_fields(force))
+        for end, part in (("on", force.on), ("against", force.against)):
+            name = f"force/{force.name}/{end}"
+            if part:
+                self._site(name, part, force.at)
+            if part == "body":
+                self._node_shape(name, force.at)
+                self._node_rotation(name, force.at)
+                if (
+                    any(force.moment)
+                    and self.vehicle.body.flexible
+                    and force.at in self.nodes
+                    and (self.superelement.rotations.get(self.nodes[force.at]) is None)
+                ):
+                    raise DataError(
+                        f"{force.path}: a moment on the body, whose model has no rotations at {list(force.at)} m; "
+                        "apply two forces with a distance, or a body model with rotations at this node"
+                    )
 
     def add_output(self, output: PlacedOutput) -> None:
         """Add site and acceleration sensor of an output point."""

@@ -20,9 +20,16 @@ from vehicle.model.laws import control_laws
 from vehicle.model.laws.damper import actuator_parameters, damper_curve, pack
 from vehicle.model.laws.presliding import presliding_elements
 from vehicle.model.parameters.body import TrimmedBody
-from vehicle.model.parameters.composition import JointSpring, PlacedConnection, PlacedDamper, PlacedPart, PlacedSpring
+from vehicle.model.parameters.composition import (
+    JointSpring,
+    PlacedConnection,
+    PlacedDamper,
+    PlacedPart,
+    PlacedSpring,
+)
 from vehicle.model.parameters.force_elements import Damper, Tyre
 from vehicle.model.parameters.force_table import ForceTable
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.names import AXES
 
@@ -31,6 +38,9 @@ Numbers = dict[str, Vector]
 
 FLUID, DECOUPLER = "fluid/", "decoupler/"
 """Beginnings of the names of the fluids of hydromounts, and of their decouplers, in the model."""
+
+FORCE, TORQUE = "force/", "torque/"
+"""Beginnings of the names of the custom fields of a force at a point and of a torque on a joint."""
 
 TURNING, AVERAGED = 12, 13
 """Indices of the rotational stiffness, and of the mark of an averaged stiffness, in the field of a law along three
@@ -206,3 +216,10 @@ def _table(name: str, table: ForceTable | None, local: float = np.inf) -> Number
         return {}
     gives = [x + force / local for x, force in zip(table.displacement, table.force, strict=True)]
     return {f"table/{name}": np.array([*gives, *table.force])}
+
+
+def force_fields(force: PlacedForce) -> Numbers:
+    """Return the custom field of a force in its model: directions of force and moment, and the mean."""
+    if force.joint:
+        return {f"{TORQUE}{force.name}/{force.joint}": np.array([force.mean])}
+    return {f"{FORCE}{force.name}": np.array([*force.force, *force.moment, force.mean])}

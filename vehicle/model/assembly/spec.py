@@ -82,6 +82,8 @@ def assemble_on(vehicle: Vehicle, superelement: Superelement) -> Assembly:
     for damper in car.dampers:
         builder.add_damper(damper)
     builder.add_hold()
+    for force in car.forces:
+        builder.add_force(force)
     for output in car.outputs:
         builder.add_output(output)
     return Assembly(spec=spec, vehicle=vehicle, superelement=superelement, origins=builder.origins)

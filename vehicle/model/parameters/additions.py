@@ -50,7 +50,7 @@ def law_kind(table: Mapping[str, Any], *, plate: bool = False) -> type[LinearBus
     return Hydromount if {*MAXWELL, *TRACK, *DECOUPLER} & set(table) else Tyre if plate else Bushing
 
 
-def _point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:
+def named_point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> tuple[Point, str]:
     """Return the point of an element [m], given by its name or by coordinates, and the name of the point."""
     name, value = path.partition(".")[2], table.get("at")
     if not NAME_PATTERN.fullmatch(name):
@@ -65,7 +65,7 @@ def _point(path: str, table: Mapping[str, Any], points: Mapping[str, Point]) -> 
     return point_of(f"{path}.at", value), name
 
 
-def _part_name(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
+def named_part(path: str, table: Mapping[str, Any], key: str, names: set[str]) -> str:
     """Return the name of a part that a table gives under a key."""
     if key not in table:
         raise ConfigurationError(f"{path}.{key}: missing; set the name of a part, as body")
@@ -90,11 +90,11 @@ def further_connection(name: str, value: Any, names: set[str], points: Mapping[s
     path = f"connection.{name}"
     table = convert(dict, value, path)
     law = {key: inner for key, inner in table.items() if key not in CONNECTION_KEYS}
-    at, point = _point(path, table, points)
+    at, point = named_point(path, table, points)
     return PlacedConnection(
         name=name,
-        moving=_part_name(path, table, "moving", names),
-        carrier=_part_name(path, table, "carrier", names),
+        moving=named_part(path, table, "moving", names),
+        carrier=named_part(path, table, "carrier", names),
         at=at,
         point=point,
         law=build(law_kind(law), law, path) if law else None,
@@ -132,8 +132,8 @@ def further_output(name: str, value: Any, names: set[str], points: Mapping[str, 
     for key in table:
         if key not in ("on", "at"):
             raise ConfigurationError(f"{path}.{key}: unknown parameter; must be on or at")
-    at, point = _point(path, table, points)
-    return PlacedOutput(name=name, on=_part_name(path, table, "on", names), at=at, point=point)
+    at, point = named_point(path, table, points)
+    return PlacedOutput(name=name, on=named_part(path, table, "on", names), at=at, point=point)
 
 
 def new_loads(overrides: Iterable[str]) -> list[str]:
@@ -156,10 +156,10 @@ def placed_load(name: str, value: Any, names: set[str], points: Mapping[str, Poi
     """
     path = f"load.{name}"
     table = convert(dict, value, path)
-    at, _ = _point(path, table, points)
+    at, _ = named_point(path, table, points)
     return PlacedPart(
         name=f"load_{name}",
-        parent=_part_name(path, {"on": "body", **table}, "on", names),
+        parent=named_part(path, {"on": "body", **table}, "on", names),
         cog=at,
         numbers=build(Load, {key: inner for key, inner in table.items() if key not in ("on", "at")}, path),
         side=1.0,

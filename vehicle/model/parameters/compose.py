@@ -9,7 +9,10 @@ from typing import Any
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.additions import further_connection, further_output, law_kind, placed_load, point_of
+from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.composition import Composition
+from vehicle.model.parameters.driving import Crank, crank_rpm
+from vehicle.model.parameters.further_forces import force_targets, further_force, wheel_forces
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
 from vehicle.model.parameters.load_mass import Load
@@ -32,7 +35,7 @@ from vehicle.model.parameters.references import (
 )
 from vehicle.model.parameters.toml_file import convert
 
-NAMED_TABLES = ("hardpoints", "connection", "outputs", "alias", "load")
+NAMED_TABLES = ("hardpoints", "connection", "outputs", "alias", "load", "force")
 """Tables of a vehicle file that are not instances and contain tables or points by name."""
 
 
@@ -67,6 +70,10 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     further = [further_output(name, entry, names, points) for name, entry in tables["outputs"].items()]
     carriers = {"body", *(part.name for part in parts if part.seat is None)}
     loads = [placed_load(name, entry, carriers, points) for name, entry in tables["load"].items()]
+    body_cog: Point = convert(Point, table["body"]["cog"], "body.cog")
+    targets = force_targets(parts, points, wheels, connections, crank_rpm(table), body_cog)
+    forces = wheel_forces(car, wheels, targets)
+    forces += [further_force(name, entry, targets) for name, entry in tables["force"].items()]
     composition = Composition(
         parts=(*parts, *loads),
         connections=tuple(connections),
@@ -75,6 +82,8 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         dampers=tuple(dampers),
         outputs=tuple(placed_outputs(car, further)),
         wheels=tuple(wheels),
+        forces=tuple(forces),
+        speeds=targets.speeds,
         points=points,
         kinds=parameter_kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},
@@ -111,4 +120,6 @@ def parameter_kinds(car: Mapping[str, Instance], table: Mapping[str, Any]) -> di
         f"connection.{name}": law_kind(entry) for name, entry in table.get("connection", {}).items()
     }
     kinds |= {f"load.{name}": Load for name in table.get("load", {})}
+    kinds |= {f"force.{name}": AppliedForce for name in table.get("force", {})}
+    kinds |= {"crank": Crank} if "crank" in table else {}
     return kinds | element_kinds(car)

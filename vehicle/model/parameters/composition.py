@@ -25,6 +25,7 @@ from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.load_mass import Load
 from vehicle.model.parameters.paths import value_at
+from vehicle.model.parameters.placed_force import PlacedForce
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.rigid_part import Part
 from vehicle.model.parameters.toml_file import build
@@ -278,7 +279,8 @@ class Composition:
     """All elements of a car other than its trimmed body, in the order of the model.
 
     Attributes:
-        parts, connections, springs, joint_springs, dampers, outputs, wheels: elements, parents before children.
+        parts, connections, springs, joint_springs, dampers, outputs, wheels, forces: elements, parents before children.
+        speeds: angular speed [rad/s] of "crank" and of each wheel, as "wheel_fr"; 0 at rest.
         points: hardpoints by name, as "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
         meanings: meaning of each hardpoint, by its path.
@@ -291,6 +293,8 @@ class Composition:
     dampers: tuple[PlacedDamper, ...] = ()
     outputs: tuple[PlacedOutput, ...] = ()
     wheels: tuple[PlacedWheel, ...] = ()
+    forces: tuple[PlacedForce, ...] = ()
+    speeds: Mapping[str, float] = field(default_factory=dict)
     points: Mapping[str, Point] = field(default_factory=dict)
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)
@@ -325,6 +329,24 @@ class Composition:
                 left -= chosen
         return None if left else replace(self, **updated)
 
+    def turning(self, name: str | None = None) -> tuple[str, float]:
+        """Return name and angular speed [rad/s] of what turns.
+
+        Args:
+            name: crank, a wheel, or a force with a frequency; by default the angle of the first force.
+
+        Raises:
+            ConfigurationError: nothing of this name turns.
+        """
+        by_force = {force.name: force.speed for force in self.forces if force.law.angle is None}
+        speeds = {each: speed for each, speed in {**self.speeds, **by_force}.items() if speed > 0.0}
+        first = next((force.law.angle or force.name for force in self.forces if force.harmonics), None)
+        chosen = name or first or next(iter(speeds), None)
+        if chosen not in speeds:
+            message = f"these turn: {', '.join(speeds)}" if speeds else "nothing turns: drive, or set crank.rpm"
+            raise ConfigurationError(f"angle: found {chosen!r}, which does not turn; {message}")
+        return chosen, speeds[chosen]
+
     def attachments(self) -> dict[str, Point]:
         """Return the points [m] of the trimmed body at which a force acts or an output is measured, by name."""
         points = {link.point: link.at for link in self.connections if "body" in (link.moving, link.carrier)}
@@ -339,4 +361,6 @@ class Composition:
         points |= {
             part.name: part.seat for part in self.parts if part.seat is not None and part.seat not in points.values()
         }
-        return points | {output.point: output.at for output in self.outputs if output.on == "body"}
+        points |= {output.point: output.at for output in self.outputs if output.on == "body"}
+        on_body = [force for force in self.forces if "body" in (force.on, force.against)]
+        return points | {f"force/{force.name}": force.at for force in on_body if force.at not in points.values()}

@@ -57,6 +57,20 @@ class Driving(Validated):
 STANDING = Driving()
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Crank(Validated):
+    """Speed of the crankshaft, for the forces over its angle."""
+
+    rpm: float = quantity(
+        "1/min", "speed of the crankshaft", at_least=300.0, at_most=10000.0, why="engines idle at 600 to 1000"
+    )
+
+
+def crank_rpm(table: Mapping[str, Any]) -> float:
+    """Return the speed of the crankshaft of a vehicle file [1/min]; 0 if it has none. Errors: see `build`."""
+    return build(Crank, convert(dict, table["crank"], "crank"), "crank").rpm if "crank" in table else 0.0
+
+
 def tyre_words(cars: Iterable[Driving]) -> str:
     """Return the state of the tyres in one or several runs: "standing", "rolling at 50, 80 and 120 km/h".
 

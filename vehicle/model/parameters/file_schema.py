@@ -13,8 +13,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.body import TrimmedBody
-from vehicle.model.parameters.driving import Driving
+from vehicle.model.parameters.driving import Crank, Driving
 from vehicle.model.parameters.force_elements import (
     DECOUPLER,
     MAXWELL,
@@ -38,12 +39,13 @@ from vehicle.model.parameters.template import SHIPPED, read_template
 from vehicle.model.parameters.template_file import LISTS, TEMPLATE_KEYS, USE_KEYS, read_template_file
 from vehicle.model.parameters.topology import RolePart, SteeringAxis, Template, Wheel
 from vehicle.model.parameters.vehicle import Head, Solver
+from vehicle.model.parameters.wheel_forces import Imbalance
 from vehicle.names import SIDE_SIGN
 
 Schema = dict[str, Any]
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
-KINDS = (Part, Bushing, Tyre, Hydromount, MainSpring, SlideSpring, Stabilizer, Damper)
+KINDS = (Part, Bushing, Tyre, Hydromount, MainSpring, SlideSpring, Stabilizer, Damper, Imbalance)
 """Parameter classes of the tables of an instance."""
 
 TEXT: Schema = {"type": "string"}
@@ -162,11 +164,20 @@ def _vehicle(*, complete: bool) -> Schema:
         "hardpoints": _mapping({"$ref": "#/definitions/point"}),
         "outputs": _mapping(_object({"on": PART, **at}, ["on", "at"] if complete else [])),
         "connection": _mapping(_object(connection | laws, ["moving", "carrier", "at"] if complete else [])),
+        "crank": _table(Crank, complete),
+        "force": _mapping(_object(_force_places() | _table(AppliedForce)["properties"])),
         "load": _mapping(_object({**_table(Load)["properties"], "on": PART, **at}, ["mass", "at"] if complete else [])),
         "alias": _mapping({**TEXT, "description": "path of a parameter"}),
     }
     schema = _object(properties, ["name", "gravity", "body", "solver"] if complete else [])
     return {**schema, "additionalProperties": {"$ref": f"#/definitions/{'group' if complete else 'changed_group'}"}}
+
+
+def _force_places() -> Schema:
+    """Return the schema of the keys that place a force of a vehicle file."""
+    directions = {key: {**_vector(-1e6, 1e6), "description": f"direction of the {key}"} for key in ("force", "moment")}
+    parts = {"on": PART, "against": {**TEXT, "description": "part with the reaction"}}
+    return {**parts, "at": PLACE, **directions, "joint": {**TEXT, "description": "joint with a torque, in place of on"}}
 
 
 def _instance(file: Path, options: Iterable[str]) -> Schema:
@@ -185,6 +196,7 @@ def _tables(template: Template, required: Template | None) -> Schema:
     whole = required is not None
     elements: list[tuple[str, type]] = [(spring.name, spring_kind(template, spring)) for spring in template.spring]
     elements += [(damper.name, Damper) for damper in template.damper]
+    elements += [("imbalance", Imbalance)] if template.wheel is not None else []
     return _object(
         {
             "hardpoints": _object(points, required.hardpoints if required else ()),

@@ -135,6 +135,10 @@ class Tyre(LinearBushing):
         "m", "pneumatic trail, by which the side force acts behind the middle of the contact patch", at_least=0.0,
         at_most=0.1, why="a third of half the contact length by the brush model, 0.02 to 0.04 m", default=0.0,
     )  # fmt: skip
+    rolling_radius: float | None = quantity(
+        "m", "effective rolling radius, for the angle of forces that turn with the wheel; the height of its centre by "
+        "default, which is 3 to 5 % less", above=0.1, at_most=1.0, default=None,
+    )  # fmt: skip
 
 
 TRACKED: dict[str, Any] = {"at_least": 0.01, "at_most": 1e4, "why": "mount tracks have 1 to 300 kg at the rubber"}

@@ -18,6 +18,7 @@ from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template import read_template
 from vehicle.model.parameters.toml_file import build, convert, nearest
 from vehicle.model.parameters.topology import Template
+from vehicle.model.parameters.wheel_forces import WHEEL_FORCES
 from vehicle.names import SIDE_SIGN
 
 T = TypeVar("T")
@@ -34,10 +35,12 @@ VEHICLE_KEYS = (
     "body",
     "solver",
     "driving",
+    "crank",
     "hardpoints",
     "outputs",
     "connection",
     "load",
+    "force",
     "alias",
 )
 """Keys of a vehicle file that are not instances."""
@@ -77,6 +80,7 @@ class Instance:
             "ports": [*template.ports, "body"],
         }
         elements = [*(spring.name for spring in template.spring), *(damper.name for damper in template.damper)]
+        elements += WHEEL_FORCES if template.wheel is not None else ()
         sides = {f"{side}.": self.numbers.get(side, {}) for side in SIDE_SIGN}
         for prefix, value in (("", self.numbers), *sides.items()):
             table = convert(dict, value, f"{self.name}.{prefix}".rstrip("."))

@@ -17,6 +17,7 @@ from vehicle.model.parameters.instance import instances
 from vehicle.model.parameters.paths import is_zero_vector
 from vehicle.model.parameters.quantity import type_hints
 from vehicle.model.parameters.semi_active_damper import SemiActiveDamper
+from vehicle.model.parameters.wheel_forces import Imbalance
 from vehicle.names import AXES, SIDE_SIGN
 
 WITH_FILES = (Damper, ForceTable, MainSpring, Bushing)
@@ -42,6 +43,7 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
             "shaker_wheel",
             "shaker_wheel_in_source",
             "solver.timestep",
+            "crank.rpm",
             *(f"driving.{key}" for key in _keys(Driving, everything=False)),
             *(f"body.{key}" for key in _keys(TrimmedBody, everything=False) if key != "modes"),
         ],
@@ -51,8 +53,10 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     # An ideal joint becomes a bushing by numbers.
     bushings = [f"{i.name}.bushings.{link.name}" for i in car.values() for link in i.template.connection]
     ideal = dict.fromkeys((path for path in bushings if path not in kinds), Bushing)
-    every = {**kinds, **ideal}
-    paths += [f"{path}.{key}" for path in ideal for key in _keys(Bushing, everything=True)]
+    balanced = [f"{i.name}.imbalance" for i in car.values() if i.template.wheel is not None]
+    new: dict[str, type] = {**ideal, **dict.fromkeys((path for path in balanced if path not in kinds), Imbalance)}
+    every = {**kinds, **new}
+    paths += [f"{path}.{key}" for path, parameters in new.items() for key in _keys(parameters, everything=True)]
     for path, parameters in every.items():
         # A bushing becomes a hydromount by the numbers of its branch.
         paths += [f"{path}.{key}" for key in _keys(parameters, everything=False)]

@@ -101,7 +101,8 @@ def require_sound(car: Composition) -> None:
     parts, links = [element.name for element in car.parts], [element.name for element in car.connections]
     laws, outputs = [element.name for element in car.springs], [element.name for element in car.outputs]
     laws += [element.name for element in car.dampers]
-    for names in (parts, joints, links, laws, outputs):
+    forces = [element.name for element in car.forces]
+    for names in (parts, joints, links, laws, outputs, forces):
         for name, other in itertools.pairwise(sorted(names)):
             if name == other:
                 raise ConfigurationError(

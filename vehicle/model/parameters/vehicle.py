@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from vehicle.errors import ConfigurationError
-from vehicle.model.parameters.additions import new_loads
 from vehicle.model.parameters.base_car import vehicle_table
 from vehicle.model.parameters.body import TrimmedBody, require_inertia_table
 from vehicle.model.parameters.compose import compose
@@ -16,6 +15,7 @@ from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.curves import with_curve_files
 from vehicle.model.parameters.driving import Driving, driving_of
 from vehicle.model.parameters.force_elements import Damper
+from vehicle.model.parameters.further_forces import new_tables
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.plausible import require_plausible, require_rolling
@@ -245,7 +245,7 @@ class Vehicle:
                 return field_quantity(kinds[sideless], inner)
         keys_of_point = path.removesuffix(".x").removesuffix(".y").removesuffix(".z").split(".")
         if "hardpoints" in keys_of_point[-2:-1] or (
-            keys_of_point[0] in ("outputs", "connection", "load") and keys_of_point[-1] == "at"
+            keys_of_point[0] in ("outputs", "connection", "load", "force") and keys_of_point[-1] == "at"
         ):
             meaning = self.composition.meanings.get(".".join(keys_of_point), "point of the car")
             return {"unit": "m", "meaning": meaning, "length": len(AXES)}
@@ -320,7 +320,7 @@ def varied_file(table: Mapping[str, Any], overrides: Iterable[str], folder: Path
         ConfigurationError: an override is wrong.
     """
     texts = list(overrides)
-    merged = varied_table(table, texts, lambda: [*optional_paths(table, folder), *new_loads(texts)])
+    merged = varied_table(table, texts, lambda: [*optional_paths(table, folder), *new_tables(texts)])
     if "/" in (name := _body_file(merged)):
         model_file = Path(name).expanduser()
         if not model_file.is_absolute():  # workers of a sweep may run elsewhere

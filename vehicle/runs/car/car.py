@@ -22,6 +22,7 @@ from vehicle.engines.linear.step_error import accurate_step, require_accurate_st
 from vehicle.engines.linear.variant_matrices import CarVariant, VariantTerms
 from vehicle.engines.reduced.pole_model import PoleModel, pole_model
 from vehicle.engines.reduced.quadratic_forms import QuadraticForms, quadratic_forms
+from vehicle.engines.simulation.applied_forces import require_step_of_forces, step_for
 from vehicle.engines.simulation.car_model import CarModel, build_model
 from vehicle.engines.simulation.static_trim import StaticTrim
 from vehicle.engines.simulation.stepping import Progress
@@ -30,7 +31,7 @@ from vehicle.handed_down import HANDED
 from vehicle.model.flexbody.body_model import body_model
 from vehicle.model.flexbody.superelement import Superelement
 from vehicle.model.laws.controller_fmu import require_controllers
-from vehicle.model.parameters.additions import new_loads
+from vehicle.model.parameters.further_forces import new_tables
 from vehicle.model.parameters.optional_keys import optional_paths
 from vehicle.model.parameters.parameter_list import parameter_at
 from vehicle.model.parameters.paths import assignments
@@ -127,8 +128,7 @@ class Car:
         car._base, car._step = self, tuple(more)
         return car
 
-    # Made by the first variant of this car: the reference back to the car is a cycle, and the thousands of cars of a
-    # sweep, a megabyte each, must be freed without waiting for the garbage collector.
+    # Made by the first variant: a cycle, and the cars of a sweep must be freed without the garbage collector.
     @cached_property
     def _variants(self) -> VehicleVariants:
         return VehicleVariants(self.vehicle, self._home, self._anew)
@@ -197,7 +197,7 @@ class Car:
         """
         from vehicle.runs.car.car_data import source_file
 
-        return parameter_at(self.vehicle, path, source_file(self), lambda: [*self._optional, *new_loads([path])])
+        return parameter_at(self.vehicle, path, source_file(self), lambda: [*self._optional, *new_tables([path])])
 
     @cached_property
     def _optional(self) -> list[str]:
@@ -239,8 +239,7 @@ class Car:
         """Mass, damping and stiffness matrices of the same model in its design position."""
         if self._from_terms:
             return self._from_terms.matrices
-        # Chosen by the car, not by the functions compiled so far: equal cars have bitwise identical matrices.
-        return car_matrices(self.model.model, self.model.static)
+        return car_matrices(self.model.model, self.model.static, self.vehicle.composition.forces)
 
     @property
     def geometry(self) -> Car:
@@ -305,13 +304,15 @@ class Car:
         Raises:
             ConfigurationError: the given step is too large, or no step is small enough.
         """
+        forces = self.vehicle.composition.forces
         if self.vehicle.solver.timestep is not None and sets_step(self.origin["file"], self.overrides):
             if "mujoco" not in self._checked:
                 require_accurate_step(self.model, self.matrices)
+                require_step_of_forces(forces, self.vehicle.solver.step)
                 self._checked.add("mujoco")
             return self
         if self._stepped is None:
-            step = accurate_step(self.model, self.matrices)
+            step = step_for(forces, accurate_step(self.model, self.matrices))
             if step == self.vehicle.solver.timestep:
                 self._checked.add("mujoco")
                 return self
@@ -381,11 +382,10 @@ class Car:
             SimulationError: the run could not be carried through.
         """
         if isinstance(source, Road):
-            drive = source.under(self.vehicle, self.overrides)
-            signal = drive.signal()
+            signal = (drive := source.under(self.vehicle, self.overrides)).signal()
             start = evaluation_start({drive.name: signal.duration}, skip, drive.skip)
-            car = self.with_(drive.overrides) if drive.overrides else self
-            run = car.run(replace(signal, source=drive.name), progress, engine=engine, channels=channels)
+            car, named = self.with_(drive.overrides) if drive.overrides else self, replace(signal, source=drive.name)
+            run = car.run(named, progress, engine=engine, channels=channels)
             return replace(run, skip=start, road=drive.summary(signal))
         wheel = self.vehicle.shaker_wheel
         signal = source if isinstance(source, Signal) else read_signal(find_input(source), wheel=wheel)

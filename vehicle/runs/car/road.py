@@ -13,7 +13,7 @@ from vehicle.model.parameters.vehicle import Vehicle
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.obstacle import is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
-from vehicle.signals.excitation.road_drive import RoadDrive
+from vehicle.signals.excitation.road_drive import LEVEL, RoadDrive
 from vehicle.signals.excitation.road_settings import RoadSettings, with_settings
 from vehicle.signals.records.choice import Choice
 
@@ -27,8 +27,9 @@ class Road(RoadSettings):
     """Road for the wheels of any car, as road("C", 80); `Car.run` and `sweep` take it.
 
     Attributes:
-        road: class of ISO 8608, "A" to "H"; an obstacle on a level road, as "cleat:20x50" (`Obstacle`); or the file
-            of a measured profile (columns distance, left, right [m]; OpenCRG; ERD), or of heights over time.
+        road: class of ISO 8608, "A" to "H"; an obstacle on a level road, as "cleat:20x50" (`Obstacle`); "level", for
+            a car that its own forces shake; or the file of a measured profile (columns distance, left, right [m];
+            OpenCRG; ERD), or of heights over time.
         speed: speed of the car [km/h]; "channel:NAME" for heights over time that were recorded with their speed.
         choice: channels of heights over time, their units and excerpt.
     """
@@ -60,6 +61,11 @@ class Road(RoadSettings):
             ConfigurationError: a value out of range or of another type of road, or a car that cannot roll.
         """
         # A single letter is a class, even if a file of this name exists.
+        if self.road == LEVEL and not vehicle.composition.forces:
+            raise ConfigurationError(
+                f"--road {LEVEL}: moves no plate, and {vehicle.name} has no force that shakes it; add one, as --set "
+                "front.imbalance.mass=0.02 --set front.imbalance.radius=0.2, or a table [force.NAME]"
+            )
         road = self.file or (str(self.road).upper() if len(str(self.road)) == 1 else str(self.road))
         driving = self._driving(vehicle, overrides)
         if isinstance(self.speed, str):

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from vehicle.drawing.notebook.cards import run_card
 from vehicle.drawing.notebook.frames import recording_dataset, recording_frame
+from vehicle.drawing.notebook.run_orders import RunOrders, named_orders
 from vehicle.drawing.notebook.run_response import RunResponse, of_wheel, require_moving, responses
 from vehicle.drawing.notebook.run_spectra import RunSpectra, with_display
 from vehicle.engines.simulation.recording import Recording
@@ -23,6 +24,7 @@ from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.analysis.ride_comfort import RunComfort, run_comfort
 from vehicle.signals.analysis.slip import first_slip, slip_share
 from vehicle.signals.excitation.signal import Signal
@@ -202,6 +204,31 @@ class Run:
             band=self.signal.band(COMFORT_BAND),
             point=point.replace("_", " "),
         )
+
+    def orders(
+        self,
+        channels: str | Sequence[str] | None = None,
+        *,
+        angle: str | None = None,
+        orders: Sequence[float] = (1.0, 2.0, 3.0),
+    ) -> RunOrders:
+        """Return complex amplitudes at orders of a turning part over the evaluated span, with their standard errors.
+
+        Args:
+            channels: names or words, as "seat rail z"; all acceleration channels by default.
+            angle: "crank", a wheel, as "wheel_fr", or the name of a force with a frequency; by default that of the
+                first applied force.
+            orders: multiples of its frequency.
+
+        Raises:
+            ConfigurationError: nothing of this name turns.
+            DataError: the record is too short, or an order above half its rate.
+        """
+        names = self._accelerations(None) if channels is None else self._named(channels)
+        angle, speed = self.car.vehicle.composition.turning(angle)
+        histories = np.array([self.recording[name] for name in names])
+        lines = order_lines(self.time, histories, speed / (2.0 * np.pi), orders, begin=self.skip)
+        return named_orders(lines, names, tuple(self.recording.units[name] for name in names), angle)
 
     def psd(self, channels: str | Sequence[str] | None = None) -> RunSpectra:
         """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.

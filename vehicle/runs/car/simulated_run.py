@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
+from vehicle.engines.simulation.applied_forces import require_resolved
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress, simulate
@@ -48,6 +49,7 @@ def simulated_run(
         )
     car.vehicle.require_channels(channels or (), (*defaults, *car.vehicle.requested_channels))
     car.vehicle.require_wheels(signal.wheels)
+    require_resolved(car.vehicle.composition.forces, car.vehicle.solver.record_rate)
     names = defaults if channels is None else channels
     more = [name for name in names if name not in defaults]
     loads = [name for name in more if name in car.vehicle.load_channels]

@@ -23,6 +23,7 @@ from vehicle.runs.output.folder import write_json, write_text, write_whole
 from vehicle.runs.output.own_files import parameters_text, write_own_files
 from vehicle.runs.output.run_comfort import comfort_notices, comfort_values, seat_values
 from vehicle.runs.output.run_densities import write_densities
+from vehicle.runs.output.run_forces import force_values
 from vehicle.runs.output.run_obstacle import obstacle_values
 from vehicle.signals.analysis.dependence import DependentInputsError, common_motions, what_moves
 from vehicle.signals.analysis.frf import FrequencyResponse
@@ -268,6 +269,7 @@ def summarise(
         "comfort": comfort_values(run),
         "seat_value": seat_values(run),
         "obstacle": obstacle_values(run),
+        **force_values(run),
         "static": {
             "tyre_load_n": static.tyre_load,
             "rear_support_load_n": {

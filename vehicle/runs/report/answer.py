@@ -104,6 +104,8 @@ def _of_one(run: FinishedRun, modes: Modes) -> Markup:
 def _input_words(run: FinishedRun) -> str:
     """Return the input in words: the road with its speed, or the file with its level."""
     road, excitation = run.summary["input"].get("road") or {}, run.summary["input"]
+    if road.get("level"):
+        return f"a level road at {road['speed_kmh']:g} km/h"
     if road.get("class"):
         return f"a road of class {road['class']} at {road['speed_kmh']:g} km/h"
     if road.get("speed_kmh"):

@@ -13,6 +13,7 @@ from vehicle.names import point_words, side_of
 from vehicle.runs.report.body_modes import body_modes
 from vehicle.runs.report.comfort_class import CREST_FACTOR_LIMIT, reactions
 from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.order_words import order_sentences
 from vehicle.signals.records.run_summary import RunSummary, slip_shares, unweighted_rms
 
 STICKS, WORKS = 0.01, 0.25
@@ -35,7 +36,7 @@ class Finding:
 
 
 def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Finding]:
-    """Return sentences on dampers, resonances, body modes, comfort, linearity and computation.
+    """Return sentences on dampers, applied forces, resonances, body modes, comfort, linearity and computation.
 
     Args:
         run: the run.
@@ -43,6 +44,7 @@ def findings(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[Find
     """
     summary = run.summary
     sentences = [Finding("Dampers", text) for text in _dampers(summary)]
+    sentences += [Finding("Forces", text) for text in order_sentences(summary)]
     sentences += [Finding("Resonances", text) for text in _resonances(run, modes)]
     sentences += [Finding("Body", text) for text in body_modes(run, damper_state(run))]
     sentences += [Finding("Comfort", text) for text in _comfort(run)]
@@ -85,6 +87,8 @@ def _resonances(run: FinishedRun, modes: Mapping[str, Sequence[Mode]]) -> list[s
                 f"The highest vertical resonance at the {point} is at {top['frequency_hz']:.1f} Hz{mode}: "
                 f"{number(top['magnitude'])} m/s² per m{f' of the {plate}' if plate else ''}."
             )
+    if not sentences and not run.summary["input"]["rms_m"]:
+        return ["No plate moves, so there are no FRFs and no resonances."]
     return sentences or ["No resonance was identified: the input excites none, or there are no FRFs."]
 
 
@@ -145,6 +149,8 @@ def _comfort(run: FinishedRun) -> list[str]:
 
 def _linearity(run: FinishedRun) -> list[str]:
     sentences: list[str] = []
+    if not run.responses and not run.summary["input"]["rms_m"]:
+        return sentences
     if not run.responses:
         return ["There are no FRFs: see the notices." if run.summary["notices"] else "There are no FRFs."]
     rows = {name: row for row, name in enumerate(run.car.vehicle.acceleration_channels)}

@@ -104,9 +104,10 @@ class FinishedRun:
         """Caption of a plot: input, level, tyres and engine."""
         excitation, solver = self.summary["input"], self.summary["solver"]
         estimator = f"; estimator: {self.responses[0].response.estimator}" if self.responses else ""
+        wheel = wheel_words(excitation["wheel"], self.car.vehicle.wheels)
+        level = f"RMS {1e3 * excitation['rms_m']:.3g} mm at the {wheel}" if excitation["rms_m"] else "plates at rest"
         return (
-            f"{Path(excitation['file']).name}, RMS {1e3 * excitation['rms_m']:.3g} mm at the "
-            f"{wheel_words(excitation['wheel'], self.car.vehicle.wheels)}, "
+            f"{Path(excitation['file']).name}, {level}, "
             f"{excitation['duration_s']:g} s{estimator}; tyres {self.car.vehicle.driving.words}; engine: "
             f"{solver['engine']}"
         )

@@ -20,6 +20,7 @@ from vehicle.runs.report.findings import findings
 from vehicle.runs.report.finished_run import FinishedRun
 from vehicle.runs.report.general_notices import without_general
 from vehicle.runs.report.markup import templates
+from vehicle.runs.report.order_words import force_rows
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.records.run_summary import slip_shares
 
@@ -53,8 +54,9 @@ def tiles(run: FinishedRun) -> Markup:
             to_plate = f", FRF to the {plate}" if plate else ""
             label = f"highest resonance of the vertical motion of the knuckle{to_plate}"
             values.append((f"{top['frequency_hz']:.1f} Hz", label))
-    plate = side_of(run.wheel, run.car.vehicle.wheels)
-    values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
+    if summary["input"]["rms_m"]:
+        plate = side_of(run.wheel, run.car.vehicle.wheels)
+        values.append((f"{1e3 * summary['input']['rms_m']:.3g} mm", f"RMS displacement of the {plate} plate"))
     return fill("tiles", values=values)
 
 
@@ -80,6 +82,7 @@ def what_was_run(run: FinishedRun) -> Markup:
     ]
     if run.span:
         signal.append(("comfort, slip shares, densities of", run.span))
+    signal += force_rows(run.summary)
     road = excitation.get("road") or {}
     signal += [(word, str(road[key])) for key, word in ROAD_WORDS.items() if road.get(key) is not None]
     engine = [

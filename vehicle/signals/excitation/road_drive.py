@@ -1,4 +1,4 @@
-"""Input of a car that drives over a road at constant speed: ISO 8608 class, measured profile or obstacle."""
+"""Input of a car that drives over a road at constant speed: class of ISO 8608, measured profile, obstacle or level."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError
 from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.signals.excitation.band import samples_of
 from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
 from vehicle.signals.excitation.obstacle import Obstacle, is_obstacle
 from vehicle.signals.excitation.plausibility import acceleration_events
 from vehicle.signals.excitation.road_settings import SETTINGS
-from vehicle.signals.excitation.signal import Signal
+from vehicle.signals.excitation.signal import Signal, uniform_time
 from vehicle.signals.excitation.tyre_envelope import CAMS, TyreEnvelope
 
 FASTEST = 400.0
@@ -27,7 +28,10 @@ CONTACT_PATCH = 0.10
 """Length of the contact patch of a car tyre under load [m], assumed; the tyre averages the road over this length."""
 
 USUAL_DURATION = 60.0
-"""Default length of a drive over a road class [s]."""
+"""Default length of a drive over a road class or a level road [s]."""
+
+LEVEL = "level"
+"""Name of the road without any height, for a car that its own forces shake."""
 
 SKIP_S = 2.0
 """Minimum default of --skip on a road [s]: the rise from rest and 1 s, in which a motion of 1 Hz with a damping ratio
@@ -55,7 +59,7 @@ class RoadDrive:
     """Drive at constant speed; each wheel reaches the road d / V after the foremost wheel, in its track.
 
     Attributes:
-        road: class of ISO 8608, as "C"; the file of a measured profile; or an obstacle, as "cleat:20x50".
+        road: class of ISO 8608, as "C"; the file of a measured profile; an obstacle, as "cleat:20x50"; or "level".
         speed: speed V [km/h].
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
@@ -98,14 +102,16 @@ class RoadDrive:
                 raise ConfigurationError(
                     "--coherence: valid for a road class only, not for a measured profile; omit it"
                 )
-        elif is_obstacle(self.road):
+        elif is_obstacle(self.road) or self.road == LEVEL:
             if self.coherence is not None:
-                raise ConfigurationError("--coherence: valid for a road class only, not for an obstacle; omit it")
-            Obstacle.parse(self.road)
+                named = "a level road" if self.road == LEVEL else "an obstacle"
+                raise ConfigurationError(f"--coherence: valid for a road class only, not for {named}; omit it")
+            if self.road != LEVEL:
+                Obstacle.parse(self.road)
         elif self.road not in CLASSES:
             raise ConfigurationError(
                 f"road class {self.road!r}: must be one of {', '.join(CLASSES)}, from good to poor, the file of a "
-                "measured profile, or an obstacle, as cleat:20x50"
+                f"measured profile, an obstacle, as cleat:20x50, or {LEVEL}"
             )
         if not 0.0 <= self.patch < 1.0:
             raise ConfigurationError(f"contact patch {self.patch!r} m; allowed: 0 to 1 m")
@@ -171,6 +177,8 @@ class RoadDrive:
             if duration is None:
                 duration = math.ceil(10.0 * (self._times(obstacle)[1] + AFTER_S)) / 10.0
             road = obstacle.road(length=duration * speed + 1.0, patch=self.patch, envelope=self.envelope)
+        elif self.road == LEVEL:
+            return self._level(USUAL_DURATION if duration is None else duration)
         else:
             road = IsoRoad(
                 level=CLASSES[self.road],
@@ -186,6 +194,12 @@ class RoadDrive:
         if isinstance(road, IsoRoad) or self.obstacle is not None:
             return signal
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
+
+    def _level(self, duration: float) -> Signal:
+        """Return plates at rest."""
+        time = uniform_time(samples=samples_of(duration, self.rate) + 1, timestep=1.0 / self.rate)
+        height = {name: np.zeros(time.size) for name, _, _ in self.wheels}
+        return Signal(time=time, displacement=height, source=f"level road; {self.speed:.6g} km/h", profile=height)
 
     def slopes(self, signal: Signal) -> dict[str, NDArray[np.float64]]:
         """Return the slope of the road that each wheel takes, tan(beta) [-], (n,): that of the cams, or w'/V.
@@ -227,14 +241,16 @@ class RoadDrive:
             signal: signal of the drive.
         """
         measured, obstacle = isinstance(self.road, Path), self.obstacle
+        no_class = measured or obstacle is not None or self.road == LEVEL
         return {
-            "class": None if measured or obstacle is not None else self.road,
+            "class": None if no_class else self.road,
             "profile": str(self.road) if measured else None,
             "speed_kmh": self.speed,
-            "seed": None if measured or obstacle is not None else self.seed,
+            "seed": None if no_class else self.seed,
             "coherence": self.coherence,
             "contact_patch_m": self.patch,
             **({} if self.envelope is None else {"tyre_contact": self.envelope.words}),
+            **({"level": True} if self.road == LEVEL else {}),
             **({} if obstacle is None else {"obstacle": obstacle.words, "obstacle_s": list(self._times(obstacle))}),
             "behind_m": {name: behind for name, behind, _ in self.wheels},
             "words": signal.source,

@@ -92,6 +92,41 @@ class ObstacleSummary(TypedDict):
     knuckle_peak: ByWheel
 
 
+class LineSummary(TypedDict):
+    """Harmonic of an applied force: order of its angle, frequency [Hz], amplitude [N or N m], phase [deg]."""
+
+    order: float
+    frequency_hz: float
+    amplitude: float
+    phase_deg: float
+
+
+class ForceSummary(TypedDict):
+    """Applied force: part or joint that it acts on, point [m], directions, constant part [N or N m], harmonics."""
+
+    on: str
+    against: str
+    at_m: list[float]
+    force: list[float]
+    moment: list[float]
+    angle: str | None
+    mean: float
+    lines: list[LineSummary]
+
+
+class OrderSummary(TypedDict):
+    """Amplitude of a channel at a frequency of the applied forces, with the standard error of both: see `order_lines`.
+
+    `order` is that of the angle of `of`, "wheels", "crank" or "frequency".
+    """
+
+    order: float
+    of: str
+    frequency_hz: float
+    amplitude: dict[str, float]
+    standard_error: dict[str, float]
+
+
 class StaticSummary(TypedDict):
     """Static loads [N], and the largest displacement that remains after the trim [m]."""
 
@@ -164,6 +199,8 @@ class RunSummary(TypedDict):
     comfort: dict[str, ComfortSummary]
     seat_value: NotRequired[SeatSummary | None]
     obstacle: NotRequired[ObstacleSummary | None]
+    forces: NotRequired[dict[str, ForceSummary]]
+    orders: NotRequired[list[OrderSummary]]
     static: StaticSummary
     solver: SolverSummary
     frf: FrfSummary | None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vehicle.engines.reduced.equivalent_damping import equivalent_damping, linearised_response
+from vehicle.errors import ConfigurationError
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.plausibility import (
     LARGEST_ACCELERATION,
@@ -26,6 +27,9 @@ class DrivenCar:
         target: accelerations to be replicated.
         engine: simulation engine, see `Car.run`.
 
+    Raises:
+        ConfigurationError: the car lacks a wheel or a channel, or has forces that shake it.
+
     Attributes:
         settled: number of samples at the beginning in which a drive rises from rest; their errors are excluded.
         damping: equivalent viscous constants of the dampers [N s/m], (d,).
@@ -36,6 +40,11 @@ class DrivenCar:
         self.car, self.wheels, self.engine, self.target = car, wheels, engine, target
         self.dampers = car.vehicle.composition.dampers
         car.vehicle.require_wheels(wheels)
+        if forces := [force.path for force in car.vehicle.composition.forces if force.harmonics]:
+            raise ConfigurationError(
+                f"{forces[0]}: shakes the car, and the plates would be made to repeat its motion; leave it out, or set "
+                "enabled = false"
+            )
         car.vehicle.require_channels(target.channels, car.vehicle.acceleration_channels)
         self.damping = np.array([equivalent_damping(damper.law, np.zeros(1), np.zeros(1)) for damper in self.dampers])
         step = float(target.time[1])

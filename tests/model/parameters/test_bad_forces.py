@@ -1,0 +1,92 @@
+"""Forces of a vehicle file that are none: each one sentence with the key and what to set."""
+
+from __future__ import annotations
+
+import pytest
+
+from vehicle import Car, road
+from vehicle.errors import ConfigurationError, DataError
+
+ON: dict[str, object] = {"on": "engine", "moment": [0, 1, 0], "harmonics": [[2, 40, 0]], "frequency": 25.0}
+
+FORCES: dict[str, tuple[dict[str, object], str]] = {
+    "unknown part": ({**ON, "on": "engin"}, "force.a.on: found 'engin', unknown part; the nearest is engine"),
+    "the world": ({**ON, "on": "world"}, "force.a.on: found 'world', unknown part"),
+    "a plate": ({**ON, "on": "plate_fr"}, "force.a.on: found 'plate_fr', unknown part"),
+    "unknown point": (
+        {**ON, "at": "engine_cg"},
+        "force.a.at: found 'engine_cg', unknown point; the nearest is engine_cog",
+    ),
+    "unknown joint": ({"joint": "spin"}, "force.a.joint: found 'spin', no hinge or slide; the nearest is"),
+    "joint and part": ({"joint": "damper_fr", "on": "engine"}, "force.a.on: belongs to a force on a part"),
+    "force and moment": ({**ON, "force": [0, 0, 1]}, "found both of force and moment"),
+    "neither": ({"on": "engine"}, "found none of force and moment"),
+    "no direction": ({**ON, "moment": [0, 0, 0]}, "force.a.moment: found [0.0, 0.0, 0.0]; must be three numbers"),
+    "its own reaction": (
+        {**ON, "against": "engine"},
+        "force.a.against: found 'engine', the part that the force acts on",
+    ),
+    "order zero": ({**ON, "harmonics": [[0, 40, 0]]}, "of order 0; set mean for the constant part"),
+    "negative order": ({**ON, "harmonics": [[-1, 40, 0]]}, "the order must be above 0"),
+    "an order twice": ({**ON, "harmonics": [[2, 40, 0], [2, 10, 90]]}, "a second harmonic of order 2"),
+    "negative amplitude": ({**ON, "harmonics": [[2, -40, 0]]}, "the amplitude must be at least 0"),
+    "not a number": ({**ON, "harmonics": [[2, float("nan"), 0]]}, "must be three finite numbers"),
+    "two numbers": ({**ON, "harmonics": [[2, 40]]}, "must be three finite numbers: order, amplitude, phase [deg]"),
+    "angle and frequency": ({**ON, "angle": "crank"}, "force.a.angle: needed is either an angle"),
+    "neither of them": ({**ON, "frequency": None}, "force.a.angle: needed is either an angle"),
+    "unknown angle": ({**ON, "frequency": None, "angle": "wheel"}, "no angle; the nearest is wheel_"),
+    "half an order of a wheel": (
+        {**ON, "frequency": None, "angle": "wheel_fr", "harmonics": [[0.5, 40, 0]]},
+        "a wheel has whole orders",
+    ),
+    "unknown key": ({**ON, "harmonic": 3}, "force.a.harmonic"),
+    "too large": ({**ON, "mean": 1e6}, "force.a.mean: found 1000000.0 N, must be at most 100000.0"),
+}
+
+
+@pytest.mark.parametrize("case", FORCES)
+def test_a_wrong_force_is_refused(case):
+    force, said = FORCES[case]
+    with pytest.raises(ConfigurationError) as raised:
+        Car.load("focus", {f"force.a.{key}": value for key, value in force.items() if value is not None})
+    assert said in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"front.imbalance.mass": 20.0, "front.imbalance.radius": 0.2}, "20 g is 0.02"),
+        ({"front.imbalance.mass": 0.02}, "front.imbalance.radius: missing"),
+        ({"crank.rpm": 12.5}, "crank.rpm: found 12.5 1/min, must be at least 300.0"),
+    ],
+)
+def test_a_wrong_wheel_or_crank_is_refused(changes, said):
+    with pytest.raises(ConfigurationError) as raised:
+        Car.load("sedan", changes)
+    assert said in str(raised.value)
+
+
+def car_with(**force: object) -> Car:
+    return Car.load("sedan", {f"force.a.{key}": value for key, value in force.items()})
+
+
+def test_a_force_that_cannot_act_in_a_run_is_refused():
+    shake = {"on": "engine", "moment": [0, 1, 0], "harmonics": [[2, 40, 0]]}
+    smooth = road("level", 100, duration=3)
+    with pytest.raises(
+        ConfigurationError, match=r"crank does not turn; set the speed of the crankshaft, --set crank\.rpm"
+    ):
+        car_with(**shake, angle="crank").run(smooth)
+    with pytest.raises(ConfigurationError, match="wheel_fr does not turn; the wheels stand: drive on a road"):
+        car_with(**shake, angle="wheel_fr").run("low.csv")
+    with pytest.raises(ConfigurationError, match=r"solver\.record_rate: found 1000 Hz.*300 Hz.*set at least 2000 Hz"):
+        car_with(**shake, frequency=150.0).run(smooth)
+    with pytest.raises(ConfigurationError, match=r"solver\.timestep: found 0\.001 s, too long for a force of 100 Hz"):
+        car_with(**shake, frequency=50.0).with_({"solver.timestep": 1e-3}).run(smooth)
+    with pytest.raises(ConfigurationError, match="moves no plate, and sedan has no force that shakes it; add one"):
+        Car.load("sedan").run(smooth)
+    with pytest.raises(ConfigurationError, match="no equilibrium"):
+        Car.load("sedan", {"driving.speed": 30.0, "force.a.joint": "spin_fr", "force.a.mean": 10.0})
+    stored = {"body.superelement": "trimmed_body.toml", "force.a.on": "body", "force.a.force": [0, 0, 1]}
+    with pytest.raises(DataError, match="no node at force/a"):
+        _ = Car.load("focus", {**stored, "force.a.at": [2.0, 0.4, 1.0]}).model

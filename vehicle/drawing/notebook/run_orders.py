@@ -1,0 +1,56 @@
+"""Amplitudes of a run at orders of a turning part, with the names of their channels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from vehicle.signals.analysis.order_lines import OrderLines
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class RunOrders(OrderLines):
+    """Amplitudes of channels at orders.
+
+    Attributes:
+        names, units: channels of the rows, and their units.
+        angle: what turns.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    angle: str
+
+    def __repr__(self) -> str:
+        """Return the largest amplitude of each of up to three channels."""
+        texts = []
+        for row, name in enumerate(self.names[:3]):
+            top = int(np.argmax(np.abs(self.amplitude[row])))
+            size = abs(self.amplitude[row, top])
+            texts.append(f"{name} {size:.3g} {self.units[row]} in order {self.orders[top]:g}")
+        return f"Orders of {self.angle} at {self.frequency[0] / self.orders[0]:.4g} Hz: {', '.join(texts)}"
+
+    def to_dataframe(self) -> Any:
+        """Return a pandas table: a row for each channel and order, with amplitude, phase [deg] and standard error."""
+        from pandas import DataFrame
+
+        count = len(self.orders)
+        return DataFrame(
+            {
+                "channel": np.repeat(self.names, count),
+                "unit": np.repeat(self.units, count),
+                "order": np.tile(self.orders, len(self.names)),
+                "frequency_hz": np.tile(self.frequency, len(self.names)),
+                "amplitude": np.abs(self.amplitude).ravel(),
+                "phase_deg": np.degrees(np.angle(self.amplitude)).ravel(),
+                "standard_error": self.error.ravel(),
+            }
+        )
+
+
+def named_orders(lines: OrderLines, names: tuple[str, ...], units: tuple[str, ...], angle: str) -> RunOrders:
+    """Return order lines with the names [-] and units of their channels."""
+    numbers = {field.name: getattr(lines, field.name) for field in fields(OrderLines)}
+    return RunOrders(**numbers, names=names, units=units, angle=angle)

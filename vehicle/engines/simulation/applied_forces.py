@@ -1,0 +1,189 @@
+"""Applied forces of a car: their records for the core, their rows over the velocity coordinates, their histories."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.simulation.element_records import Applied, Index, Layout
+from vehicle.engines.simulation.step_weights import FOURTH_ORDER
+from vehicle.errors import ConfigurationError
+from vehicle.model.assembly.element_numbers import FORCE, TORQUE
+from vehicle.model.parameters.applied_force import CRANK
+from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.signals.excitation.force_lines import ForceLines
+
+Vector = npt.NDArray[np.float64]
+
+MINOR = 0.01
+"""Share of the largest amplitude of a force below which a harmonic does not choose the time step."""
+
+STEP_ERROR = 1e-3
+"""Largest error of the response to a force with a chosen time step; with a given step it is `GIVEN_ERROR`."""
+
+GIVEN_ERROR = 5e-3
+
+RESOLVED = 0.2
+"""Highest frequency over the record rate: accelerations are second differences of positions, 2.4 % low there."""
+
+
+def force_rows(model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> Vector:
+    """Return the generalised force of a unit of each applied force in a position of the car; (f, n).
+
+    Args:
+        model: compiled car.
+        data: its state after `mj_fwdPosition`.
+        layout: its elements.
+    """
+    a, modes = layout.applied, layout.modes
+    rows = np.zeros((len(a.means), model.nv))
+    turn = data.xmat[modes.body].reshape(3, 3)
+    shapes = dict(zip(a.nodes.tolist(), a.shapes.reshape(len(a.nodes), 6, modes.size), strict=True))
+    for element, (site, way, force) in enumerate(zip(a.sites, a.directions, a.forces, strict=True)):
+        jacobian = np.zeros((6, model.nv))
+        mujoco.mj_jacSite(model, data, jacobian[:3], jacobian[3:], int(site))
+        if element in shapes:
+            jacobian[:3, modes.velocities] += turn @ shapes[element][:3]
+            jacobian[3:, modes.velocities] += turn @ shapes[element][3:]
+        rows[force] += way @ jacobian
+    rows[a.torques[:, 1], a.torques[:, 0]] = 1.0
+    return rows
+
+
+def force_lines(forces: Sequence[PlacedForce]) -> tuple[ForceLines, Vector]:
+    """Return the frequencies of some forces, and the coefficients of each force on their histories; (f, lines)."""
+    lines = ForceLines(tuple(sorted({frequency for force in forces for frequency in force.harmonics})))
+    coefficients = [lines.coefficients(force.harmonics) for force in forces]
+    return lines, np.array(coefficients).reshape(len(forces), len(lines))
+
+
+def averaged_forces(forces: Sequence[PlacedForce], step: float, rows: slice) -> Vector:
+    """Return the forces at the ends of some steps, averaged over three steps like springs and plates; (rows, f).
+
+    Args:
+        forces: applied forces.
+        step: time step [s].
+        rows: range of the steps.
+    """
+    lines, coefficients = force_lines(forces)
+    values = lines.values(step * np.arange(rows.start - 1, rows.stop + 1))
+    values = values[1:-1] + FOURTH_ORDER * np.diff(values, 2, axis=0)
+    return np.asarray(values @ coefficients.T + [force.mean for force in forces])
+
+
+def highest_frequency(forces: Sequence[PlacedForce]) -> float:
+    """Return the highest frequency of some forces with at least `MINOR` of the largest amplitude of its force [Hz]."""
+    highest = 0.0
+    for force in forces:
+        sizes = {frequency: abs(amplitude) for frequency, amplitude in force.harmonics.items()}
+        threshold = MINOR * max(sizes.values(), default=0.0)
+        highest = max([highest, *(frequency for frequency, size in sizes.items() if size > threshold)])
+    return highest / (2.0 * np.pi)
+
+
+def step_for(forces: Sequence[PlacedForce], step: float, error: float = STEP_ERROR) -> float:
+    """Return the step, halved until the response of a part to all forces is accurate: (w h)^2/12 at most `error`."""
+    while (2.0 * np.pi * highest_frequency(forces) * step) ** 2 * FOURTH_ORDER > error:
+        step *= 0.5
+    return step
+
+
+def require_step_of_forces(forces: Sequence[PlacedForce], step: float) -> None:
+    """Check a given time step [s].
+
+    Raises:
+        ConfigurationError: it is too long for the frequencies of the forces.
+    """
+    needed = step_for(forces, step, GIVEN_ERROR)
+    if needed < step:
+        raise ConfigurationError(
+            f"solver.timestep: found {step:g} s, too long for a force of {highest_frequency(forces):.4g} Hz; leave it "
+            f"out, or set at most {needed:g} s"
+        )
+
+
+def require_resolved(forces: Sequence[PlacedForce], record_rate: float) -> None:
+    """Check that every angle turns and that the record resolves all forces.
+
+    Args:
+        forces: applied forces of a car.
+        record_rate: rate of its samples [Hz].
+
+    Raises:
+        ConfigurationError: an angle is at rest, or a frequency too high for the record.
+    """
+    for force in forces:
+        law = force.law
+        if not (law.enabled and law.harmonics) or not force.path.startswith("force."):
+            continue
+        if force.speed == 0.0:
+            remedy = (
+                "set the speed of the crankshaft, --set crank.rpm=750"
+                if law.angle == CRANK
+                else "the wheels stand: drive on a road, --road level --speed 110, or set driving.speed [m/s]"
+            )
+            raise ConfigurationError(f"{force.path}.angle: {law.angle} does not turn; {remedy}")
+    highest = highest_frequency(forces)
+    if highest > RESOLVED * record_rate:
+        rate = 1000.0 * np.ceil(highest / (1000.0 * RESOLVED))
+        raise ConfigurationError(
+            f"solver.record_rate: found {record_rate:g} Hz, which shows a force of {highest:.4g} Hz more than 2 % low; "
+            f"set at least {rate:g} Hz"
+        )
+
+
+def applied_record(model: mujoco.MjModel, above: Sequence[Sequence[int]], modes: int) -> Applied:
+    """Return the record of the applied forces of a compiled car.
+
+    Args:
+        model: compiled car.
+        above: velocity coordinates that move each body.
+        modes: number of the modes of its body.
+    """
+    names = [str(model.numeric(index).name) for index in range(model.nnumeric)]
+    names = [name for name in names if name.startswith((FORCE, TORQUE))]
+    sites, forces, nodes, torques = list[int](), list[int](), list[int](), list[tuple[int, int]]()
+    directions, shapes, means = list[Vector](), list[Vector](), list[float]()
+    for index, name in enumerate(names):
+        *way, mean = _field(model, name).tolist()
+        means.append(mean)
+        if name.startswith(TORQUE):
+            torques.append((int(model.joint(name.rpartition("/")[2]).dofadr[0]), index))
+            continue
+        for end, sign in (("on", 1.0), ("against", -1.0)):
+            site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, f"{name}/{end}")
+            if site < 0:
+                continue
+            shape, rotation = (_field(model, f"{field}/{name}/{end}") for field in ("shape", "rotation"))
+            if shape.size:
+                nodes.append(len(sites))
+                shapes.append(np.concatenate([shape, rotation if rotation.size else np.zeros(3 * modes)]))
+            sites.append(site)
+            directions.append(sign * np.array(way))
+            forces.append(index)
+    bodies = [int(model.site_bodyid[site]) for site in sites]
+    dofs = [(n, dof, int(model.body_rootid[body])) for n, body in enumerate(bodies) for dof in above[body]]
+    return Applied(
+        sites=_whole(sites),
+        directions=np.reshape(directions, (len(sites), 6)).astype(float),
+        forces=_whole(forces),
+        dofs=np.ascontiguousarray(np.reshape(_whole(dofs), (-1, 3))),
+        nodes=_whole(nodes),
+        shapes=np.reshape(shapes, (len(nodes), 6 * modes)).astype(float),
+        torques=np.ascontiguousarray(np.reshape(_whole(torques), (-1, 2))),
+        means=np.array(means),
+    )
+
+
+def _whole(values: Sequence[object]) -> Index:
+    return np.array(values, dtype=np.int64)
+
+
+def _field(model: mujoco.MjModel, name: str) -> Vector:
+    """Return a custom field of the model; empty if it has none."""
+    index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_NUMERIC, name)
+    start, size = (int(model.numeric_adr[index]), int(model.numeric_size[index])) if index >= 0 else (0, 0)
+    return np.array(model.numeric_data[start : start + size])

@@ -1,0 +1,83 @@
+"""Forces that a vehicle file applies to parts of the car: numbers of their histories."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import dataclass
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.quantity import quantity, validate
+
+CRANK = "crank"
+"""Name of the angle of the crankshaft."""
+
+HIGHEST_ORDER = 100.0
+"""Largest order of a harmonic."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class AppliedForce:
+    """History of a force or a moment: F(t) = mean + factor g sum of A cos(order angle + phase).
+
+    g is 1, or the square of the frequency of the angle over `reference_frequency`. Harmonics rise from rest within the
+    first second, like a road; the mean acts always, also in the equilibrium from which the car starts.
+    """
+
+    harmonics: tuple[tuple[float, ...], ...] = ()
+    """lists of order [-], amplitude A [N or N m] and phase [deg]"""
+    angle: str | None = quantity(
+        "-", "what turns by the angle: crank, or a wheel, as wheel_fr; or none, with a frequency", default=None
+    )
+    frequency: float | None = quantity(
+        "Hz", "turns of the angle per second, in place of a part that turns", above=0.0, at_most=500.0, default=None
+    )
+    reference_frequency: float | None = quantity(
+        "Hz",
+        "the amplitudes hold at this frequency of the angle and grow with its square; by default they are constant",
+        above=0.0, at_most=500.0, default=None,
+    )  # fmt: skip
+    mean: float = quantity(
+        "N", "constant part [N or N m], in equilibrium from the start", at_least=-1e5, at_most=1e5, default=0.0
+    )
+    factor: float = quantity("-", "factor of all harmonics", at_least=-1e3, at_most=1e3, default=1.0)
+    enabled: bool = True
+    """false leaves the force out"""
+
+    def __post_init__(self) -> None:
+        validate(self)
+        orders = []
+        for harmonic in self.harmonics:
+            message = f"AppliedForce.harmonics: found {list(harmonic)}"
+            if len(harmonic) != 3 or not all(map(math.isfinite, harmonic)):
+                raise ConfigurationError(f"{message}, must be three finite numbers: order, amplitude, phase [deg]")
+            order, amplitude, _ = harmonic
+            if order == 0.0:
+                raise ConfigurationError(f"{message}, of order 0; set mean for the constant part")
+            if not 0.0 < order <= HIGHEST_ORDER:
+                raise ConfigurationError(f"{message}; the order must be above 0 and at most {HIGHEST_ORDER:g}")
+            if amplitude < 0.0:
+                raise ConfigurationError(f"{message}; the amplitude must be at least 0: add 180 degrees to the phase")
+            if order in orders:
+                raise ConfigurationError(f"{message}, a second harmonic of order {order:g}; give each order once")
+            orders.append(order)
+        if self.harmonics and (self.angle is None) == (self.frequency is None):
+            raise ConfigurationError(
+                "AppliedForce.angle: needed is either an angle (crank, or a wheel, as wheel_fr) or a frequency [Hz]"
+            )
+
+    def amplitudes(self, speed: float) -> dict[float, complex]:
+        """Return the harmonics: angular frequency [rad/s] to complex amplitude Z of Re(Z exp(i W t)).
+
+        Args:
+            speed: angular speed of the angle [rad/s]; 0 for an angle at rest, whose harmonics are constant: left out.
+        """
+        if not self.enabled or speed == 0.0:
+            return {}
+        growth = 1.0
+        if self.reference_frequency is not None:
+            growth = (speed / (2.0 * math.pi * self.reference_frequency)) ** 2
+        return {
+            order * speed: cmath.rect(self.factor * growth * amplitude, math.radians(phase))
+            for order, amplitude, phase in self.harmonics
+        }

@@ -1,0 +1,207 @@
+"""Forces of a vehicle file on any part, and those of its turning wheels, placed."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.additions import named_part, named_point, new_loads
+from vehicle.model.parameters.applied_force import CRANK, AppliedForce
+from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
+from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.instance import Instance
+from vehicle.model.parameters.placed_force import PlacedForce
+from vehicle.model.parameters.quantity import NAME_PATTERN
+from vehicle.model.parameters.toml_file import build, convert, nearest
+from vehicle.model.parameters.wheel_forces import Imbalance
+from vehicle.names import SIDE_SIGN
+
+PLACE_KEYS = ("on", "at", "force", "moment", "against", "joint")
+"""Keys of a force other than those of its history."""
+
+NONE = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ForceTargets:
+    """Parts, points, joints and angles that a force of the vehicle file can name.
+
+    Attributes:
+        parts: parts of the car and the trimmed body, with their centres of gravity [m].
+        points: hardpoints by name [m].
+        joints: names of the hinges and slides.
+        speeds: angular speed [rad/s] of each angle: crank, and each wheel, as "wheel_fr"; 0 at rest.
+    """
+
+    parts: Mapping[str, Point]
+    points: Mapping[str, Point]
+    joints: tuple[str, ...]
+    speeds: Mapping[str, float]
+
+
+def force_targets(
+    parts: Iterable[PlacedPart],
+    points: Mapping[str, Point],
+    wheels: Iterable[PlacedWheel],
+    connections: Iterable[PlacedConnection],
+    crank_rpm: float,
+    body: Point,
+) -> ForceTargets:
+    """Return what a force can refer to.
+
+    Args:
+        parts, wheels, connections: elements of the car.
+        points: its hardpoints by name [m].
+        crank_rpm: speed of the crankshaft [1/min].
+        body: centre of gravity of the trimmed body [m].
+    """
+    listed = list(parts)
+    speeds = {CRANK: crank_rpm * math.pi / 30.0} | {f"wheel_{wheel.name}": 0.0 for wheel in wheels}
+    for tyre in connections:
+        if tyre.rolling is not None:
+            radius = getattr(tyre.law, "rolling_radius", None) or tyre.rolling.arm[2]
+            speeds[tyre.carrier.replace("plate_", "wheel_", 1)] = tyre.rolling.speed / radius
+    joints = (joint.name for part in listed for joint in part.joints if joint.kind in ("hinge", "slide"))
+    return ForceTargets(
+        parts={"body": body, **{part.name: part.cog for part in listed}},
+        points=points,
+        joints=tuple(joints),
+        speeds=speeds,
+    )
+
+
+def new_tables(overrides: Iterable[str]) -> list[str]:
+    """Return the paths of overrides that set keys of a load or of a force, which are optional in a vehicle file."""
+    keys = "|".join((*PLACE_KEYS, *AppliedForce.__dataclass_fields__))
+    texts = list(overrides)
+    names = [text.partition("=")[0].strip() for text in texts]
+    return new_loads(texts) + [name for name in names if re.fullmatch(rf"force\.[A-Za-z0-9_-]+\.({keys})", name)]
+
+
+def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
+    """Return a force that the vehicle file adds.
+
+    Args:
+        name: name of the force.
+        value: its table.
+        targets: what it can refer to.
+
+    Raises:
+        ConfigurationError: a name that does not exist, or a wrong value.
+    """
+    path = f"force.{name}"
+    table = convert(dict, value, path)
+    if not NAME_PATTERN.fullmatch(name):
+        raise ConfigurationError(f"{path}: found {name!r}, must consist of letters, digits, '_', '.', '-'")
+    law = build(AppliedForce, {key: inner for key, inner in table.items() if key not in PLACE_KEYS}, path)
+    if law.angle is not None and law.angle not in targets.speeds:
+        near = nearest(law.angle, targets.speeds)
+        raise ConfigurationError(f"{path}.angle: found {law.angle!r}, no angle; the nearest is {near}")
+    speed = 2.0 * math.pi * law.frequency if law.frequency else targets.speeds.get(law.angle or "", 0.0)
+    if law.angle not in (None, CRANK) and any(order % 1.0 for order, _, _ in law.harmonics):
+        raise ConfigurationError(f"{path}.harmonics: a wheel has whole orders; half orders are those of a crank")
+    if "joint" in table:
+        return _torque(path, table, targets, law, speed)
+    directions = [key for key in ("force", "moment") if key in table]
+    if len(directions) != 1:
+        number = "both" if directions else "none"
+        raise ConfigurationError(f"{path}: found {number} of force and moment; set the direction of one of them")
+    direction = _direction(f"{path}.{directions[0]}", table[directions[0]])
+    on = named_part(path, table, "on", {*targets.parts})
+    against = named_part(path, table, "against", {*targets.parts}) if "against" in table else ""
+    if against == on:
+        raise ConfigurationError(f"{path}.against: found {against!r}, the part that the force acts on; name another")
+    at = named_point(path, table, targets.points)[0] if "at" in table else targets.parts[on]
+    return PlacedForce(
+        name=name,
+        on=on,
+        at=at,
+        force=direction if directions == ["force"] else NONE,
+        moment=direction if directions == ["moment"] else NONE,
+        against=against,
+        joint="",
+        law=law,
+        speed=speed,
+        path=path,
+    )
+
+
+def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: AppliedForce, speed: float) -> PlacedForce:
+    """Return the torque of a table on a joint."""
+    for key in ("on", "at", "force", "moment", "against"):
+        if key in table:
+            raise ConfigurationError(f"{path}.{key}: belongs to a force on a part; a torque on a joint has no {key}")
+    joint = convert(str, table["joint"], f"{path}.joint")
+    if joint not in targets.joints:
+        near = nearest(joint, targets.joints)
+        raise ConfigurationError(f"{path}.joint: found {joint!r}, no hinge or slide; the nearest is {near}")
+    if law.mean and joint.startswith("spin_"):
+        raise ConfigurationError(
+            f"{path}.mean: found {law.mean:g} N m on a wheel that turns freely, which has no equilibrium; set 0"
+        )
+    return PlacedForce(
+        name=path.partition(".")[2],
+        on="",
+        at=NONE,
+        force=NONE,
+        moment=NONE,
+        against="",
+        joint=joint,
+        law=law,
+        speed=speed,
+        path=path,
+    )
+
+
+def _direction(path: str, value: Any) -> Point:
+    """Return a unit vector of a direction of the vehicle file."""
+    direction: Point = convert(Point, value, path)
+    length = math.hypot(*direction) if len(direction) == 3 else math.nan
+    if not (math.isfinite(length) and length > 0.0):
+        raise ConfigurationError(f"{path}: found {list(direction)}; must be three numbers, not all zero")
+    x, y, z = (component / length for component in direction)
+    return (x, y, z)
+
+
+def wheel_forces(
+    car: Mapping[str, Instance], wheels: Iterable[PlacedWheel], targets: ForceTargets
+) -> list[PlacedForce]:
+    """Return the forces of the imbalances of all wheels: m r (V/R)^2 along x and along z, from the axle to the mass.
+
+    Args:
+        car: instances by name.
+        wheels: wheels of the car.
+        targets: what a force can refer to.
+
+    Raises:
+        ConfigurationError: a value is wrong.
+    """
+    forces = []
+    for wheel in wheels:
+        instance, side = car[wheel.axle], next(name for name, sign in SIDE_SIGN.items() if sign == wheel.side)
+        if not instance.table_paths(side, "imbalance"):
+            continue
+        mass = instance.get(Imbalance, side, "imbalance")
+        speed = targets.speeds[f"wheel_{wheel.name}"]
+        x, y, z = wheel.center
+        for axis, direction, behind in (("x", (1.0, 0.0, 0.0), 0.0), ("z", (0.0, 0.0, 1.0), 90.0)):
+            amplitude = mass.mass * mass.radius * speed**2
+            forces.append(
+                PlacedForce(
+                    name=f"imbalance_{wheel.name}_{axis}",
+                    on=wheel.part,
+                    at=(x, y + wheel.side * mass.offset, z),
+                    force=direction,
+                    moment=NONE,
+                    against="",
+                    joint="",
+                    law=AppliedForce(harmonics=((1.0, amplitude, mass.angle - behind),), angle=f"wheel_{wheel.name}"),
+                    speed=speed,
+                    path=f"{wheel.axle}.imbalance",
+                )
+            )
+    return forces

@@ -1,0 +1,51 @@
+"""A force on a part of the car, placed, with its history."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vehicle.model.parameters.applied_force import AppliedForce
+from vehicle.model.parameters.hardpoints import Point
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PlacedForce:
+    """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque on a joint.
+
+    Attributes:
+        name: name of the force.
+        on: part that it acts on; empty for a torque on a joint.
+        at: point at which it acts [m].
+        force, moment: unit direction of the force and of the moment; one of both is zero.
+        against: part with the reaction at the same point; empty for none.
+        joint: joint with the torque, on its part and against the parent; empty for a force on a part.
+        law: its history.
+        speed: angular speed of its angle [rad/s].
+        path: path of its table in the vehicle file.
+    """
+
+    name: str
+    on: str
+    at: Point
+    force: Point
+    moment: Point
+    against: str
+    joint: str
+    law: AppliedForce
+    speed: float
+    path: str
+
+    @property
+    def ends(self) -> tuple[tuple[str, float], ...]:
+        """Parts with a force, each with its sign."""
+        return tuple((part, sign) for part, sign in ((self.on, 1.0), (self.against, -1.0)) if part)
+
+    @property
+    def harmonics(self) -> dict[float, complex]:
+        """Angular frequencies [rad/s] and complex amplitudes, see `AppliedForce.amplitudes`."""
+        return self.law.amplitudes(self.speed)
+
+    @property
+    def mean(self) -> float:
+        """Constant part [N or N m]."""
+        return self.law.mean if self.law.enabled else 0.0

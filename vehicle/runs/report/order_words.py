@@ -1,0 +1,48 @@
+"""Applied forces of a run, and what they do at their frequencies, in words."""
+
+from __future__ import annotations
+
+from vehicle.digits import number
+from vehicle.names import AXES, point_words
+from vehicle.signals.records.run_summary import OrderSummary, RunSummary
+
+POINTS = ("seat", "seat_rail")
+
+
+def force_rows(summary: RunSummary) -> list[tuple[str, str]]:
+    """Return name and harmonics of each applied force, for a table."""
+    rows = []
+    for name, force in summary.get("forces", {}).items():
+        unit = "N" if any(force["force"]) else "N m"
+        parts = [f"{number(line['amplitude'])} {unit} at {number(line['frequency_hz'])} Hz" for line in force["lines"]]
+        parts += [f"mean {number(force['mean'])} {unit}"] if force["mean"] else []
+        rows.append((f"force {name} on {force['on']}", ", ".join(parts)))
+    return rows
+
+
+def order_sentences(summary: RunSummary) -> list[str]:
+    """Return a sentence on each frequency of the applied forces: amplitudes at seat or seat rail."""
+    sentences = []
+    for line in summary.get("orders", []):
+        point = next((name for name in POINTS if f"{name}_acc_z" in line["amplitude"]), None)
+        if point is not None:
+            size = amplitude_words(line, point)
+            sentences.append(f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes).")
+    return sentences
+
+
+def line_words(line: OrderSummary) -> str:
+    """Return frequency and order of a line, as "15.9 Hz (order 1 of the wheels)"."""
+    of = {"wheels": "the wheels", "crank": "the crankshaft"}.get(line["of"])
+    return f"{number(line['frequency_hz'])} Hz" + (f" (order {line['order']:g} of {of})" if of else "")
+
+
+def amplitude_words(line: OrderSummary, point: str) -> str:
+    """Return the amplitudes of a point by axis, the largest first, with errors above a hundredth."""
+    texts = []
+    sizes = {axis: line["amplitude"].get(f"{point}_acc_{axis}", 0.0) for axis in AXES}
+    for axis in sorted(sizes, key=lambda name: -sizes[name]):
+        error = line["standard_error"].get(f"{point}_acc_{axis}", 0.0)
+        doubt = f" ± {number(error, 2)}" if error > 0.01 * sizes[axis] else ""
+        texts.append(f"{number(sizes[axis])}{doubt} m/s² along {axis}")
+    return ", ".join(texts)
