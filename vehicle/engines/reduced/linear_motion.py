@@ -3,8 +3,8 @@
 The inputs of the poles are the plates z and z', the slopes of rolling tyres, the nonlinear forces of dampers and of
 laws over displacement, and the histories of applied forces. With the spectrum X of an input, xi = b X / (s - p), and
 every linear quantity of the car is a row over the state S = (Re xi, Im xi, inputs): displacements u, velocities,
-accelerations, forces of the Maxwell branches and of ideal joints. The record is continued by a return to its start, so
-that it is periodic.
+accelerations, forces of the Maxwell branches and of ideal joints. The record ends with a
+return to its start, so that it is periodic.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ RATE = 3.0 * BAND
 """Rate at which products are computed [Hz], so that they are true up to `BAND`."""
 
 RETURN, PAUSE = 1.0, 3.0
-"""Time in which inputs return to their start, and until the motion repeats [s]."""
+"""Last part of a record in which all inputs return to their start, and time until the motion repeats [s]."""
 
 
 class MotionRows(NamedTuple):
@@ -123,21 +123,29 @@ def state_spectra(model: PoleModel, spectra: Complex, interval: float, samples: 
     return result
 
 
+def returning(samples: int, interval: float) -> int:
+    """Return the number of samples at the end of a record in which its inputs return to their start."""
+    return min(round(RETURN / interval), samples // 2)
+
+
 def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Complex, int]:
     """Return the spectra of inputs that return to their start, at each `every`-th sample, and the samples of a period.
+
+    Inputs return together: motion and friction become small together, and dampers that stick go on sticking. A friction
+    that was held instead, without the motion that it stops, would move the car on its springs.
 
     Args:
         inputs: histories; (inputs, n).
         interval: sampling interval of the histories [s].
         every: samples from one to the next of the result.
     """
-    count, fall = inputs.shape[1], round(RETURN / interval)
+    count = inputs.shape[1]
+    fall = returning(count, interval)
     coarse = -(-(count + round(PAUSE / interval)) // every)
     period = fast_length(coarse)
     padded = np.zeros((len(inputs), period * every))
     padded[:, :count] = inputs - inputs[:, :1]
-    way = 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
-    padded[:, count : count + fall] = padded[:, count - 1 : count] * way
+    padded[:, count - fall : count] *= 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
     return np.fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
 
 

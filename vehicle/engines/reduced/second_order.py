@@ -25,6 +25,7 @@ from vehicle.engines.reduced.linear_motion import (
     RATE,
     periodic_spectra,
     plate_inputs,
+    returning,
     run_inputs,
     state_spectra,
 )
@@ -193,8 +194,9 @@ def rms_errors(
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
         spectra, samples = periodic_spectra(inputs(part), interval, every)
+        used = slice(part.start, part.stop - returning(part.stop - part.start, interval))
         spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
-        linear = np.array([channels[name][part][::every] for name in names]) - reference
+        linear = np.array([channels[name][used][::every] for name in names]) - reference
         coordinates = np.fft.irfft(spectra, samples, axis=1)
         more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
         sums += [np.sum(values**power, axis=1) for values in (linear, more) for power in (1, 2)]

@@ -12,7 +12,7 @@ from vehicle.model.parameters.additions import further_connection, further_outpu
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.composition import Composition
 from vehicle.model.parameters.driving import Crank, crank_rpm
-from vehicle.model.parameters.further_forces import force_targets, further_force, wheel_forces
+from vehicle.model.parameters.further_forces import engine_forces, force_targets, further_force, wheel_forces
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
 from vehicle.model.parameters.load_mass import Load
@@ -72,7 +72,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     loads = [placed_load(name, entry, carriers, points) for name, entry in tables["load"].items()]
     body_cog: Point = convert(Point, table["body"]["cog"], "body.cog")
     targets = force_targets(parts, points, wheels, connections, crank_rpm(table), body_cog)
-    forces = wheel_forces(car, wheels, targets)
+    forces = [*wheel_forces(car, wheels, targets), *engine_forces(car, targets)]
     forces += [further_force(name, entry, targets) for name, entry in tables["force"].items()]
     composition = Composition(
         parts=(*parts, *loads),

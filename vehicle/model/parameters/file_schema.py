@@ -16,6 +16,7 @@ from typing import Any
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.body import TrimmedBody
 from vehicle.model.parameters.driving import Crank, Driving
+from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.force_elements import (
     DECOUPLER,
     MAXWELL,
@@ -45,7 +46,7 @@ from vehicle.names import SIDE_SIGN
 Schema = dict[str, Any]
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
-KINDS = (Part, Bushing, Tyre, Hydromount, MainSpring, SlideSpring, Stabilizer, Damper, Imbalance)
+KINDS = (Part, Bushing, Tyre, Hydromount, MainSpring, SlideSpring, Stabilizer, Damper, Imbalance, EngineOrders)
 """Parameter classes of the tables of an instance."""
 
 TEXT: Schema = {"type": "string"}
@@ -197,6 +198,7 @@ def _tables(template: Template, required: Template | None) -> Schema:
     elements: list[tuple[str, type]] = [(spring.name, spring_kind(template, spring)) for spring in template.spring]
     elements += [(damper.name, Damper) for damper in template.damper]
     elements += [("imbalance", Imbalance)] if template.wheel is not None else []
+    elements += [(ORDERS, EngineOrders)] if ENGINE in template.parts else []
     return _object(
         {
             "hardpoints": _object(points, required.hardpoints if required else ()),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import re
 from collections.abc import Iterable, Mapping
@@ -12,6 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.additions import named_part, named_point, new_loads
 from vehicle.model.parameters.applied_force import CRANK, AppliedForce
 from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
+from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
 from vehicle.model.parameters.placed_force import PlacedForce
@@ -24,6 +26,9 @@ PLACE_KEYS = ("on", "at", "force", "moment", "against", "joint")
 """Keys of a force other than those of its history."""
 
 NONE = (0.0, 0.0, 0.0)
+
+NEGLIGIBLE, SMALLEST = 1e-6, 1e-6
+"""Share of the largest harmonic of an engine below which a harmonic is rounding, and amplitude [N or N m] likewise."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -204,4 +209,67 @@ def wheel_forces(
                     path=f"{wheel.axle}.imbalance",
                 )
             )
+    return forces
+
+
+def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[PlacedForce]:
+    """Return the forces of the orders of all engines on their blocks; none at standstill of the crankshaft.
+
+    Counterweights at the share k of the pistons take k off the order 1 along the cylinders, and add k of it a quarter
+    turn later across them; likewise the moments.
+
+    Args:
+        car: instances by name.
+        targets: names that a force can use.
+
+    Raises:
+        ConfigurationError: a value is wrong, or the engine does not give its torque.
+    """
+    forces = []
+    for instance in car.values():
+        if not instance.table_paths(None, ORDERS):
+            continue
+        # The numbers of a crank drive need numpy, which a car without it does not load.
+        from vehicle.model.parameters.slider_crank import block_forces
+
+        engine, path = instance.get(EngineOrders, None, ORDERS), f"{instance.name}.{ORDERS}"
+        part, speed = instance.part(ENGINE, None), targets.speeds[CRANK]
+        try:
+            block = block_forces(engine, speed, round(engine.highest_order))
+        except ConfigurationError as error:
+            raise ConfigurationError(str(error).replace("EngineOrders", path, 1)) from None
+        shaft, cylinders, across = engine.axes
+        share, first = engine.counterweight_share, 1.0
+        turned_force = {first: 1j * share * block.force[first]}
+        turned_moment = {first: -1j * share * block.moment[first]}
+        for histories in (block.force, block.moment):
+            histories[first] *= 1.0 - share
+        for name, harmonics, force, moment in (
+            ("force", block.force, cylinders, NONE),
+            ("force_across", turned_force, across, NONE),
+            ("moment_across", block.moment, NONE, across),
+            ("moment_along", turned_moment, NONE, cylinders),
+            ("torque", block.torque, NONE, shaft),
+        ):
+            largest = max(map(abs, harmonics.values()), default=0.0)
+            listed = tuple(
+                (order, abs(amplitude), math.degrees(cmath.phase(amplitude)))
+                for order, amplitude in harmonics.items()
+                if abs(amplitude) > NEGLIGIBLE * largest and largest > SMALLEST
+            )
+            if listed and speed > 0.0:
+                forces.append(
+                    PlacedForce(
+                        name=f"{instance.name}_{name}",
+                        on=part,
+                        at=engine.at or targets.parts[part],
+                        force=force,
+                        moment=moment,
+                        against="",
+                        joint="",
+                        law=AppliedForce(harmonics=listed, angle=CRANK),
+                        speed=speed,
+                        path=path,
+                    )
+                )
     return forces

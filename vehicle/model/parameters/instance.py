@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.driving import STANDING, Driving, as_driven, driving_of
+from vehicle.model.parameters.engine_orders import ENGINE, ORDERS
 from vehicle.model.parameters.hardpoints import Point, mirrored, require_point
 from vehicle.model.parameters.quantity import NAME_PATTERN
 from vehicle.model.parameters.template import read_template
@@ -81,6 +82,7 @@ class Instance:
         }
         elements = [*(spring.name for spring in template.spring), *(damper.name for damper in template.damper)]
         elements += WHEEL_FORCES if template.wheel is not None else ()
+        elements += [ORDERS] if ENGINE in template.parts else ()
         sides = {f"{side}.": self.numbers.get(side, {}) for side in SIDE_SIGN}
         for prefix, value in (("", self.numbers), *sides.items()):
             table = convert(dict, value, f"{self.name}.{prefix}".rstrip("."))

@@ -11,6 +11,7 @@ from typing import Any
 from vehicle.model.parameters.body import MAX_MODES, BodyInertia, BodyMode, TrimmedBody
 from vehicle.model.parameters.compose import parameter_kinds
 from vehicle.model.parameters.driving import Driving
+from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.force_elements import Bushing, Damper, Hydromount, MainSpring, Tyre
 from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.instance import instances
@@ -55,6 +56,8 @@ def optional_paths(table: Mapping[str, Any], folder: Path) -> list[str]:
     ideal = dict.fromkeys((path for path in bushings if path not in kinds), Bushing)
     balanced = [f"{i.name}.imbalance" for i in car.values() if i.template.wheel is not None]
     new: dict[str, type] = {**ideal, **dict.fromkeys((path for path in balanced if path not in kinds), Imbalance)}
+    engines = [i for i in car.values() if ENGINE in i.template.parts]
+    new |= {f"{i.name}.{ORDERS}": EngineOrders for i in engines if not i.has(ORDERS)}
     every = {**kinds, **new}
     paths += [f"{path}.{key}" for path, parameters in new.items() for key in _keys(parameters, everything=True)]
     for path, parameters in every.items():

@@ -17,6 +17,7 @@ from vehicle.model.parameters.composition import (
     PlacedWheel,
     Rolling,
 )
+from vehicle.model.parameters.engine_orders import ORDERS, EngineOrders
 from vehicle.model.parameters.force_elements import (
     Damper,
     Hydromount,
@@ -46,6 +47,7 @@ def element_kinds(car: Mapping[str, Instance]) -> dict[str, type]:
         kinds |= {f"{i.name}.{damper.name}": Damper for damper in i.template.damper}
         kinds |= {f"{i.name}.{spring.name}": spring_kind(i.template, spring) for spring in i.template.spring}
         kinds |= {f"{i.name}.imbalance": Imbalance} if i.has("imbalance") else {}
+        kinds |= {f"{i.name}.{ORDERS}": EngineOrders} if i.has(ORDERS) else {}
     return kinds
 
 

@@ -60,7 +60,7 @@ class RoadDrive:
 
     Attributes:
         road: class of ISO 8608, as "C"; the file of a measured profile; an obstacle, as "cleat:20x50"; or "level".
-        speed: speed V [km/h].
+        speed: speed V [km/h]; 0 on a level road for a car at rest.
         wheels: name of each wheel, its distance d behind the foremost wheel [m], its track.
         track: distance of the two tracks [m].
         duration: length [s]; by default 60 s of a class, a whole profile, or an obstacle and 3 s after it.
@@ -95,7 +95,8 @@ class RoadDrive:
     radius: float = RADIUS
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
+        stands = self.road == LEVEL and self.speed == 0.0
+        if not stands and not (math.isfinite(self.speed) and 0.0 < self.speed <= FASTEST):
             raise ConfigurationError(f"--speed {self.speed:g} km/h: must be above 0 and at most {FASTEST:g}")
         if isinstance(self.road, Path):
             if self.coherence is not None:
@@ -153,6 +154,8 @@ class RoadDrive:
     @property
     def skip(self) -> float:
         """Default start of the evaluation [s]: 2 s, or 0.5 s after the rise of the last wheel, whichever is later."""
+        if self.road == LEVEL:
+            return SKIP_S
         last = max(behind for _, behind, _ in self.wheels) / (self.speed / 3.6)
         return max(SKIP_S, math.ceil(10.0 * (RISE_S + AFTER_RISE_S + last)) / 10.0)
 

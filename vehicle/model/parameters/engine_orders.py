@@ -1,0 +1,92 @@
+"""Orders of a combustion engine: numbers of its crank drive and of its gas torque."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.hardpoints import Point
+from vehicle.model.parameters.quantity import quantity, validate
+
+ENGINE, ORDERS = "engine", "orders"
+"""Name of the part of a template that can have orders, and of their table in the instance."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EngineOrders:
+    """Inline four-stroke engine at constant speed: forces and moments on its block by pistons and gas.
+
+    The block gets the inertia force of the pistons along the cylinders, their moment about the axis across, and minus
+    the torque of gas and pistons about the crankshaft (`slider_crank`). The speed is `crank.rpm`.
+    """
+
+    cylinders: float = quantity("-", "number of cylinders in line", at_least=1.0, at_most=6.0)
+    bore: float = quantity("m", "diameter of a cylinder", at_least=0.02, at_most=0.2)
+    stroke: float = quantity("m", "stroke of a piston", at_least=0.02, at_most=0.25)
+    rod: float = quantity("m", "length of the connecting rod between its bearings", at_least=0.03, at_most=0.6)
+    reciprocating_mass: float = quantity(
+        "kg", "piston, pin, rings and small-end share of the rod, of one cylinder", at_least=0.0, at_most=5.0
+    )
+    spacing: float = quantity("m", "distance of two cylinders along the crankshaft", at_least=0.0, at_most=0.4)
+    firing: tuple[float, ...] = ()
+    """firing order, as [1, 3, 4, 2], cylinder 1 at the end that the crank axis points to; needed"""
+    crank_axis: Point = quantity(
+        "-", "direction about which the crankshaft turns by the right-hand rule", length=3, default=(0.0, 1.0, 0.0)
+    )
+    cylinder_axis: Point = quantity("-", "direction of the cylinders", length=3, default=(0.0, 0.0, 1.0))
+    torque: float = quantity(
+        "N m", "mean torque of the gas of all cylinders", at_least=0.0, at_most=2000.0, default=0.0
+    )
+    compression: float = quantity("-", "ratio of compression", at_least=5.0, at_most=25.0, default=10.5)
+    balance_share: float = quantity(
+        "-", "share of the force of order 2 that balance shafts cancel", at_least=0.0, at_most=1.0, default=0.0
+    )
+    counterweight_share: float = quantity(
+        "-",
+        "share of the pistons that counterweights of the crankshaft balance in order 1; half is usual",
+        at_least=0.0,
+        at_most=1.0,
+        default=0.0,
+    )
+
+    highest_order: float = quantity("-", "highest order that is applied", at_least=1.0, at_most=16.0, default=6.0)
+    at: Point | None = quantity(
+        "m",
+        "middle of the cylinders on the crankshaft; centre of gravity of the engine by default",
+        length=3,
+        default=None,
+    )
+
+    def __post_init__(self) -> None:
+        validate(self)
+        count = round(self.cylinders)
+        if count != self.cylinders or sorted(self.firing) != list(range(1, count + 1)):
+            raise ConfigurationError(
+                f"EngineOrders.firing: found {list(self.firing)}, must name each of the {self.cylinders:g} cylinders "
+                "once, as [1, 3, 4, 2]"
+            )
+        if self.rod <= 0.5 * self.stroke:
+            raise ConfigurationError(f"EngineOrders.rod: found {self.rod:g} m, must be above half the stroke")
+        across = math.hypot(*_cross(self.crank_axis, self.cylinder_axis))
+        if not across > 0.1 * math.hypot(*self.crank_axis) * math.hypot(*self.cylinder_axis):
+            raise ConfigurationError(
+                f"EngineOrders.cylinder_axis: found {list(self.cylinder_axis)}, must be across the crankshaft, "
+                f"{list(self.crank_axis)}"
+            )
+
+    @property
+    def axes(self) -> tuple[Point, Point, Point]:
+        """Unit vectors of the crankshaft, of the cylinders, and across both: crankshaft x cylinders."""
+        shaft, across = _unit(self.crank_axis), _unit(_cross(self.crank_axis, self.cylinder_axis))
+        return shaft, _cross(across, shaft), across
+
+
+def _cross(a: Point, b: Point) -> Point:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _unit(vector: Point) -> Point:
+    length = math.hypot(*vector)
+    x, y, z = (value / length for value in vector)
+    return (x, y, z)
