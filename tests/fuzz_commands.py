@@ -126,7 +126,7 @@ def compare_case(rng: random.Random) -> Case:
 def drive_case(rng: random.Random) -> Case:
     """`drive` with a damaged target, and one or two iterations."""
     words = ["drive", "--target", _damaged("run/time.csv", rng, 0.5), "--iterations", rng.choice("11112230")]
-    words += [] if rng.random() < 0.1 else ["--channel", "knuckle_fl_acc_z=knuckle_fl_acc_z"]
+    words += [] if rng.random() < 0.1 else ["--channel", "knuckle_fl_acc_z=knuckle_fl_acc_z", "--band", "5:30"]
     return main, [*words, "--engine", "reduced", "--no-figures", "--quiet", "--output", "out", *_options("drive", rng)]
 
 
