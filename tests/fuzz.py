@@ -26,7 +26,9 @@ from pathlib import Path
 import numpy as np
 
 from scenarios.signals.random_road import random_road
+from tests.fuzz_commands import COMMAND_KINDS
 from tests.fuzz_files import file_case, judge_file, largest_memory
+from tests.fuzz_texts import WORDS, mutated
 from tests.patience import HANG
 from vehicle.commands import comfort, modes, shaker, sweep
 from vehicle.commands.command_line import FAULT
@@ -35,18 +37,12 @@ from vehicle.model.parameters.shipped import FOCUS_FILE
 CODES = {0, 2, 3, 4, 5, 6}
 """Exit codes of the contract; 130 needs an interruption."""
 
-WORDS = (
-    "nan", "inf", "-inf", "1e400", "-1", "0", "1e-300", "1e300", "1e30", "true", "''", '"x"', "[", "]", "[1,2]", "{}",
-    "[1,2,3]", "[nan,0,0]", "\0", "é", "\ufeff", "1,5", "#N/A", "0x10", "1_000", "--", "=", ".", "..", "9" * 400,
-    "[" * 1500, '"' * 3, "\\u0000", "-0.0", "1e-9", "1e9", "None", "\r", "\t",
-)  # fmt: skip
 ROWS = [
     f"{k / 500:.3f},{z:.6e}"
     for k, z in enumerate(random_road(rms=2e-4, seed=1, wheel="fr", duration=2.0).displacement["fr"][::2])
 ]
 SIGNAL = "\n".join(["time [s],displacement [m]", *ROWS]) + "\n"
 CAR = FOCUS_FILE.read_text(encoding="utf-8")
-NUMBERS = re.compile(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]?\d+)?")
 PATHS = sorted(
     {
         f"{table}.{name}"
@@ -65,44 +61,6 @@ class Outcome:
     code: int
     wrong: str
     said: str
-
-
-def mutated(text: str, rng: random.Random) -> str:
-    """A text with one to three of: a word put in, a number replaced, a line lost, doubled, swapped or cut, a byte."""
-    for _ in range(rng.randint(1, 3)):
-        lines = text.split("\n")
-        at = rng.choice([0, min(1, len(lines) - 1), rng.randrange(len(lines)), len(lines) - 1])
-        match rng.randrange(8):
-            case 0:
-                place = rng.randrange(len(text) + 1)
-                text = text[:place] + rng.choice(WORDS) + text[place:]
-            case 1 | 2:
-                found = list(NUMBERS.finditer(text))
-                if found:
-                    one = rng.choice(found)
-                    text = text[: one.start()] + number(rng, one.group()) + text[one.end() :]
-            case 3:
-                text = "\n".join(lines[:at] + lines[at + 1 :])
-            case 4:
-                text = "\n".join([*lines[:at], lines[at], *lines[at:]])
-            case 5:
-                lines[at] = (
-                    lines[at][::-1] if rng.random() < 0.3 else lines[at].replace(",", rng.choice([";", "", ",,"]))
-                )
-                text = "\n".join(lines)
-            case 6:
-                text = text[: rng.randrange(len(text) + 1)]
-            case 7:
-                other = rng.randrange(len(lines))
-                lines[at], lines[other] = lines[other], lines[at]
-                text = "\n".join(lines)
-    return text
-
-
-def number(rng: random.Random, old: str) -> str:
-    """Another number or word instead of a number."""
-    scaled = float(old) * 10.0 ** rng.uniform(-6.0, 6.0) * rng.choice([1.0, 1.0, -1.0])
-    return rng.choice([rng.choice(WORDS), f"{scaled:.6g}", f"{float(old) * rng.uniform(0.5, 2.0):.6g}"])
 
 
 def write(name: str, text: str, rng: random.Random) -> str:
@@ -170,6 +128,7 @@ def _record(rng: random.Random) -> tuple[Callable[[list[str]], int], list[str]]:
 
 KINDS: dict[str, Case] = {
     "csv": _signal, "toml": _vehicle, "set": _setting, "table": _table, "record": _record, "file": file_case,
+    **COMMAND_KINDS,
 }  # fmt: skip
 
 
@@ -246,8 +205,8 @@ def judge(code: int, out: str, err: str) -> str:
                 return f"not finite: {bad[:3]}"
         summary = Path("out/summary.json")
         if summary.exists():
-            # A mutated vehicle file may have no seat rail, or another name for it.
-            for point, comfort in json.loads(summary.read_text())["comfort"].items():
+            # A mutated vehicle file may have no seat rail, or another name for it; `drive` has no comfort.
+            for point, comfort in json.loads(summary.read_text()).get("comfort", {}).items():
                 value = comfort["rms_2_50_hz"]["overall"]
                 if not (isinstance(value, float) and math.isfinite(value)):
                     return f"comfort at {point} {value!r}"

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -146,3 +149,19 @@ def test_an_option_has_one_meaning_in_all_commands():
 def test_a_former_word_names_that_of_today(name, words, today):
     with pytest.raises(ConfigurationError, match=today):
         parser_of(name).parse_args(words)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_message_shows_the_name_of_a_function(name):
+    """The message of argparse for a ValueError ends with the name of the type, which is none that a user knows."""
+
+    def types(parser: argparse.ArgumentParser) -> list[Any]:
+        found: list[Any] = []
+        for action in parser._actions:
+            inner = action.choices.values() if isinstance(action, argparse._SubParsersAction) else ()
+            found += [action.type, *(kind for each in inner for kind in types(each))]
+        return [kind for kind in found if kind not in (None, str, int, float, Path)]
+
+    for kind in types(parser_of(name)):
+        with contextlib.suppress(ConfigurationError, argparse.ArgumentTypeError):
+            kind("x=")

@@ -26,11 +26,13 @@ class Written:
         name: name in the table.
         old: arguments that make the results of before.
         new: arguments that replace them.
+        draws: it draws frames of a film, whose threads are lost in a forked process: it runs in forked ones only.
     """
 
     name: str
     old: Sequence[str]
     new: Sequence[str]
+    draws: bool = False
 
 
 def run_words(words: Sequence[str]) -> int:

@@ -120,7 +120,7 @@ def commands(inputs: Path) -> list[Written]:
     histories = tuple(str(run / "time.csv") for run in runs)
 
     def job(name: str, words: Sequence[str], old: Sequence[str], new: Sequence[str]) -> Written:
-        return Written(name, [*words, *old], [*words, *new, "--force"])
+        return Written(name, [*words, *old], [*words, *new, "--force"], draws="--video" in words)
 
     def signals(name: str, *words: str) -> Written:
         return job(name, words, ["--input", str(first)], ["--input", str(second)])

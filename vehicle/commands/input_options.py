@@ -148,8 +148,16 @@ def speed_value(text: str) -> float | str:
 
     Args:
         text: of the option.
+
+    Raises:
+        argparse.ArgumentTypeError: neither of them.
     """
-    return text if text.startswith("channel:") and len(text) > len("channel:") else float(text)
+    if text.startswith("channel:") and len(text) > len("channel:"):
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a speed in km/h, or channel:NAME") from None
 
 
 def recorded_over_time(options: argparse.Namespace) -> bool:

@@ -206,10 +206,12 @@ def _jobs(text: str) -> int:
     """Return the number of processes.
 
     Raises:
-        ConfigurationError: less than 1.
-        ValueError: no number; argparse adds the name of the option.
+        ConfigurationError: no whole number of at least 1.
     """
-    number = int(text)
+    try:
+        number = int(text)
+    except ValueError:
+        raise ConfigurationError(f"--jobs {text!r}: must be a whole number") from None
     if number < 1:
         raise ConfigurationError(f"--jobs {number}: must be at least 1")
     return number

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from tests.validation import validated
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.beam import BeamSection, beam_stiffness, frame_stiffness, local_axes
 from vehicle.model.flexbody.frame_modes import condense_rotations, free_free_modes, rigid_shapes
 
@@ -124,6 +124,10 @@ def test_free_frame_modes_are_orthogonal_to_rigid_motion_and_mass_normalised():
     masses = np.array([1.0, 2.0, 3.0, 1.5])
     condensed, recovery = condense_rotations(k)
     frequencies, shapes = free_free_modes(condensed, masses, points, 6)
+    held, _ = condense_rotations(frame_stiffness(points[:3], [(0, 1, SECTION), (1, 2, SECTION), (2, 0, SECTION)]))
+    loose = np.pad(held, (0, 3))  # nothing holds the last node
+    with pytest.raises(DataError, match="body frame: a part of it moves without stiffness"):
+        free_free_modes(loose, masses, points, 6)
     flat = shapes.reshape(6, -1)
     weight = np.repeat(masses, 3)
     np.testing.assert_allclose((flat * weight) @ flat.T, np.eye(6), atol=1e-12)  # round-off

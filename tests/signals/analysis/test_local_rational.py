@@ -98,6 +98,8 @@ def test_refusals_and_warnings():
     drive, answer = record(60.0)
     with pytest.raises(DataError, match="is too short for an FRF up to 50 Hz"):
         local_rational_response(1.0 / RATE, drive[:400], answer[:400])
+    with pytest.raises(DataError, match="sampled at 1 Hz, too few lines for an FRF from 1 Hz on"):
+        local_rational_response(1.0, drive, answer, band=(1.0, 0.4))
     with pytest.raises(DataError, match="excitation: is constant, at 0; an FRF needs a moving input"):
         local_rational_response(1.0 / RATE, np.zeros_like(drive), answer)
     short = local_rational_response(1.0 / RATE, drive[:5000], answer[:5000])

@@ -5,7 +5,7 @@ import importlib
 import numpy as np
 import pytest
 
-from tests.benchmarks.clipped_channels import BANDS, LEVELS, RATES, WITH_RESTS, limited, sound
+from tests.benchmarks.clipped_channels import BANDS, LEVELS, RATES, WITH_RESTS, limited, noise, sound
 from tests.benchmarks.record_alignment import made_pair
 from vehicle.signals.excitation.input_files import find_input, shipped_inputs
 from vehicle.signals.excitation.signal_file import read_signal
@@ -77,6 +77,12 @@ def test_a_stuck_sensor():
     assert stuck(values, TIME) == pytest.approx((8.0, 10.999))
     (said,) = faults({"z": values}, TIME)
     assert said.startswith("z: constant for 2.999 s, from 8 to 10.999 s: a stuck sensor")
+    # At a few Hz, half a second is no sign by its length, but by the samples that repeat nowhere else.
+    slow, time = noise(BANDS[0], 200.0, 3), np.arange(12_000) / 200.0
+    slow[4000:4100] = slow[4000]
+    assert stuck(slow, time) == pytest.approx((20.0, 20.495))
+    coarse = np.round(slow * 5.0) / 5.0  # repeats at each extreme
+    assert stuck(coarse, time) is None
     # A slow motion may rest as long.
     assert stuck(np.where(TIME < 17.0, np.sin(np.maximum(TIME, 14.0) / 2.0), np.sin(8.5)), TIME) is None
 

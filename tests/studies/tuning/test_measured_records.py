@@ -107,6 +107,8 @@ def test_a_record_contains_its_plate(tmp_path):
     assert any("begins in motion: the first 2 s are left out" in text for text in entry.notices)
     # What is left of the start at rest: sticking is remembered longer than two seconds at single instants.
     assert np.sqrt(np.mean(entry.target.residuals(Car.load()) ** 2)) < 0.02
+    with pytest.raises(ConfigurationError, match="found a low-pass of 0 Hz, must be above 0"):
+        measured_histories(Car.load(), file, None, names, lowpass=0.0)
     with pytest.raises(ConfigurationError, match="this record contains its plate"):
         measured_histories(Car.load(), file, None, names, delay=0.1)
     with pytest.raises(DataError, match=r"contains no input: no moving plate .* --signal FILE"):

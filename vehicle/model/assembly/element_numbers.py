@@ -153,12 +153,17 @@ def mass_numbers(part: PlacedPart) -> Numbers:
     return {f"mass/{part.name}": np.array([numbers.mass, *moments, *-products])}
 
 
+SLOWER_HOLD = 200.0 / 3.6
+"""Speed above which the hold of the course becomes slower [m/s]: the sedan with 0.1 Hz is unstable from 280 km/h on."""
+
+
 def hold_numbers(vehicle: Vehicle) -> Numbers:
     """Return the hold of the course: stiffness and damping along x, y [N/m, N s/m] and in yaw; empty at rest.
 
     k = m (2 pi f)^2 with the mass of the car, and in yaw its inertia about the centre of gravity of the trimmed body.
     The hold along y acts at the foremost wheels, where a driver steers; the last number is their x relative to the CoG
-    [m]. At the centre of gravity the hold would let every oversteering car diverge.
+    [m]. At the centre of gravity the hold would let every oversteering car diverge. Above `SLOWER_HOLD` f falls as the
+    yaw damping of a car does, with 1/V, so that the hold alone makes no car unstable.
     """
     driving, body = vehicle.driving, vehicle.body
     if not driving.rolling:
@@ -168,7 +173,8 @@ def hold_numbers(vehicle: Vehicle) -> Numbers:
         x, y = part.cog[0] - body.cog[0], part.cog[1] - body.cog[1]
         inertia_of_part = 0.0 if part.numbers.inertia is None else part.numbers.inertia[2]
         mass, yaw_inertia = mass + part.numbers.mass, yaw_inertia + inertia_of_part + part.numbers.mass * (x**2 + y**2)
-    omega, inertia = 2.0 * np.pi * driving.hold_frequency, np.array([mass, mass, yaw_inertia])
+    omega = 2.0 * np.pi * driving.hold_frequency * min(1.0, SLOWER_HOLD / driving.speed)
+    inertia = np.array([mass, mass, yaw_inertia])
     ahead = min(wheel.center[0] for wheel in vehicle.composition.wheels) - body.cog[0]
     return {"hold/body": np.concatenate([inertia * omega**2, 2.0 * driving.hold_damping * omega * inertia, [ahead]])}
 

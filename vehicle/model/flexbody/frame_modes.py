@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from vehicle.errors import ConfigurationError
+from vehicle.errors import ConfigurationError, DataError
 from vehicle.model.flexbody.beam import FloatArray
+
+ROUNDING = 4.0 * float(np.finfo(np.float64).eps)
+"""Error of the eigenvalues over the largest one [-]."""
 
 
 def condense_rotations(stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -75,6 +78,9 @@ def free_free_modes(
 
     Returns:
         Frequencies [Hz], shape (count,); shapes [kg^-1/2], shape (count, n, 3), signs by `fix_signs`.
+
+    Raises:
+        DataError: a mode without stiffness beside the rigid-body modes.
     """
     root = np.sqrt(np.repeat(node_mass, 3))
     center = node_mass @ positions / node_mass.sum()
@@ -87,8 +93,14 @@ def free_free_modes(
         rigid, dynamic = rigid @ lower, scipy.linalg.solve_triangular(lower, half.T, lower=True)
     basis, _ = np.linalg.qr(rigid.T)  # (3 n, 6)
     away = np.eye(len(root)) - basis @ basis.T
-    dynamic = away @ dynamic @ away + 10.0 * np.trace(dynamic) * (basis @ basis.T)
+    shift = 10.0 * float(np.trace(dynamic))
+    dynamic = away @ dynamic @ away + shift * (basis @ basis.T)
     values, vectors = scipy.linalg.eigh(dynamic, subset_by_index=(0, count - 1))
+    if not values[0] > ROUNDING * shift:
+        raise DataError(
+            "body frame: a part of it moves without stiffness, or with so little that rounding hides it; check the "
+            "sections, materials and masses of its design"
+        )
     plain = vectors / root[:, None] if added is None else scipy.linalg.solve_triangular(lower.T, vectors)
     shapes = plain.T.reshape(count, -1, 3)
     return np.sqrt(values) / (2.0 * np.pi), fix_signs(shapes)

@@ -35,7 +35,8 @@ class Driving(Validated):
     )
     hold_frequency: float = quantity(
         "Hz",
-        "natural frequency of the mass of the car on the hold of its course, along x, y and in yaw",
+        "natural frequency of the mass of the car on the hold of its course, along x, y and in yaw, up to 200 km/h; "
+        "above, it falls with 1/speed",
         at_least=0.01,
         at_most=0.5,
         why="a driver corrects the course at 0.05 to 0.3 Hz; modes of the car begin at 1 Hz",

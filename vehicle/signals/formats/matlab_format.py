@@ -20,6 +20,9 @@ from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio, find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
+HEADER = b"MATLAB 5.0 MAT-file, vehicle-on-shaker".ljust(116)
+"""Text of the first 116 bytes, without the time and the system that SciPy writes: equal results are equal bytes."""
+
 
 def read(path: Path) -> Measurement:
     """Read structures with x_values and y_values, numeric vectors, and columns of matrices as channels.
@@ -307,6 +310,8 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
         oned_as="column",
         long_field_names=True,
     )
+    with path.open("r+b") as file:
+        file.write(HEADER)
 
 
 def structures(channels: tuple[Channel, ...]) -> dict[str, Any]:

@@ -8,6 +8,8 @@ import warnings
 from collections import Counter
 from collections.abc import Sequence, Set
 from dataclasses import replace
+from datetime import UTC, datetime
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +70,7 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
                 require_unpacked(path, sum(map(_unpacked, file.groups)), size)
                 log = merged([_frames(file, number) for number in sorted(buses)])
                 channels, notices = _channels(file, buses)
-                start, program = str(file.start_time), f"MDF {file.version}"
+                start, program = str(file.start_time) if file.header.abs_time else "", f"MDF {file.version}"
     except DataError:
         raise
     except Exception as error:  # asammdf raises errors of any type for damaged files
@@ -122,11 +124,16 @@ def write(path: Path, channels: Sequence[Channel], description: str) -> None:
                 comment=" ".join(filter(None, (channel.place, channel.direction))),
             )
         )
+    blocks = import_module("asammdf.blocks.v4_blocks")
+    history = blocks.FileHistory()
+    history.comment = "<FHcomment><TX>created</TX><tool_id>vehicle-on-shaker</tool_id></FHcomment>"
     with quiet(), asammdf.MDF(version="4.10") as file:
         file.header.comment = description
+        file.header.start_time = history.time_stamp = datetime.fromtimestamp(0, UTC)  # equal results are equal bytes
+        file.file_history.append(history)
         for _, signals in groups.values():
             file.append(signals, comment=description, common_timebase=True)
-        file.save(path, overwrite=True, compression=2)
+        file.save(path, overwrite=True, compression=2, add_history_block=False)
 
 
 def _channels(file: Any, buses: Set[int]) -> tuple[list[Channel], list[str]]:

@@ -10,7 +10,6 @@ Source: MTS, RPC III File Formats; the tests compare with the reader rpc3-file.
 from __future__ import annotations
 
 import math
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +20,10 @@ from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.text import LARGEST
 
 RECORD, BLOCK = 128, 512
+
+NO_DATE = "01-Jan-1970 00:00:00"
+"""Time of writing in each file of this program: equal results are equal bytes."""
+
 ORDERS = {"BINARY": "<", "BINARY_IEEE_LITTLE_END": "<", "BINARY_IEEE_BIG_END": ">"}
 WIDTHS = {"SHORT_INTEGER": "i2", "FLOATING_POINT": "f4"}
 FRAMES = (2048, 1024, 512, 256, 128)
@@ -94,7 +97,7 @@ def read(path: Path) -> Measurement:
         channels=tuple(channel_list),
         sha256=digest(path),
         program=head.get("OPERATION", ""),
-        start=head.get("DATE", ""),
+        start=head.get("DATE", "").removeprefix(NO_DATE),
         notices=tuple(notices),
     )
 
@@ -203,7 +206,7 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
         padded[:samples] = channel.values
         table[:, index, :] = padded.reshape(frames, frame)
     head = {
-        "DATE": datetime.now(UTC).strftime("%d-%b-%Y %H:%M:%S"),
+        "DATE": NO_DATE,
         "OPERATION": description[:95],
         "FILE_TYPE": "TIME_HISTORY",
         "TIME_TYPE": "RESPONSE",

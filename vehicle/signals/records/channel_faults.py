@@ -57,6 +57,11 @@ CERTAIN = 0.4
 """Constant duration that suffices for a stuck channel if it has five intervals [s]: a sensor stuck for half a second
 repeats its value for a sample less than that."""
 
+OUTLASTS = 5.0
+"""Minimum number of samples of a constant part over those of the second longest one of the record [-], above which
+`CERTAIN` suffices whatever the intervals. A motion of a few Hz is slow at its extremes, where rounding repeats a value:
+the longest of such parts has at most 3.2 times the samples of the second longest in 2000 sound records."""
+
 OTHERS_MOVE = 0.2
 """Minimum RMS of another channel in the constant part, over its RMS in the whole record, that counts as motion [-]."""
 
@@ -204,6 +209,8 @@ def stuck(values: Vector, time: Vector, others: list[Vector] | None = None) -> t
     moving = float(time[-1] - time[0]) - sum(float(time[last] - time[first]) for first, last in [*rested, (begin, end)])
     interval = max(moving, 0.0) / crossings
     minimum = max(STUCK_PERIODS * interval, min(CERTAIN, CERTAIN_PERIODS * interval))
+    if end + 1 - begin >= OUTLASTS * _second_longest(values):
+        minimum = min(minimum, CERTAIN)
     return (float(time[begin]), float(time[end])) if length >= minimum else None
 
 
@@ -218,6 +225,12 @@ def constant_part(values: Vector) -> tuple[int, int] | None:
         return None
     longest = int(np.argmax(moves[1:] - moves[:-1]))
     return int(moves[longest]) + 1, int(moves[longest + 1])
+
+
+def _second_longest(values: Vector) -> int:
+    """Return the number of equal samples in a row in the second longest constant part, the ends included."""
+    ends = np.concatenate([[-1], np.flatnonzero(np.diff(values) != 0.0), [values.size - 1]])
+    return int(np.sort(np.diff(ends))[-2])
 
 
 def _rested_at_the_ends(values: Vector) -> list[tuple[int, int]]:

@@ -266,6 +266,8 @@ def _histories(
             f"{path}: --delay S and --drift correct the clock against a signal of another file; this record contains "
             "its plate. Remove both, or add --signal FILE; --delay GROUP=TIME is for sensors that lag the plate"
         )
+    if not lowpass > 0.0:
+        raise ConfigurationError(f"{path}: found a low-pass of {lowpass:g} Hz, must be above 0")
     road: RoadCar | None = None
     settled = 0.0
     if isinstance(signal, Road):
