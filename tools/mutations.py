@@ -67,8 +67,8 @@ FAULTS = (
     Fault("vehicle/core/source/rolling.h", "root(1.0 - frame[7] * frame[7])", "1.0", "physics/test_round_tyre.py physics/test_rolling_tyre.py physics/test_road_slope.py"),
     # drawing, runs
     Fault("vehicle/drawing/rendering/rounding.py", "[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0]", "[1.0, 2.0, 5.0, 10.0]", "drawing/rendering"),
-    Fault("vehicle/runs/report/findings.py", "low = float(np.mean(finite < COHERENT))", "low = float(np.mean(finite > COHERENT))", "runs/report/test_page.py"),
-    Fault("vehicle/runs/report/differences.py", "100.0 * (other / first - 1.0)", "100.0 * (first / other - 1.0)", "runs/report runs/comparison"),
+    Fault("vehicle/runs/report/findings.py", "low = float(np.mean(finite < COHERENT))", "low = float(np.mean(finite > COHERENT))", "runs/report/test_findings.py"),
+    Fault("vehicle/runs/report/differences.py", "100.0 * (other / first - 1.0)", "100.0 * (first / other - 1.0)", "runs/report/test_page.py runs/report runs/comparison"),
     Fault("vehicle/runs/comparison/frf_comparison.py", "np.nan_to_num(coherences[0], nan=1.0) * np", "np.nan_to_num(coherences[0], nan=1.0) + 0.0 * np", "runs/comparison/test_weights.py"),
     Fault("vehicle/handover/fmu/output_rows.py", "rate = displacements.poles * model.poles", "rate = displacements.poles * model.poles * 1.01", "handover/fmu/test_against_the_engine.py"),
     Fault("vehicle/handover/page/trial_data.py", "high = max(usual, 2.0 * value)", "high = max(usual, 0.5 * value)", "runs/report"),

@@ -26,7 +26,6 @@ from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.main_band import main_band, weighted_bands
 from vehicle.runs.report.modes_section import modes_of
 from vehicle.runs.report.moving_modes import FULL
-from vehicle.signals.formats.frf_file import read_frf
 
 EMPTY = {"meta", "link", "input", "img", "br"}
 
@@ -112,21 +111,6 @@ def test_a_report_of_the_folder_is_that_of_the_command(reported, tmp_path, capsy
     assert again.read_bytes() == reported.page.read_bytes()
     assert main([str(reported.folder), "--output", str(again), "--quiet"]) == 2
     assert "exists; give --force" in capsys.readouterr().err
-
-
-def test_the_share_of_incoherent_lines_is_that_of_the_table(reported, outline):
-    responses, words = read_frf(reported.folder / "frf.csv"), " ".join(outline.words)
-    for channel, point in (("knuckle_fl_acc_z", "knuckle"), ("seat_rail_acc_z", "seat rail")):
-        coherence = responses.coherence[responses.channels.index(channel)]
-        finite = coherence[np.isfinite(coherence)]
-        low = np.mean(finite < 0.9)
-        assert 0.05 < abs(low - 0.5) < 0.5, "both sides would look alike"
-        said = re.search(
-            rf"At the {point} the median of the coherence is ([0-9.]+); it is below 0.9 on ([0-9.]+) %", words
-        )
-        assert said is not None
-        assert float(said[1]) == pytest.approx(np.median(finite), abs=1e-3)
-        assert float(said[2]) == pytest.approx(100.0 * low, rel=0.05)
 
 
 def empty_figure(path, *arguments, **options):
