@@ -7,11 +7,27 @@ import gc
 import pytest
 
 from tests.advice import LARGEST, run_advice
+from tests.shared_cars import share_cars
+from tests.undrawn import DRAWN, leave_out_drawings
 from tests.validation_page import check_page
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
+
+_present = {"test": ""}
+
+
+def pytest_configure():
+    """Draw figures only where a test looks at them; build equal cars once."""
+    share_cars()
+    leave_out_drawings(lambda: _present["test"].startswith(tuple(f"tests/{name}" for name in DRAWN)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item):
+    """Note the test, also for the fixtures of its module."""
+    _present["test"] = item.nodeid
 
 
 def pytest_collection_finish():

@@ -64,12 +64,12 @@ FAULTS = (
     Fault("scenarios/lumped/road_holding.py", "LINES_PER_BAND) + 0.5)", "LINES_PER_BAND) + 0.0)", "scenarios/lumped"),
     Fault("vehicle/core/source/dampers.h", "1.5 * body[0] - 0.5 * body[1]", "body[0]", "physics/test_semi_active_half_car.py physics/test_semi_active_car.py"),
     Fault("vehicle/core/source/rows.h", "+ c->gain.at[i] * rate", "+ 0.98 * c->gain.at[i] * rate", "engines/simulation/test_maxwell_rows.py engines/simulation/test_native.py engines/reduced/test_reduced_car.py"),
-    Fault("vehicle/core/source/rolling.h", "root(1.0 - frame[7] * frame[7])", "1.0", "physics/test_rolling_tyre.py physics/test_round_tyre.py physics/test_road_slope.py"),
+    Fault("vehicle/core/source/rolling.h", "root(1.0 - frame[7] * frame[7])", "1.0", "physics/test_round_tyre.py physics/test_rolling_tyre.py physics/test_road_slope.py"),
     # drawing, runs
     Fault("vehicle/drawing/rendering/rounding.py", "[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0]", "[1.0, 2.0, 5.0, 10.0]", "drawing/rendering"),
-    Fault("vehicle/runs/report/findings.py", "low = float(np.mean(finite < COHERENT))", "low = float(np.mean(finite > COHERENT))", "runs/report/test_page.py"),
-    Fault("vehicle/runs/report/differences.py", "100.0 * (other / first - 1.0)", "100.0 * (first / other - 1.0)", "runs/report runs/comparison"),
-    Fault("vehicle/runs/comparison/frf_comparison.py", "np.nan_to_num(coherences[0], nan=1.0) * np", "np.nan_to_num(coherences[0], nan=1.0) + 0.0 * np", "runs/comparison signals/analysis/test_frf_agreement.py"),
+    Fault("vehicle/runs/report/findings.py", "low = float(np.mean(finite < COHERENT))", "low = float(np.mean(finite > COHERENT))", "runs/report/test_findings.py"),
+    Fault("vehicle/runs/report/differences.py", "100.0 * (other / first - 1.0)", "100.0 * (first / other - 1.0)", "runs/report/test_page.py runs/report runs/comparison"),
+    Fault("vehicle/runs/comparison/frf_comparison.py", "np.nan_to_num(coherences[0], nan=1.0) * np", "np.nan_to_num(coherences[0], nan=1.0) + 0.0 * np", "runs/comparison/test_weights.py"),
     Fault("vehicle/handover/fmu/output_rows.py", "rate = displacements.poles * model.poles", "rate = displacements.poles * model.poles * 1.01", "handover/fmu/test_against_the_engine.py"),
     Fault("vehicle/handover/page/trial_data.py", "high = max(usual, 2.0 * value)", "high = max(usual, 0.5 * value)", "runs/report"),
     # studies, commands, scenarios

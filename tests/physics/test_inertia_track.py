@@ -251,7 +251,7 @@ def first_harmonic(x, omega, times):
 
 
 @pytest.mark.parametrize(("force", "said"), [(20.0, "within the gap"), (80.0, "at the gap"), (400.0, "beyond the gap")])
-def test_a_decoupler_against_a_stiff_solver(force, said):
+def test_a_decoupler_against_an_adaptive_solver(force, said):
     mass, frequency, step = 5.0, 11.0, 1e-4
     spec, omega, period = empty_spec(step), 2.0 * np.pi * frequency, round(1.0 / (frequency * step))
     omega = 2.0 * np.pi / (period * step)
@@ -278,10 +278,10 @@ def test_a_decoupler_against_a_stiff_solver(force, said):
         ]
 
     times = step * (settle + np.arange(last))
-    exact = solve_ivp(slopes, (0.0, times[-1]), np.zeros(6), "Radau", times, rtol=1e-7, atol=1e-11, max_step=1e-3).y
+    exact = solve_ivp(slopes, (0.0, times[-1]), np.zeros(6), "DOP853", times, rtol=1e-7, atol=1e-11, max_step=1e-3).y
     found, expected = (force / first_harmonic(z, omega, times) + mass * omega**2 for z in (moved[:, 2], exact[0]))
     assert (np.max(np.abs(exact[2])) > GAP) == (said != "within the gap")
-    claim, source = f"mount with a decoupler, 11 Hz, {said}", foreign("scipy", "Radau, tolerance 1e-7")
+    claim, source = f"mount with a decoupler, 11 Hz, {said}", foreign("scipy", "DOP853, tolerance 1e-7")
     subject = "Bushings, springs and stops"
     validated(
         subject, f"{claim}: dynamic stiffness", abs(found), abs(expected), rel=1e-3, unit="N/m", source=source

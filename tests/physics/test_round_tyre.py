@@ -79,3 +79,26 @@ def test_standing_round_tyres_have_the_wheel_rate_of_rolling_tyres() -> None:
             rates[contact, standing] = rate
     assert rates["true", True] == pytest.approx(rates["true", False], rel=5e-3)
     assert rates["false", True] < 0.85 * rates["false", False]
+
+
+def test_spin_moves_the_lowest_point_along_the_road(tmp_path: Path) -> None:
+    """Rows over the spins of wheels with camber: e x r, e the axle and r the lowest point of a disc."""
+    car = rolling_car(tmp_path, 20.0)
+    model = car.model.model
+    rows, data, rng = Rows(model, car.static.preload), mujoco.MjData(model), np.random.default_rng(5)
+    tyres = rows.layout.rolling
+    mujoco.mj_integratePos(model, data.qpos, rng.uniform(-0.3, 0.3, model.nv), 1.0)
+    mujoco.mj_fwdPosition(model, data)
+    mujoco.mj_fwdVelocity(model, data)
+    rows(model, data)
+    angle = np.linspace(0.0, 2.0 * np.pi, 100_001)
+    rim = RADIUS * np.column_stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)])
+    jacobian = data.efc_J.reshape(-1, model.nv)
+    expected, computed = [], []
+    for tyre, hub, spin in zip(tyres.tyres, tyres.hubs, tyres.spins, strict=True):
+        turned = data.xmat[hub].reshape(3, 3)
+        lowest = turned @ rim[np.argmin(rim @ turned[2])]
+        expected.append(np.cross(turned[:, 1], lowest))
+        computed.append(jacobian[rows.layout.bushings.rows[tyre], spin])
+        assert abs(turned[2, 1]) > 0.02, "no camber: the test would see nothing"
+    np.testing.assert_allclose(computed, expected, atol=1e-4)  # of the angle between two points of the rim

@@ -148,6 +148,30 @@ def test_an_fmu_starts_at_rest_over_plates_at_a_level(tmp_path):
     agree("focus_road on A, plates lifted by 1 mm", found)
 
 
+def test_an_acceleration_is_the_second_derivative_of_its_displacement(tmp_path):
+    """At the instant and not filtered; no friction, whose force jumps, on a plate that begins smoothly."""
+    car = Car.load("focus", ("damper.coulomb_friction=0",))
+    instance, rate = Instance(written(car, tmp_path)), 2.0 * np.pi * 8.0
+    outputs = [name for name in instance.fmu.names("output") if "_displacement_" in name or "_acc_" in name]
+    rows = []
+    for k in range(1, 2500):
+        time = k * STEP
+        rise, slope = (1.0 - np.exp(-((time / 0.1) ** 3))), 3.0 * time**2 / 0.1**3 * np.exp(-((time / 0.1) ** 3))
+        height, velocity = np.sin(rate * time), rate * np.cos(rate * time)
+        instance.set({"plate_fl_displacement": 2e-3 * rise * height,
+                      "plate_fl_velocity": 2e-3 * (rise * velocity + slope * height)})  # fmt: skip
+        instance.step(STEP)
+        rows.append(instance.get(outputs))
+    instance.close()
+    found = dict(zip(outputs, np.array(rows).T, strict=True))
+    for name in (name for name in outputs if "_acc_" in name):
+        point, _, axis = name.rpartition("_acc_")
+        second = np.diff(found[f"{point}_displacement_{axis}"], 2) / STEP**2
+        # The difference is wrong by (w h)^2 / 12: 1e-3 up to 90 Hz.
+        largest = max(np.max(np.abs(found[f"{point}_acc_{letter}"])) for letter in "xyz")
+        assert found[name][1:-1] == pytest.approx(second, abs=1e-3 * largest), name
+
+
 CONTROL = {
     "minimum_damping": 500,
     "maximum_damping": 4000,
