@@ -8,6 +8,7 @@ Equal sources give equal bytes. stamp.json beside the library has the digests of
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import json
 import subprocess
@@ -41,4 +42,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     main()

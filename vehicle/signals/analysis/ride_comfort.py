@@ -9,7 +9,7 @@ chapter 4); `weighted` is the RMS after the weightings of a seat, Wd for x and y
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,8 +61,9 @@ def comfort_columns(
     *,
     skip: float = 0.0,
     band: tuple[float, float] = COMFORT_BAND,
+    names: Collection[str] = (UNWEIGHTED, WEIGHTED),
 ) -> dict[str, Vector]:
-    """Return both comfort values of r runs; the values of a run are bitwise independent of the other runs.
+    """Return the comfort values of r runs; the values of a run are bitwise independent of the other runs.
 
     Args:
         time_step: sampling interval [s].
@@ -70,16 +71,20 @@ def comfort_columns(
         cushion: accelerations of the cushion [m/s2], (r, 3, n); None for a car without a seat.
         skip: excluded time at the beginning [s]; the filters of the weightings process it.
         band: band of the unweighted value [Hz].
+        names: `UNWEIGHTED`, `WEIGHTED` or both.
 
     Returns:
-        Name to values, (r,) each: those of `comfort_units`, and `WAVE_NAMES`. `seat_value` is NaN for a rail at rest.
+        Name to values, (r,) each: those of `comfort_units` with these names, with `UNWEIGHTED` the error and
+        `WAVE_NAMES`. `seat_value` is NaN for a rail at rest.
 
     Raises:
         DataError: a record that is too short or not finite.
     """
-    columns = _point(time_step, rail, skip, band, "")
+    columns = _point(time_step, rail, skip, band, names)
     if cushion is not None:
-        on_seat = _point(time_step, cushion, skip, band, SEAT_PREFIX)
+        on_seat = {
+            f"{SEAT_PREFIX}{name}": values for name, values in _point(time_step, cushion, skip, band, names).items()
+        }
         columns |= {name: values for name, values in on_seat.items() if name in comfort_units(seated=True)}
         columns[SEAT_VALUE] = np.array(
             [
@@ -90,19 +95,21 @@ def comfort_columns(
     return columns
 
 
-def _point(time_step: float, records: Vector, skip: float, band: tuple[float, float], prefix: str) -> dict[str, Vector]:
-    """Return the values at one point, with the prefix in front of their names."""
-    value = comfort_values(time_step, records[:, :, round(skip / time_step) :], band)
-    weighted = np.array([weighted_rms_of(time_step, xyz, skip=skip) for xyz in records])
-    columns: Mapping[str, Vector] = {
-        **{f"{UNWEIGHTED}_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)},
-        UNWEIGHTED: value.overall,
-        **{f"{WEIGHTED}_{axis}": weighted[:, number] for number, axis in enumerate(AXES)},
-        WEIGHTED: weighted[:, 3],
-        ERROR: value.error,
-        **dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True)),
-    }
-    return {f"{prefix}{name}": values for name, values in columns.items()}
+def _point(
+    time_step: float, records: Vector, skip: float, band: tuple[float, float], names: Collection[str]
+) -> dict[str, Vector]:
+    """Return the values at one point."""
+    columns: dict[str, Vector] = {}
+    if UNWEIGHTED in names:
+        value = comfort_values(time_step, records[:, :, round(skip / time_step) :], band)
+        columns |= {f"{UNWEIGHTED}_{axis}": value.axes[:, number] for number, axis in enumerate(AXES)}
+        columns |= {UNWEIGHTED: value.overall, ERROR: value.error}
+        columns |= dict(zip(WAVE_NAMES, value.waves.view(np.float64).T, strict=True))
+    if WEIGHTED in names:
+        weighted = np.array([weighted_rms_of(time_step, xyz, skip=skip) for xyz in records])
+        columns |= {f"{WEIGHTED}_{axis}": weighted[:, number] for number, axis in enumerate(AXES)}
+        columns[WEIGHTED] = weighted[:, 3]
+    return columns
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -95,7 +95,8 @@ class RideMeasure:
         if quantities & COMFORT:
             seated = any(quantity.startswith(SEAT_PREFIX) for quantity in quantities)
             cushion = runs.stacked(*SEAT) if seated else None
-            columns = comfort_columns(runs.timestep, runs.stacked(*RAIL), cushion, skip=self.skip)
+            names = {quantity.removeprefix(SEAT_PREFIX) for quantity in quantities}
+            columns = comfort_columns(runs.timestep, runs.stacked(*RAIL), cushion, skip=self.skip, names=names)
         return {
             number: columns[number] if number in columns else self._number(runs, *split_name(number))
             for number in self.numbers

@@ -158,6 +158,7 @@ def _batch_results(cases: Sequence[Case], measure: BatchMeasure) -> list[Result]
         case, rate = cases[group[0]], cars[group[0]].vehicle.solver.record_rate
         signal = signal_of(case.source)
         size = int(max(ROOM / (8.0 * len(measure.channels) * (signal.duration * rate + 1.0)), 1.0))
+        size -= size % LANES if size > LANES else 0  # full vectors
         for first in range(0, len(group), size):
             batch = group[first : first + size]
             accept = case.engine == "reduced"
