@@ -68,8 +68,8 @@ def compile_core(
     for source in sorted(path.name for path in folder.glob("*.c")):
         stem = source.removesuffix(".c")
         if source not in (*VARIANTS, *DOUBLE):
-            # The oldest processor runs the files that exist once.
-            compiled(source, stem, stamp, *processors[min(processors)])
+            # The oldest processor runs the files that exist once; they take little of the time.
+            compiled(source, stem, stamp, "-Os", *processors[min(processors)])
             continue
         for number, chosen in processors.items():
             for letter, real in (("d", "double"), ("f", "float"))[: 2 if single and source in VARIANTS else 1]:

@@ -45,4 +45,18 @@ static inline double logarithm(double x) {
 
 /* x^y for x >= 0 and y > 0; a power below 1e-307 counts as that. */
 static inline double power(double x, double y) { return exponential(y * logarithm(larger(x, 1e-300))); }
+
+/* cos(2 pi x) and sin(2 pi x), with the polynomials of FreeBSD's k_cos.c and k_sin.c on -1/8 ... 1/8; |x| < 1e9. */
+static inline void circle(double x, double *cosine, double *sine) {
+  Bits quarters = {4.0 * x + TO_WHOLE};
+  double a = (x - 0.25 * (quarters.x - TO_WHOLE)) * 6.283185307179586, z = a * a, half = 0.5 * z, w = 1.0 - half;
+  double c = w + (((1.0 - w) - half) + z * z * (4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 + z *
+             (2.48015872894767294178e-05 + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 +
+             z * -1.13596475577881948265e-11))))));
+  double s = a + a * z * (-1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 +
+             z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+  int turned = quarters.bits & 1, back = quarters.bits >> 1 & 1;
+  *cosine = (turned ^ back ? -1.0 : 1.0) * (turned ? s : c);
+  *sine = (back ? -1.0 : 1.0) * (turned ? c : s);
+}
 #endif

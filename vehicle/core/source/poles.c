@@ -10,6 +10,11 @@
 #include "march.h"
 
 enum { BLOCK = 8 };
+#ifdef EMBEDDED
+enum { KEEPS = 0 }; /* an instance reads its outputs from the states alone */
+#else
+enum { KEEPS = 1 };
+#endif
 
 /* Advance a block. c: its factors; u: n inputs; sums: w sums; x, to: states before and after; last, now: changes of the
  * states since the last sample, before and after, if `kept`; paired: four pairs, or else eight real poles. */
@@ -55,7 +60,7 @@ void NAME(advance_poles)(const March *job, const V *x, V *to, const V *last, V *
   const V *u = table + job->rows.inputs, *c = job->poles.at;
   int64_t n = job->inputs, w = job->sums, pairs = job->rows.pairs, states = job->rows.states, s = 0;
   int64_t size = BLOCK * (1 + n + w);
-  if (job->changes.n[0]) {
+  if (KEEPS && job->changes.n[0]) {
     for (; s < pairs; s += BLOCK, c += size) block(c, n, w, u, sums, x + s, to + s, last + s, now + s, 1, 1);
     for (; s < states; s += BLOCK, c += size) block(c, n, w, u, sums, x + s, to + s, last + s, now + s, 0, 1);
   } else {

@@ -57,8 +57,8 @@ WINDOW = 4096
 SHORTEST = 1.05 * max(SPEEDS)
 """Minimum length of the evaluated record in windows: one window at the highest speed, and the lost last samples."""
 
-WORKER = ("trial_signals.js", "trial_worker.js")
-"""Scripts of the numbers, which the page runs in a worker."""
+WORKER = ("trial_worker.js",)
+"""Scripts of the tasks, which the page runs in a worker."""
 
 PAGE = ("trial_picture.js", "trial.js")
 """Scripts of sliders, plots and moving picture, after wireframe.js of the report."""
@@ -115,7 +115,8 @@ def trial_data(car: Car, signal: Signal, *, wheel: str, skip: float = 0.0, road:
         "shown": next((index for index, name in enumerate(names) if name == f"damper_{wheel}"), 0),
         "derivative": WEIGHTS.tolist(),
         "ahead": AHEAD,
-        "weightings": [_finite(dataclasses.asdict(weighting(name))) for name in contact.weightings],
+        "weightings": [weighting(name).sections.tolist() for name in contact.weightings],
+        "decay": max(weighting(name).decay_s for name in contact.weightings),
         "factors": list(contact.comfort_factors),
         "sliders": [*_sliders(car, base, road), *stepped],
         "roadClass": road and road.road_class,
@@ -184,11 +185,6 @@ def _require(car: Car, signal: Signal, skip: float) -> None:
 def _module() -> bytes:
     """Return the WebAssembly module, built by tools/core.py."""
     return resources.files("vehicle.handover.fmu").joinpath("binaries/wasm32-wasi/page.wasm").read_bytes()
-
-
-def _finite(record: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a weighting with None for infinite frequencies, which JSON lacks."""
-    return {name: None if value == np.inf else value for name, value in record.items()}
 
 
 def _words(damper: str) -> str:

@@ -1,31 +1,67 @@
 "use strict";
-// Numbers of the trial, computed in a worker after trial_signals.js: the runs of the car are the C runtime of FMUs as
-// WebAssembly; here are cars, plates, records, motions and FRFs.
+// Tasks of the trial in a worker. The WebAssembly module (vehicle/handover/fmu/runtime/web_*.c) runs the car and computes
+// all numbers; here are its memory, the cars and plates of settings, and the order of the calls.
 
 // Samples of a window and of a period; realisations, and periods before the evaluated one: a lightly damped mode of 3 Hz
 // on the shaker takes 12 s to settle, a car on rolling tyres has none. Range of the FRF [Hz]. Length of the moving picture
 // and time between two of its positions [s].
 const LINES = 4096, REALISATIONS = 4, SETTLING = { plates: 3, road: 2 }, LOWEST = 1, HIGHEST = 50, PICTURE = 6, POSITION = 0.01;
 
+// Bytes from base 85, which packed_numbers.py writes, and deflate.
+const DIGITS = new Uint8Array(128);
+[..."0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;,=>?@^_`{|}~"].forEach((letter, k) => { DIGITS[letter.charCodeAt(0)] = k; });
+async function bytesOf(text) {
+  const packed = new DataView(new ArrayBuffer(4 * Math.ceil(text.length / 5)));
+  for (let at = 0; at < text.length; at += 5) {
+    let value = 0;
+    for (let k = at; k < at + 5; k++) value = 85 * value + (k < text.length ? DIGITS[text.charCodeAt(k)] : 84);
+    packed.setUint32(at / 5 * 4, value);
+  }
+  const stream = new Blob([packed.buffer.slice(0, Math.floor(text.length * 4 / 5))]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
 class Trial {
   static async open(data) {
     const { instance } = await WebAssembly.instantiate(await bytesOf(data.module), {});
-    const tracks = await Promise.all(data.tracks.map(async ({ step, order, changes }) =>
-      Float64Array.from(integersOf(await bytesOf(changes), order), (value) => step * value)));
-    return new Trial(data, instance.exports, tracks);
+    const trial = new Trial(data, instance.exports);
+    trial.tracks = await Promise.all(data.tracks.map(async ({ step, order, changes }) => trial.at(await bytesOf(changes), (place, count) =>
+      trial.module.open_track(place, count / 2, order, step))));
+    return trial;
   }
 
-  constructor(data, module, tracks) {
-    Object.assign(this, { data, module, tracks, cars: [], tables: new Map(), cancelled: false });
+  constructor(data, module) {
+    Object.assign(this, { data, module, cars: [], tables: new Map(), transforms: new Map(), cancelled: false });
     module._initialize();
-    const { ahead, plateCount, samples } = data, most = Math.max(samples, (SETTLING.plates + 1) * LINES) + ahead;
-    const outputs = Math.max(3 + 2 * data.dampers.length, data.motions.length);
+    const { ahead, plateCount, samples, interval } = data, most = Math.max(samples, (SETTLING.plates + 1) * LINES) + ahead;
+    const outputs = Math.max(3 + 2 * data.dampers.length, data.motions.length), last = Math.round(HIGHEST * LINES * interval);
     this.places = {
-      parameters: module.reserve(8 * data.parameters.flat().length),
+      parameters: module.reserve(8 * (data.parameters.flat().length + 1)),
       plates: module.reserve(8 * 2 * plateCount * most),
       outputs: module.reserve(4 * outputs),
       values: module.reserve(8 * outputs * most),
+      accelerations: module.reserve(8 * 3 * most),
+      results: module.reserve(8 * Math.max(LINES, 4 * last)),
+      derivative: this.at(Float64Array.from(data.derivative)),
+      weightings: data.weightings.map((sections) => this.at(Float64Array.from(sections.flat()))),
     };
+    this.sine = module.open_sine(this.transform(LINES), last, interval);
+  }
+
+  // Place of a copy of an array in the memory of the module, or what `use` makes of it and of the number of its elements.
+  at(array, use = (place) => place) {
+    const place = this.module.reserve(array.byteLength);
+    new array.constructor(this.module.memory.buffer, place, array.length).set(array);
+    return use(place, array.length);
+  }
+
+  numbers(place, count) {
+    return new Float64Array(this.module.memory.buffer, place, count).slice();
+  }
+
+  transform(least) {
+    if (!this.transforms.has(least)) this.transforms.set(least, this.module.open_transform(least));
+    return this.transforms.get(least);
   }
 
   // Take the car and the plates of settings: sliders with fixed positions change one at a time.
@@ -40,57 +76,34 @@ class Trial {
       [place, this.ratio] = [cars[k], ratios[k]];
     }
     if (!this.cars[place]) {
-      const content = wordsOf(await bytesOf(data.cars[place].text), data.cars[place].runs), at = module.reserve(content.length);
-      new Uint8Array(module.memory.buffer, at, content.length).set(content);
-      this.cars[place] = module.open_car(at, content.length);
+      const { text, runs } = data.cars[place], bytes = await bytesOf(text);
+      const planes = this.at(bytes), table = this.at(Int32Array.from(runs.flat()));
+      this.cars[place] = module.open_car(planes, table, runs.length);
       if (!this.cars[place]) throw new Error("the numbers of the car are damaged");
     }
     this.car = this.cars[place];
     if (!this.tables.has(this.ratio)) this.tables.set(this.ratio, this.platesAt(this.ratio));
-    this.plates = this.tables.get(this.ratio);
+    Object.assign(this, this.tables.get(this.ratio));
     this.skip = Math.round(data.skip / this.ratio);
   }
 
-  // Table (z, z') of all plates, sample by sample, at a ratio of the speed: the record ends with the road.
+  // Table (z, z') of all plates, sample by sample, at a ratio of the speed, and its samples: the record ends with the road.
   platesAt(ratio) {
     const { interval, ahead, plateCount, samples, wheels } = this.data, count = Math.min(Math.floor((samples - 1) / ratio + 1e-9) + 1, samples);
-    const plates = new Float64Array(2 * plateCount * (count + ahead));
-    for (const [plate, track, behind] of wheels) {
-      const table = plateTable(heightsAt(this.tracks[track], ratio, behind, count), interval, ahead);
-      for (let i = 0; i < count + ahead; i++) plates.set(table.subarray(2 * i, 2 * i + 2), 2 * (i * plateCount + plate));
-    }
-    return plates;
+    const plates = this.module.reserve(8 * 2 * plateCount * (count + ahead));
+    for (const [plate, track, behind] of wheels)
+      this.module.fill_plate(this.tracks[track], ratio, behind, count, interval, plates + 16 * plate, 2 * plateCount);
+    return { plates, count };
   }
 
-  // Histories of outputs, one array each: the car from rest over plates, (z, z') of all plates sample by sample.
-  run(parameters, plates, outputs) {
-    const { module, places, data } = this, samples = plates.length / (2 * data.plateCount), buffer = module.memory.buffer;
-    new Float64Array(buffer, places.parameters, parameters.length).set(parameters);
-    new Float64Array(buffer, places.plates, plates.length).set(plates);
-    new Int32Array(buffer, places.outputs, outputs.length).set(outputs);
-    const done = module.run_car(this.car, places.parameters, places.plates, samples, data.interval, places.outputs, outputs.length, places.values);
+  // Run the car from rest over a number of samples of plates; returns the places of the histories of outputs.
+  run(settings, plates, samples, outputs) {
+    const { module, places, data } = this, { buffer } = module.memory;
+    new Float64Array(buffer, places.parameters).set([...this.parametersOf(settings), plates === places.plates ? 1 : settings.level]);
+    new Int32Array(buffer, places.outputs).set(outputs);
+    const done = module.run_car(this.car, places.parameters, plates, samples, data.interval, places.outputs, outputs.length, places.values);
     if (done < samples) throw new Error(`at ${(data.interval * done).toPrecision(3)} s the motion of the car is no longer finite`);
-    const values = new Float64Array(module.memory.buffer, places.values, outputs.length * samples);
-    return outputs.map((_, k) => values.slice(k * samples, (k + 1) * samples));
-  }
-
-  // Notices of the last run on quantities that left their valid range.
-  notices() {
-    return this.data.notices.filter((_, k) => this.module.left(this.car, k));
-  }
-
-  // Second derivative of a position, with the filter of the records; the last `ahead` samples are lost.
-  acceleration(position) {
-    const { derivative, ahead, interval } = this.data, n = position.length - ahead, result = new Float64Array(n);
-    const start = position[0], moved = new Float64Array(n + 2 * ahead);
-    for (let i = 0; i < position.length; i++) moved[i + ahead] = position[i] - start;
-    const weights = derivative.map((weight) => weight / interval ** 2);
-    for (let i = 0; i < n; i++) {
-      let sum = 0;
-      for (let k = 0; k < weights.length; k++) sum += weights[k] * moved[i + k];
-      result[i] = sum;
-    }
-    return result;
+    return outputs.map((_, k) => places.values + 8 * k * samples);
   }
 
   parametersOf(settings) {
@@ -104,50 +117,51 @@ class Trial {
 
   // Record of the car with comfort, densities and dampers.
   async record(settings) {
+    const asked = performance.now();
     await this.choose(settings);
-    const { data, skip } = this, { interval } = data, count = data.dampers.length, started = performance.now();
-    const outputs = [...data.positions, ...data.dampers.flatMap(({ velocity, force }) => [velocity, force])];
-    const histories = this.run(this.parametersOf(settings), this.plates.map((value) => settings.level * value), outputs);
-    const marched = performance.now(), notices = this.notices(), acceleration = histories.slice(0, 3).map((position) => this.acceleration(position));
-    const samples = acceleration[0].length, [w] = data.weightings;
-    const [x, y] = weighted(acceleration[0], acceleration[1], w, interval);
-    const [z] = weighted(acceleration[2], null, data.weightings[2], interval);
-    const axes = [x, y, z].map((history) => rms(history, skip));
-    const dampers = Array.from({ length: count }, (_, i) => ({ velocity: histories[3 + 2 * i].subarray(0, samples), force: histories[4 + 2 * i].subarray(0, samples) }));
-    // In typed arrays: as numbers in an object for each damper, Chromium 150 gives all dampers the numbers of the last one
-    // when it optimises the loop while it runs.
-    const slips = new Float64Array(count), highest = new Float64Array(count);
-    for (let i = 0; i < count; i++) {
-      const { velocity, force } = dampers[i];
-      for (let k = skip; k < samples; k++) {
-        if (Math.abs(velocity[k]) > data.dampers[i].slip) slips[i]++;
-        highest[i] = Math.max(highest[i], Math.abs(force[k]));
-      }
-      slips[i] /= samples - skip;
-    }
+    const { data, module, places, skip } = this, { interval, ahead, weightings } = data, samples = this.count, evaluated = samples - skip;
+    const outputs = [...data.positions, ...data.dampers.flatMap(({ velocity, force }) => [velocity, force])], started = performance.now();
+    const histories = this.run(settings, this.plates, samples + ahead, outputs), marched = performance.now();
+    // Notices on quantities that left their valid range.
+    const notices = data.notices.filter((_, k) => module.left(this.car, k));
+    const accelerations = [0, 1, 2].map((axis) => places.accelerations + 8 * axis * samples), [x, , z] = accelerations;
+    accelerations.forEach((place, axis) => module.differentiate(histories[axis], samples + ahead, interval, places.derivative, place));
+    // x and y have one weighting; a transform has two records.
+    const transform = this.transform(samples + Math.ceil(data.decay / interval));
+    [[x, 2, 0], [z, 1, 2]].forEach(([place, records, axis]) => module.weighted_rms(transform, place, records, samples, skip, interval,
+      places.weightings[axis], weightings[axis].length, places.results + 8 * axis));
+    const axes = Array.from(this.numbers(places.results, 3));
+    module.density_of(this.transform(LINES), z + 8 * skip, evaluated, interval, places.results);
+    const pairs = data.dampers.map((_, i) => histories.slice(3 + 2 * i, 5 + 2 * i));
     return {
-      acceleration, dampers, slips, highest, axes, notices, skip,
+      axes, notices, skip,
+      acceleration: accelerations.map((place) => this.numbers(place, samples)),
+      dampers: pairs.map(([velocity, force]) => ({ velocity: this.numbers(velocity, samples), force: this.numbers(force, samples) })),
+      slips: pairs.map(([velocity], i) => module.share_above(velocity + 8 * skip, evaluated, data.dampers[i].slip)),
+      highest: pairs.map(([, force]) => module.largest_magnitude(force + 8 * skip, evaluated)),
       comfort: Math.hypot(...axes.map((value, axis) => value * data.factors[axis])),
-      density: density(acceleration[2], skip, LINES, interval),
+      density: this.numbers(places.results, LINES / 2 + 1),
       resolution: 1 / (LINES * interval),
-      seconds: data.interval * (samples - 1),
-      milliseconds: { stepping: marched - started, all: performance.now() - started },
+      seconds: interval * (samples - 1),
+      milliseconds: { stepping: marched - started, all: performance.now() - asked },
     };
   }
 
   // Displacements of the moving picture and of the plates, from the begin of the evaluation on, every POSITION seconds.
   async motion(settings) {
     await this.choose(settings);
-    const { data, skip, plates } = this, { interval, plateCount, motions, picture } = data, every = Math.round(POSITION / interval);
-    const samples = Math.min(skip + Math.round(PICTURE / interval) + 1, plates.length / (2 * plateCount));
-    const moving = plates.slice(0, 2 * plateCount * samples).map((value) => settings.level * value);
-    const histories = this.run(this.parametersOf(settings), moving, motions), count = Math.floor((samples - 1 - skip) / every) + 1;
-    const taken = (of) => Float32Array.from({ length: count }, (_, k) => of(skip + every * k));
+    const { data, skip, plates, module } = this, { interval, plateCount, motions, picture, ahead } = data, every = Math.round(POSITION / interval);
+    const samples = Math.min(skip + Math.round(PICTURE / interval) + 1, this.count + ahead);
+    const histories = this.run(settings, plates, samples, motions), count = Math.floor((samples - 1 - skip) / every) + 1;
+    const taken = (place, distance, level) => {
+      const values = new Float64Array(module.memory.buffer, place);
+      return Float32Array.from({ length: count }, (_, k) => level * values[distance * (skip + every * k)]);
+    };
     this.shapes ??= new Int8Array((await bytesOf(picture.shapes)).buffer);
     return {
-      motions: histories.map((history) => taken((i) => history[i])),
-      plates: picture.plates.map((plate) => taken((i) => moving[2 * (i * plateCount + plate)])),
-      position: POSITION, shapes: this.shapes,
+      motions: histories.map((history) => taken(history, 1, 1)),
+      plates: picture.plates.map((plate) => taken(plates + 16 * plate, 2 * plateCount, settings.level)),
+      position: POSITION, shapes: this.shapes.slice(),
     };
   }
 
@@ -157,58 +171,29 @@ class Trial {
   async response(settings) {
     await this.choose(settings);
     this.cancelled = false;
-    const { data, ratio } = this, { interval, plateCount, excited, wheels } = data, parameters = this.parametersOf(settings);
-    const samples = this.plates.length / (2 * plateCount) - data.ahead, z = Float64Array.from({ length: samples }, (_, i) => this.plates[2 * (i * plateCount + excited)]);
-    const periods = (data.road ? SETTLING.road : SETTLING.plates) + 1;
-    const levels = density(z, this.skip, LINES, interval), last = Math.round(HIGHEST * LINES * interval);
-    const frequency = Array.from({ length: last }, (_, k) => (k + 1) / (LINES * interval));
-    const re = new Float64Array(last), im = new Float64Array(last), square = new Float64Array(last);
+    const { data, module, places, sine, ratio } = this, { interval, plateCount, excited, wheels, ahead } = data, resolution = 1 / (LINES * interval);
+    const before = LINES * (data.road ? SETTLING.road : SETTLING.plates), samples = before + LINES + ahead, last = Math.round(HIGHEST / resolution);
+    module.begin_response(sine, this.plates + 16 * (plateCount * this.skip + excited), this.count - this.skip, 2 * plateCount, settings.level);
     let seed = 12345;
-    const random = () => (seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32;
     for (let realisation = 0; realisation < REALISATIONS; realisation++) {
       await new Promise((done) => setTimeout(done));
       if (this.cancelled) return null;
-      const plates = new Float64Array(2 * plateCount * (periods * LINES + data.ahead)), phases = Array.from({ length: last }, () => 2 * Math.PI * random());
-      // z = sum 2 size cos(omega (t - delay) + phase): mean square 2 size^2, which is density times resolution.
-      const waves = (delay) => {
-        const sr = new Float64Array(LINES), si = new Float64Array(LINES), vr = new Float64Array(LINES), vi = new Float64Array(LINES);
-        for (let k = 1; k <= last; k++) {
-          const omega = 2 * Math.PI * frequency[k - 1], size = settings.level * Math.sqrt(levels[k] / (2 * LINES * interval)), phase = phases[k - 1] - omega * delay;
-          sr[k] = sr[LINES - k] = size * Math.cos(phase);
-          si[k] = -size * Math.sin(phase); si[LINES - k] = -si[k];
-          vr[k] = vr[LINES - k] = -omega * size * Math.sin(phase);
-          vi[k] = -omega * size * Math.cos(phase); vi[LINES - k] = -vi[k];
-        }
-        transform(sr, si);
-        transform(vr, vi);
-        return [sr, vr];
-      };
-      for (const [plate, , behind] of wheels) {
-        const [height, rate] = waves(behind * interval / ratio);
-        for (let i = 0; i < periods * LINES + data.ahead; i++) {
-          plates[2 * (i * plateCount + plate)] = height[i % LINES];
-          plates[2 * (i * plateCount + plate) + 1] = rate[i % LINES];
-        }
-      }
-      const [position] = this.run(parameters, plates, [data.positions[2]]);
-      const response = this.acceleration(position).slice((periods - 1) * LINES), quadrature = new Float64Array(LINES);
-      const [input] = waves(0), rest = new Float64Array(LINES);
-      transform(response, quadrature);
-      transform(input, rest);
-      for (let k = 1; k <= last; k++) {
-        const power = input[k] ** 2 + rest[k] ** 2;
-        const a = (response[k] * input[k] + quadrature[k] * rest[k]) / power, b = (quadrature[k] * input[k] - response[k] * rest[k]) / power;
-        re[k - 1] += a / REALISATIONS; im[k - 1] += b / REALISATIONS;
-        square[k - 1] += (a * a + b * b) / REALISATIONS;
-      }
+      seed = module.draw_phases(sine, seed);
+      new Float64Array(module.memory.buffer, places.plates, 2 * plateCount * samples).fill(0);
+      for (const [plate, , behind] of wheels) module.excite(sine, behind * interval / ratio, places.plates + 16 * plate, samples, 2 * plateCount);
+      const [position] = this.run(settings, places.plates, samples, [data.positions[2]]);
+      module.differentiate(position, samples, interval, places.derivative, places.accelerations);
+      module.add_response(sine, places.accelerations + 8 * before);
     }
-    const magnitude = re.map((value, k) => Math.hypot(value, im[k]));
-    const error = magnitude.map((value, k) => Math.sqrt(Math.max(square[k] - value * value, 0) / (REALISATIONS - 1)));
-    const first = Math.ceil(LOWEST * LINES * interval) - 1;
-    const [f, x, y, size, deviation] = [frequency, re, im, magnitude, error].map((values) => values.slice(first));
-    return { frequency: f, re: x, im: y, magnitude: size, error: deviation };
+    module.mean_response(sine, places.results);
+    const first = Math.ceil(LOWEST / resolution), lines = Array.from({ length: last + 1 - first }, (_, k) => (first + k) * resolution);
+    const [re, im, magnitude, error] = [0, 1, 2, 3].map((row) => this.numbers(places.results + 8 * (last * row + first - 1), lines.length));
+    return { frequency: lines, re, im, magnitude, error };
   }
 }
+
+// Buffers of all arrays in a result, which a message moves without a copy.
+const buffersOf = (value) => (ArrayBuffer.isView(value) ? [value.buffer] : value && typeof value === "object" ? Object.values(value).flatMap(buffersOf) : []);
 
 if (typeof WorkerGlobalScope !== "undefined") {
   let trial;
@@ -217,7 +202,10 @@ if (typeof WorkerGlobalScope !== "undefined") {
       trial ??= Trial.open(data);
       const opened = await trial;
       if (task === "cancel") opened.cancelled = true;
-      else postMessage({ id, task, settings, result: task && await opened[task](settings) });
+      else {
+        const result = task && await opened[task](settings);
+        postMessage({ id, task, settings, result }, buffersOf(result));
+      }
     } catch (error) {
       postMessage({ id, task, settings, error: error.message });
     }

@@ -69,6 +69,24 @@ class Weighting:
         """
         return float(1.0 / ((2.0 ** (1 / 6) - 2.0 ** (-1 / 6)) * self.lowest_frequency))
 
+    @property
+    def decay_s(self) -> float:
+        """Time [s] in which the response to an impulse falls by exp(-17.8) = 2e-8, by the slowest pole -w1/sqrt(2)."""
+        return 4.0 / self.f1
+
+    @property
+    def sections(self) -> NDArray[np.float64]:
+        """Return the factors of H as rows b0, b1, b2, a0, a1, a2; (2, 3 or 4, 6).
+
+        H = product of (b0 + b1 jf + b2 (jf)^2) / (a0 + a1 jf + a2 (jf)^2) with f [Hz]; see `transfer_function`.
+        """
+        root, f1, f2, f4, f5, f6 = np.sqrt(2.0), self.f1, self.f2, self.f4, self.f5, self.f6
+        rows = [[0.0, 0.0, self.gain, f1**2, root * f1, 1.0], [f2**2, 0.0, 0.0, f2**2, root * f2, 1.0]]
+        rows += [[1.0, 1.0 / self.f3, 0.0, 1.0, 1.0 / (self.q4 * f4), f4**-2]]
+        if np.isfinite(f5):
+            rows += [[f5**2, f5 / self.q5, 1.0, f6**2, f6 / self.q6, 1.0]]
+        return np.array(rows)
+
     def transfer_function(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Return the complex factor H at frequencies [Hz] of any shape.
 
@@ -83,17 +101,10 @@ class Weighting:
         f = np.asarray(frequency, dtype=np.float64)
         if not np.isfinite(f).all():
             raise ConfigurationError(f"{self.name}: frequencies must be finite")
-        root = np.sqrt(2.0)
-        above = 1j * f / self.f1
-        below = 1j * f / self.f2
-        factor = above**2 / (above**2 + root * above + 1.0) / (below**2 + root * below + 1.0)
-        transition = 1j * f / self.f4
-        factor = factor * (1.0 + 1j * f / self.f3) / (1.0 + transition / self.q4 + transition**2)
-        if np.isfinite(self.f5):
-            s5, s6 = 1j * f / self.f5, 1j * f / self.f6
-            step = (1.0 + s5 / self.q5 + s5**2) / (1.0 + s6 / self.q6 + s6**2) * (self.f5 / self.f6) ** 2
-            factor = factor * step
-        return np.asarray(self.gain * factor, dtype=np.complex128)
+        s, factor = 1j * f, np.ones(f.shape, dtype=np.complex128)
+        for b0, b1, b2, a0, a1, a2 in self.sections:
+            factor = factor * ((b0 + s * (b1 + s * b2)) / (a0 + s * (a1 + s * a2)))
+        return np.asarray(factor, dtype=np.complex128)
 
     def spectrum_factor(self, frequency: ArrayLike) -> NDArray[np.float64]:
         """Return |H| [-], the factor of a third octave RMS value; a density is multiplied by its square."""
@@ -172,8 +183,7 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
             f"sampling rate: found {1.0 / step:g} Hz, must be at least {needed:g} Hz for {name}; sample faster"
         )
     samples = array.shape[1]
-    # the slowest pole has the real part -w1/sqrt(2): after 4/f1 it has fallen by exp(-17.8) = 2e-8
-    length = fast_length(samples + int(np.ceil(4.0 / (curve.f1 * step))))
+    length = fast_length(samples + int(np.ceil(curve.decay_s / step)))
     # numpy.fft allocates no extra work arrays.
     spectrum, frequency = np.fft.rfft(array, length, axis=1), np.fft.rfftfreq(length, step)
     if frequency.size <= KEPT_LINES:

@@ -306,8 +306,10 @@ double output_value(const Motion *s, int64_t output) {
   int64_t kind = e->kinds.at[2 * output], i = e->kinds.at[2 * output + 1];
   const DamperLaw *law = e->dampers.at + i;
   if (kind == OUTPUT_VELOCITY) return damper_velocity(s, i);
-  if (kind == OUTPUT_FORCE) /* its row is that of its stop */
-    return law->viscous_damping * damper_velocity(s, i) - s->end_force[i] + law->rest_force + linear_value(s, output);
+  if (kind == OUTPUT_FORCE) { /* its row is that of its stop, a law over displacement */
+    double stop = s->march.rows.curves ? linear_value(s, output) : 0.0;
+    return law->viscous_damping * damper_velocity(s, i) - s->end_force[i] + law->rest_force + stop;
+  }
   if (kind == OUTPUT_COEFFICIENT) return coefficient(s, i);
   return linear_value(s, output);
 }
