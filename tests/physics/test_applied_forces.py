@@ -12,6 +12,7 @@ from tests.validation import validated
 from vehicle import Car, Run, road
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.simulation.recording import Energies
+from vehicle.runs.output.run_forces import force_values
 from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
@@ -207,3 +208,24 @@ def test_a_weak_motion_has_no_error_of_linear_geometry() -> None:
     errors = car.run(road("level", 0, duration=6), engine="reduced").recording.statistics.errors
     # Against MuJoCo the tyre loads differ by 2e-4 N of 0.26 N, the accelerations by less than a thousandth.
     assert max(map(abs, errors.values())) < 2e-3
+
+
+def test_a_run_lies_at_its_limits_where_dampers_stick_or_have_no_friction() -> None:
+    """Amplitudes of the linear car in the summary: of a light imbalance, and of dampers without friction."""
+    name, radius = "seat_rail_acc_z", {"front.right.imbalance.radius": 0.2, "front.right.imbalance.mass": 0.002}
+    smooth = road("level", 140, duration=8)
+    no_friction = {f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")}
+    for changes, limit in (({}, "stuck"), (no_friction, "free")):
+        run = Car.load("sedan", {**radius, **changes}).run(smooth, engine="reduced")
+        (line,) = force_values(run)["orders"]
+        expected = line["stuck"] if limit == "stuck" else line["without_friction"]
+        validated(
+            "Applied forces",
+            f"order 1 of an imbalance of 2 g, dampers {'stick' if limit == 'stuck' else 'without friction'}: seat rail "
+            "in the run against the linear car at one frequency",
+            line["amplitude"][name],
+            expected[name],
+            source="second derivation: equations of second order, line by line",
+            rel=1e-3,
+            unit="m/s2",
+        )
