@@ -28,8 +28,8 @@ def order_sentences(summary: RunSummary) -> list[str]:
         if point is not None:
             size, (stuck, free) = amplitude_words(line, point), _limits(line, point)
             sentences.append(
-                f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes). Dampers that stick "
-                f"would give {stuck}, dampers without friction {free} along z."
+                f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes). Dampers that "
+                f"stick would give {stuck}, dampers without friction {free} along z."
             )
     return sentences
 
