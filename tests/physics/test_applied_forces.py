@@ -12,10 +12,12 @@ from tests.validation import validated
 from vehicle import Car, Run, road
 from vehicle.engines.reduced.batch_simulation import simulate_batch
 from vehicle.engines.simulation.recording import Energies
+from vehicle.runs.output.run_forces import force_values
 from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.excitation.signal import Signal, uniform_time
 
 BASE = 8.3
+R1, R2 = 0.3050, 0.3050 * 1.004
 ORDERS = (1, 3, 7)
 HARMONICS = [[order, 20.0, 30.0 * order] for order in ORDERS]
 FREE = {"front.damper.coulomb_friction": 0.0}
@@ -207,3 +209,51 @@ def test_a_weak_motion_has_no_error_of_linear_geometry() -> None:
     errors = car.run(road("level", 0, duration=6), engine="reduced").recording.statistics.errors
     # Against MuJoCo the tyre loads differ by 2e-4 N of 0.26 N, the accelerations by less than a thousandth.
     assert max(map(abs, errors.values())) < 2e-3
+
+
+def test_a_run_lies_at_its_limits_where_dampers_stick_or_have_no_friction() -> None:
+    """Amplitudes of the linear car in the summary: of a light imbalance, and of dampers without friction."""
+    name, radius = "seat_rail_acc_z", {"front.right.imbalance.radius": 0.2, "front.right.imbalance.mass": 0.002}
+    smooth = road("level", 140, duration=8)
+    no_friction = {f"{axle}.damper.coulomb_friction": 0.0 for axle in ("front", "rear")}
+    for changes, limit in (({}, "stuck"), (no_friction, "free")):
+        run = Car.load("sedan", {**radius, **changes}).run(smooth, engine="reduced")
+        (line,) = force_values(run)["orders"]
+        expected = line["stuck"] if limit == "stuck" else line["without_friction"]
+        validated(
+            "Applied forces",
+            f"order 1 of an imbalance of 2 g, dampers {'stick' if limit == 'stuck' else 'without friction'}: seat rail "
+            "in the run against the linear car at one frequency",
+            line["amplitude"][name],
+            expected[name],
+            source="second derivation: equations of second order, line by line",
+            rel=1e-3,
+            unit="m/s2",
+        )
+
+
+def test_wheels_of_two_radii_beat() -> None:
+    """Period 2 pi R1 R2/(V (R2 - R1)) of two imbalances whose tyres differ by 0.4 %, from the minima of the envelope."""
+    mass = {"front.imbalance.mass": 0.005, "front.imbalance.radius": 0.2}
+    radii = {
+        "front.right.bushings.tyre.rolling_radius": 0.3050,
+        "front.left.bushings.tyre.rolling_radius": 0.3050 * 1.004,
+    }
+    run = Car.load("sedan", {**mass, **radii}).run(road("level", 110, duration=34), engine="reduced")
+    speeds = [run.car.vehicle.composition.speeds[f"wheel_{wheel}"] for wheel in ("fr", "fl")]
+    signal = run["seat rail z"] * np.exp(-0.5j * sum(speeds) * run.time)
+    width = round(1000 * 4.0 * np.pi / sum(speeds))
+    envelope = np.convolve(signal, np.ones(4 * width) / (4 * width), mode="same")
+    size = np.abs(envelope)[2000:-1000]
+    dips = [k for k in range(3000, size.size - 3000) if size[k] == size[k - 3000 : k + 3000].min()]
+    assert len(dips) == 2
+    period = 2.0 * np.pi * R1 * R2 / (110 / 3.6 * (R2 - R1))
+    validated(
+        "Applied forces",
+        "period of the beat of two imbalances whose tyres differ by 0.4 % in radius, 110 km/h",
+        (dips[1] - dips[0]) / 1000.0,
+        period,
+        source="closed form: 2 pi R1 R2/(V (R2 - R1))",
+        rel=5e-3,
+        unit="s",
+    )

@@ -49,7 +49,7 @@ def with_idle_poles(model, pairs, reals):
         scalar_rows=dataclasses.replace(model.scalar_rows, poles=np.insert(model.scalar_rows.poles, at, 0.0, axis=1)),
         **{
             name: np.insert(getattr(model, name), at, 0.0, axis=0)
-            for name in ("height", "velocity", "force", "slope", "scalar_force")
+            for name in ("height", "velocity", "force", "slope", "scalar_force", "applied")
         },
         **{name: np.insert(getattr(model, name), at, 0.0, axis=1) for name in ("slip", "modal", "branch")},
     )

@@ -6,6 +6,7 @@ from typing import TypedDict
 
 import numpy as np
 
+from vehicle.engines.linear.forced_response import forced_response
 from vehicle.errors import DataError
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.names import AXES
@@ -58,12 +59,19 @@ def _orders(run: Run) -> list[OrderSummary]:
     channels = [f"{point}_acc_{axis}" for point in POINTS for axis in AXES]
     channels += [f"knuckle_{wheel}_acc_z" for wheel in run.car.vehicle.wheels]
     channels = [name for name in channels if name in run.recording.channels]
+    if not channels:
+        return []
     angles: dict[float, tuple[float, str]] = {}
     for force in run.car.vehicle.composition.forces:
         of = {None: "frequency", CRANK: CRANK}.get(force.law.angle, "wheels")
         angles |= {frequency: (frequency / force.speed, of) for frequency in force.harmonics}
+    dampers = [damper.law for damper in run.car.vehicle.composition.dampers]
+    limits = [
+        np.abs(forced_response(run.car.matrices, channels, dampers, stuck=stuck)).T.tolist() for stuck in (True, False)
+    ]
     orders: list[OrderSummary] = []
-    for frequency, (order, of) in sorted(angles.items()):
+    # Matrices list the frequencies in the same order.
+    for (frequency, (order, of)), stuck, free in zip(sorted(angles.items()), *limits, strict=True):
         turns = frequency / (2.0 * np.pi * order)
         try:
             lines = order_lines(run.time, np.array([run[name] for name in channels]), turns, [order], begin=run.skip)
@@ -76,6 +84,8 @@ def _orders(run: Run) -> list[OrderSummary]:
                 "frequency_hz": frequency / (2.0 * np.pi),
                 "amplitude": dict(zip(channels, np.abs(lines.amplitude[:, 0]).tolist(), strict=True)),
                 "standard_error": dict(zip(channels, np.nan_to_num(lines.error[:, 0]).tolist(), strict=True)),
+                "stuck": dict(zip(channels, stuck, strict=True)),
+                "without_friction": dict(zip(channels, free, strict=True)),
             }
         )
     return orders

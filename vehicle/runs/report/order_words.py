@@ -26,9 +26,18 @@ def order_sentences(summary: RunSummary) -> list[str]:
     for line in summary.get("orders", []):
         point = next((name for name in POINTS if f"{name}_acc_z" in line["amplitude"]), None)
         if point is not None:
-            size = amplitude_words(line, point)
-            sentences.append(f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes).")
+            size, (stuck, free) = amplitude_words(line, point), _limits(line, point)
+            sentences.append(
+                f"Forces at {line_words(line)} shake the {point_words(point)} by {size} (amplitudes). Dampers that "
+                f"stick would give {stuck}, dampers without friction {free} along z."
+            )
     return sentences
+
+
+def _limits(line: OrderSummary, point: str) -> tuple[str, str]:
+    """Return the amplitudes along z of the linear car with locked dampers and with dampers without friction [m/s2]."""
+    name = f"{point}_acc_z"
+    return f"{number(line['stuck'][name])} m/s²", f"{number(line['without_friction'][name])} m/s²"
 
 
 def line_words(line: OrderSummary) -> str:

@@ -117,7 +117,8 @@ class ForceSummary(TypedDict):
 class OrderSummary(TypedDict):
     """Amplitude of a channel at a frequency of the applied forces, with the standard error of both: see `order_lines`.
 
-    `order` is that of the angle of `of`, "wheels", "crank" or "frequency".
+    `order` is that of the angle of `of`, "wheels", "crank" or "frequency". `stuck` and `without_friction` are the
+    amplitudes of the linear car with locked dampers and with dampers without friction.
     """
 
     order: float
@@ -125,6 +126,8 @@ class OrderSummary(TypedDict):
     frequency_hz: float
     amplitude: dict[str, float]
     standard_error: dict[str, float]
+    stuck: dict[str, float]
+    without_friction: dict[str, float]
 
 
 class StaticSummary(TypedDict):

@@ -1,0 +1,56 @@
+"""Linear response of a car to its applied forces: with dampers that stick, or without their friction.
+
+    (s^2 M + s C + K + H' diag(K2/(s + 1/tau)) (s e + g)) u = l,    s = jW,    Jc u = 0
+
+at each frequency W of the forces, with their complex amplitudes in l; see `vehicle.engines.linear.system`. Without
+friction the dampers have the slope of their curve at rest: the softest segment, which C contains, counts only at the
+velocities where it lies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.first_order import free_basis
+from vehicle.model.laws.damper import damper_curve
+from vehicle.model.parameters.force_elements import Damper
+
+
+def forced_response(
+    matrices: CarMatrices, channels: Sequence[str], dampers: Sequence[Damper], *, stuck: bool
+) -> npt.NDArray[np.complex128]:
+    """Return the complex amplitudes of acceleration channels at the frequencies of the applied forces.
+
+    Args:
+        matrices: matrices of the car.
+        channels: names of acceleration channels.
+        dampers: laws of its dampers.
+        stuck: lock the dampers; else they move without friction.
+
+    Returns:
+        Amplitudes of Re(Z exp(jWt)) [m/s2], (channels, frequencies in the order of `matrices.lines`).
+    """
+    system = matrices.system
+    if not stuck:
+        slopes = np.array([float(damper_curve(law).slope(0.0)) for law in dampers]) - matrices.viscous
+        damping = system.damping + system.slide_rows.T @ (slopes[:, None] * system.slide_rows)
+        system = replace(system, damping=damping)
+    basis = free_basis(system, stuck=stuck)
+    mass, damping, stiffness = (basis.T @ part @ basis for part in (system.mass, system.damping, system.stiffness))
+    strains, effects = system.branch_rows @ basis, system.effects @ basis
+    drifts = np.zeros_like(strains) if system.branch_drifts is None else system.branch_drifts @ basis
+    rows = np.array([system.output(name)[0] for name in channels]).reshape(-1, system.size) @ basis
+    amplitudes = matrices.coefficients[:, ::2] - 1j * matrices.coefficients[:, 1::2]
+    result = np.zeros((len(rows), len(matrices.lines.frequencies)), dtype=complex)
+    for column, (frequency, force) in enumerate(zip(matrices.lines.frequencies, amplitudes.T, strict=True)):
+        s = 1j * frequency
+        branch = (system.branch_stiffness / (s + 1.0 / system.branch_time))[:, None] * (s * strains + drifts)
+        whole = s * s * mass + s * damping + stiffness + effects.T @ branch
+        motion = np.linalg.solve(whole, basis.T @ (matrices.force_rows.T @ force))
+        result[:, column] = s * s * (rows @ motion)
+    return result
