@@ -233,7 +233,7 @@ def test_a_run_lies_at_its_limits_where_dampers_stick_or_have_no_friction() -> N
 
 
 def test_wheels_of_two_radii_beat() -> None:
-    """Period 2 pi R1 R2/(V (R2 - R1)) of two imbalances whose tyres differ by 0.4 %, from the minima of the envelope."""
+    """Period 2 pi R1 R2/(V (R2 - R1)) of two imbalances whose tyres differ by 0.4 %, by minima of the envelope."""
     mass = {"front.imbalance.mass": 0.005, "front.imbalance.radius": 0.2}
     radii = {
         "front.right.bushings.tyre.rolling_radius": 0.3050,
