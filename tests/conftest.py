@@ -8,7 +8,7 @@ import pytest
 
 from tests.advice import LARGEST, run_advice
 from tests.shared_cars import share_cars
-from tests.undrawn import DRAWN, leave_out_drawings
+from tests.undrawn import leave_out_drawings
 from tests.validation_page import check_page
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
@@ -20,8 +20,8 @@ _present = {"test": ""}
 
 def pytest_configure():
     """Draw figures only where a test looks at them; build equal cars once."""
-    share_cars()
-    leave_out_drawings(lambda: _present["test"].startswith(tuple(f"tests/{name}" for name in DRAWN)))
+    share_cars(lambda: _present["test"])
+    leave_out_drawings(lambda: _present["test"])
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -74,7 +74,7 @@ def _advice_is_accepted(request, tmp_path_factory):
         identity = (file.suffix, file.stat().st_size, file.read_bytes()[-4000:])
         if identity not in _SEEN:
             _SEEN.add(identity)
-            run_advice(file, tmp_path_factory.mktemp("advice"))
+            run_advice(file, tmp_path_factory.mktemp("advice"), whole=False)
 
 
 @pytest.fixture(scope="session")
