@@ -15,7 +15,22 @@ from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 
+LONGEST = (
+    *("documentation/test_pages", "studies/design/test_scaled_parts", "studies/sweeps/test_sweep"),
+    *("runs/report/test_trial", "studies/design/test_new_car", "runs/car/test_motion_figures"),
+    *("scenarios/test_quarter_car", "scenarios/test_tuning", "system/test_shaker_command"),
+    *("handover/bench/test_state", "documentation/test_site", "documentation/test_doctests"),
+    *("studies/tuning/test_posterior", "system/test_installation", "benchmarks/test_speed"),
+)
+"""Modules of tests that take the longest; two workers that begin with them end at about the same time."""
+
 _present = {"test": ""}
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the longest modules."""
+    order = {f"tests/{name}.py": place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 
 def pytest_configure():
