@@ -26,7 +26,7 @@ shaker: setup
 	fi
 
 test: setup-tests .stamps/for-tests check
-	$(BIN)/python -m pytest -n 2 --dist loadfile
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 check: setup-tests
 	$(BIN)/ruff format --check .

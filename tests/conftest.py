@@ -8,20 +8,35 @@ import pytest
 
 from tests.advice import LARGEST, run_advice
 from tests.shared_cars import share_cars
-from tests.undrawn import DRAWN, leave_out_drawings
+from tests.undrawn import leave_out_drawings
 from tests.validation_page import check_page
 from vehicle.runs.car import Car, Run
 from vehicle.signals.excitation.input_files import find_input
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.excitation.signal_file import read_signal
 
+LONGEST = (
+    *("documentation/test_pages", "studies/design/test_scaled_parts", "studies/sweeps/test_sweep"),
+    *("runs/report/test_trial", "studies/design/test_new_car", "runs/car/test_motion_figures"),
+    *("scenarios/test_quarter_car", "scenarios/test_tuning", "system/test_shaker_command"),
+    *("handover/bench/test_state", "documentation/test_site", "documentation/test_doctests"),
+    *("studies/tuning/test_posterior", "system/test_installation", "benchmarks/test_speed"),
+)
+"""Modules of tests that take the longest; two workers that begin with them end at about the same time."""
+
 _present = {"test": ""}
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the longest modules."""
+    order = {f"tests/{name}.py": place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.nodeid.partition("::")[0], len(order)))
 
 
 def pytest_configure():
     """Draw figures only where a test looks at them; build equal cars once."""
-    share_cars()
-    leave_out_drawings(lambda: _present["test"].startswith(tuple(f"tests/{name}" for name in DRAWN)))
+    share_cars(lambda: _present["test"])
+    leave_out_drawings(lambda: _present["test"])
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -74,7 +89,7 @@ def _advice_is_accepted(request, tmp_path_factory):
         identity = (file.suffix, file.stat().st_size, file.read_bytes()[-4000:])
         if identity not in _SEEN:
             _SEEN.add(identity)
-            run_advice(file, tmp_path_factory.mktemp("advice"))
+            run_advice(file, tmp_path_factory.mktemp("advice"), whole=False)
 
 
 @pytest.fixture(scope="session")

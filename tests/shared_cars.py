@@ -8,6 +8,7 @@ anew, also those whose changes name a file.
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,20 +16,32 @@ from vehicle.model.parameters.paths import assignments
 from vehicle.model.parameters.shipped import VEHICLES, vehicle_file
 from vehicle.runs.car import Car
 
+SHARED = ("tests/commands/", "tests/documentation/test_pages", "tests/signals/")
+"""Folders and modules of tests that share cars."""
+
 MOST = 24
 """Cars that are kept; the one that has not been loaded for the longest time makes room."""
 
 _kept: OrderedDict[tuple[str, ...], Car] = OrderedDict()
 
 
-def share_cars() -> None:
-    """Let `Car.load` return the kept car in this process."""
+def share_cars(present: Callable[[], str]) -> None:
+    """Let `Car.load` return the kept car in this process.
+
+    Args:
+        present: function that returns the node of the present test.
+    """
     load = Car.load.__func__  # type: ignore[attr-defined]
 
     def shared(cls: type[Car], path: Path | str | None = None, overrides: Any = ()) -> Car:
         changes = assignments(overrides)
         shipped = path is None or VEHICLES in vehicle_file(path).resolve().parents
-        if cls is not Car or not shipped or any("/" in text or ".csv" in text for text in changes):
+        if (
+            not present().startswith(SHARED)
+            or cls is not Car
+            or not shipped
+            or any("/" in text or ".csv" in text for text in changes)
+        ):
             made: Car = load(cls, path, changes)
             return made
         key = (str(path), *changes)

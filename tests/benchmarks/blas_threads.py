@@ -27,11 +27,15 @@ REPEATS = 5
 Job = Callable[[], Iterable[npt.ArrayLike]]
 
 
-def jobs() -> dict[str, Job]:
-    """Return name to job; a job returns arrays of results."""
+def jobs(duration: float = 10.0) -> dict[str, Job]:
+    """Return name to job; a job returns arrays of results.
+
+    Args:
+        duration: length of the road [s].
+    """
     car = Car.load("focus_road")
-    source = road("C", 80, duration=10)
-    run = car.run("low.csv", engine="reduced")
+    source = road("C", 80, duration=duration)
+    run = car.run("bump_7p5mm.csv", engine="reduced")
     channels = ["seat_rail_acc_z", "seat_rail_acc_x"]
     values = [1500.0 + 50.0 * number for number in range(8)]
 
@@ -51,18 +55,18 @@ def jobs() -> dict[str, Job]:
         "matrices of a new car": build,
         "modes": lambda: [mode.shape for mode in car.modes()],
         "FRFs of 8 variants from matrices": variants,
-        "reduced run, 10 s": lambda: car.run(source, engine="reduced").recording.channels.values(),
+        "reduced run on a road": lambda: car.run(source, engine="reduced").recording.channels.values(),
         "FRF of a run": lambda: [run.frf(channels).response],
         "sweep of 8 cars": swept,
     }
 
 
-def serve(threads: int | None) -> None:
+def serve(threads: int | None, duration: float) -> None:
     """Compute the jobs named on standard input, and print processor time [ms], wall time [ms] and digest of each."""
     if threads is not None:
         for library in ThreadpoolController().lib_controllers:
             library.set_num_threads(threads)
-    named = jobs()
+    named = jobs(duration)
     print(json.dumps(list(named)), flush=True)
     for line in sys.stdin:
         begin, started = time.process_time(), time.perf_counter()
@@ -79,11 +83,12 @@ class Server:
     Args:
         one: set OMP_NUM_THREADS=1; by default no variable is set.
         threads: number of BLAS threads, as on a machine with this number of cores; that of the machine by default.
+        duration: length of the road [s].
     """
 
-    def __init__(self, *, one: bool = False, threads: int | None = None) -> None:
+    def __init__(self, *, one: bool = False, threads: int | None = None, duration: float = 10.0) -> None:
         environment = {name: value for name, value in os.environ.items() if name not in THREADS}
-        command = [sys.executable, "-m", "tests.benchmarks.blas_threads", "--serve"]
+        command = [sys.executable, "-m", "tests.benchmarks.blas_threads", "--serve", f"--duration={duration}"]
         command += [] if threads is None else ["--threads", str(threads)]
         environment |= {"OMP_NUM_THREADS": "1"} if one else {}
         self.process = subprocess.Popen(
@@ -112,9 +117,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.blas_threads", description=__doc__)
     parser.add_argument("--threads", type=int, help="number of BLAS threads; that of the machine by default")
     parser.add_argument("--serve", action="store_true", help="compute jobs named on standard input")
+    parser.add_argument("--duration", type=float, default=10.0, help="length of the road [s]")
     options = parser.parse_args(arguments)
     if options.serve:
-        serve(options.threads)
+        serve(options.threads, options.duration)
         return 0
     one, free = Server(one=True), Server(threads=options.threads)
     for name in one.names:

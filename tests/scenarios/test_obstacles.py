@@ -99,14 +99,14 @@ def test_the_wheel_turns_in_the_film(passage, tmp_path, monkeypatch):
     if (reason := film_available()) is not None:
         pytest.skip(reason)
     path = tmp_path / "film.mp4"
-    monkeypatch.setattr(obstacles, "SLOW", 3.0)  # a third of the frames
+    monkeypatch.setattr(obstacles, "SLOW", 1.0)  # a tenth of the frames
     film_passage(path, passage.run())
     frames = frames_of(path)
-    # 0.32 s of wheelbase at 30 km/h with 0.47 s around it, three times slower.
-    assert len(frames) == pytest.approx(71, abs=2)
+    # 0.32 s of wheelbase at 30 km/h with 0.47 s around it.
+    assert len(frames) == pytest.approx(24, abs=1)
     rim, body = (frames[:, *place].mean(axis=3) for place in (np.s_[180:225, 265:305], np.s_[130:160, 170:230]))
     # Before the cleat nothing moves but rims and stripes.
-    assert np.mean(np.abs(rim[2] - rim[0])) > 8.0
+    assert np.mean(np.abs(rim[2] - rim[0])) > 4.0  # one that stands: 0
     assert np.mean(np.abs(body[2] - body[0])) < 0.5
 
 

@@ -139,14 +139,14 @@ def test_linear_algebra_of_public_functions_has_one_thread(three, monkeypatch):
     for library in (np.linalg, scipy.linalg):
         for name in ("eig", "eigh", "eigvals", "eigvalsh", "inv", "lstsq", "qr", "solve", "svd"):
             monkeypatch.setattr(library, name, recorded(getattr(library, name), f"{library.__name__}.{name}"))
-    for job in jobs().values():
+    for job in jobs(4.0).values():
         job()
     assert len(seen) >= 4 and set().union(*seen.values()) == {1}, seen
     assert blas_threads() == {3}
 
 
 def test_results_are_bitwise_those_of_one_thread_in_the_environment():
-    one, free = Server(one=True), Server(threads=4)
+    one, free = Server(one=True, duration=4.0), Server(threads=4, duration=4.0)
     assert one.names == free.names and len(one.names) == 6
     for name in one.names:
         assert one(name)[2] == free(name)[2], name

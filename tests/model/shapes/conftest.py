@@ -35,7 +35,7 @@ CENTRE = {
 }
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def points() -> dict[str, np.ndarray]:
     """Return the hardpoints of both sides [m], by name."""
     result = {name: np.array(value) for name, value in CENTRE.items()}

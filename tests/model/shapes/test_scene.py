@@ -31,9 +31,24 @@ MAX_STL_BYTES = 1.30e6  # all files of the scene are kept in the repository
 STL_HEADER, STL_TRIANGLE = 84, 50
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def shapes(points: dict[str, np.ndarray]) -> dict[str, Shape]:
     return car_shapes(points)
+
+
+@pytest.fixture(scope="module")
+def moved(points: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], dict[str, Shape]]:
+    """Hardpoints away from those of the car by up to 12 mm, and the scene on them."""
+    generator = np.random.default_rng(7)
+    result = dict(points)
+    for name in [name for name in points if name.endswith("_fr")]:
+        result[name] = points[name] + generator.uniform(-0.012, 0.012, 3)
+        result[name[:-3] + "_fl"] = result[name] * (1, -1, 1)
+    # the lower spring seat is a point of the strut axis, as in the shipped car
+    bottom, top = result["damper_bottom_fr"], result["strut_top_fr"]
+    result["spring_lower_fr"] = bottom + 0.42 * (top - bottom)
+    result["spring_lower_fl"] = result["spring_lower_fr"] * (1, -1, 1)
+    return result, car_shapes(result)
 
 
 def volumes(mesh: trimesh.Trimesh) -> np.ndarray:
@@ -132,20 +147,14 @@ def test_the_left_side_mirrors_the_right(shapes: dict[str, Shape]) -> None:
     ],
 )
 def test_suspension_shapes_reach_their_hardpoints_also_when_moved(
-    points: dict[str, np.ndarray], shape: str, point: str, tolerance: float
+    points: dict[str, np.ndarray],
+    shapes: dict[str, Shape],
+    moved: tuple[dict[str, np.ndarray], dict[str, Shape]],
+    shape: str,
+    point: str,
+    tolerance: float,
 ) -> None:
-    generator = np.random.default_rng(7)
-    side_points = [name for name in points if name.endswith("_fr")]
-    moved = dict(points)
-    for name in side_points:
-        moved[name] = points[name] + generator.uniform(-0.012, 0.012, 3)
-        moved[name[:-3] + "_fl"] = moved[name] * (1, -1, 1)
-    # the lower spring seat is a point of the strut axis, as in the shipped car
-    bottom, top = moved["damper_bottom_fr"], moved["strut_top_fr"]
-    moved["spring_lower_fr"] = bottom + 0.42 * (top - bottom)
-    moved["spring_lower_fl"] = moved["spring_lower_fr"] * (1, -1, 1)
-    for hardpoints in (points, moved):
-        result = car_shapes(hardpoints)
+    for hardpoints, result in ((points, shapes), moved):
         for side in ("fr", "fl"):
             assert gap(result[f"{shape}_{side}"].mesh, hardpoints[f"{point}_{side}"]) < tolerance
 

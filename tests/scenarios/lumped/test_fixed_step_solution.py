@@ -56,14 +56,20 @@ def relative_errors(histories, reference, name):
     return [np.sqrt(np.mean((h.acceleration(name) - exact) ** 2) / np.mean(exact**2)) for h in histories]
 
 
-@pytest.mark.parametrize(("steepness", "name"), [(30.0, "body"), (30.0, "wheel"), (30.0, "damper")])
-def test_the_order_is_two_for_a_law_of_any_slope(steepness, name):
-    """A gentle law changes over the whole step: taken at its end the motion is first order."""
-    model = quarter_car(CAR, damper="friction", vary={"friction.steepness": steepness}).first_order()
+@pytest.fixture(scope="module")
+def gentle():
+    """Marches of three steps with a gentle friction law, and the stiff solution."""
+    model = quarter_car(CAR, damper="friction", vary={"friction.steepness": 30.0}).first_order()
     fine = np.linspace(0.0, END, 6001)
     road = bumpy_road(fine, 0.02)
     reference = stiff_solution(model, fine[::8], road=Sampled(road, fine[1]), tolerances=FINE)
-    histories = [fixed_step_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)]
+    return [fixed_step_solution(model, fine[n], road[::n], every=8 // n) for n in (4, 2, 1)], reference
+
+
+@pytest.mark.parametrize(("steepness", "name"), [(30.0, "body"), (30.0, "wheel"), (30.0, "damper")])
+def test_the_order_is_two_for_a_law_of_any_slope(gentle, steepness, name):
+    """A gentle law changes over the whole step: taken at its end the motion is first order."""
+    histories, reference = gentle
     rough, _, finest = relative_errors(histories, reference, name)
     validated(
         "Quarter and half cars", f"order of convergence of the march with a gentle friction law, {name}",

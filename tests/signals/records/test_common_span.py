@@ -159,11 +159,11 @@ def test_starts_of_other_formats(tmp_path, form):
     assert chosen.time.size == 375
 
 
-def master(path, kind, unit, name="s", heights="m"):
+def master(path, kind, unit, name="s", heights="m", step=0.05):
     """Write an MDF 4 group whose master channel has another type than time, as the header states."""
     asammdf = pytest.importorskip("asammdf")
     with asammdf.MDF(version="4.10") as file:
-        over = asammdf.Signal(motion(np.arange(200) / 50), 0.05 * np.arange(200), name="height_left", unit=heights,
+        over = asammdf.Signal(motion(np.arange(200) / 50), step * np.arange(200), name="height_left", unit=heights,
                               master_metadata=(name, kind))  # fmt: skip
         file.append([over])
         file.groups[0].channels[0].unit = unit
@@ -186,12 +186,12 @@ def test_a_master_of_distance_is_a_road():
 
 @pytest.mark.parametrize(("kind", "unit", "quantity"), [(2, "rad", "angle"), (2, "deg", "angle"), (4, "", "index"), (3, "km", "distance"), (1, "m", "distance")])  # noqa: E501  # fmt: skip
 def test_masters_that_are_no_time(tmp_path, kind, unit, quantity):
-    path = tmp_path / "record.mf4"
-    master(path, kind, unit)
+    path, step = tmp_path / "record.mf4", 5e-4 if unit == "km" else 0.05  # 100 m, which an advised command drives over
+    master(path, kind, unit, step=step)
     found = read_record(path)
     over, heights = found.channels
     assert over.unit == unit and heights.axis is None and f"is a {quantity}: no times" in heights.remark
-    np.testing.assert_allclose(over.values, 0.05 * np.arange(200))
+    np.testing.assert_allclose(over.values, step * np.arange(200))
     if quantity != "index":  # a count of samples may get a rate, an angle may not
         with pytest.raises(DataError, match="must be a time history"):
             choose(found, Choice(channels={"fl": "height_left"}, rate=200.0))

@@ -110,7 +110,7 @@ def test_a_refused_hop_says_what_can_be_reached():
         assert checks["wheel_hop_rear"] == pytest.approx(end, rel=1e-2)
 
 
-@pytest.mark.parametrize("hop", [11.0, 12.0, 13.0])
+@pytest.mark.parametrize("hop", [11.0, 13.0])
 def test_rear_hops_of_real_cars_are_met(hop):
     checks = {check.name: check.value for check in new_car("one", "sedan", StatedNumbers(wheel_hop_rear=hop)).checks}
     assert checks["wheel_hop_rear"] == pytest.approx(hop, rel=1e-2)
