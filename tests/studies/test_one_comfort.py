@@ -99,3 +99,13 @@ def test_a_cushion_has_both_names_and_the_seat_value():
         columns["seat_weighted_z"][1] / columns["weighted_z"][1], rel=1e-12
     )
     assert {*NAMES[::4], "seat_unweighted", "seat_weighted", "seat_value"} <= set(QUANTITIES)
+
+
+@pytest.mark.parametrize(("name", "other"), [("unweighted", "weighted"), ("weighted", "unweighted")])
+def test_values_that_are_not_asked_are_not_computed(name, other):
+    rail, cushion = np.random.default_rng(3).normal(size=(2, 2, 3, 4000))
+    both, alone = comfort_columns(1e-3, rail, cushion), comfort_columns(1e-3, rail, cushion, names=[name])
+    assert {f"{name}_x", name, f"seat_{name}", "seat_value"} <= set(alone) <= set(both)
+    assert not {f"{other}_x", other, f"seat_{other}"} & set(alone)
+    for key, values in alone.items():
+        np.testing.assert_array_equal(values, both[key])
