@@ -31,9 +31,11 @@ others too, and is run here before the results are judged.
 
 Each command that writes has a row, for each option and format that writes; a test compares them with the parsers. The
 rows "only writing" write small files in each way that the commands use, without a computation. `bench` replaces nothing
-and has none. A film is written by ffmpeg, a process of its own whose calls do not fail here: a test writes it, and each
-other format, beyond a limit of the size of files. RPC and MAT files hold the time at which they were written, so
-that their bytes cannot be compared: these two formats have no rows yet.
+and has none. A film is written by ffmpeg, a process of its own whose calls do not fail here: the rows of both films are
+of the calls of this process, its other files and the exchange, with fewer cases, as each draws a film; a test writes a
+film, and each other format, beyond a limit of the size of files. Files with the time that was computed (`summary.json`,
+`timing.csv`, `rows.jsonl`, `report.html` of a run) differ between two equal commands and are compared with their list
+of digests; all other files must be the same twice, byte for byte, in each format.
 
 "Calls" are the system calls on files below the folder of the results that the fault can meet. Of calls of one kind in a
 row for one file, the first, the middle one and the last are tried, as only the length of an unfinished file differs

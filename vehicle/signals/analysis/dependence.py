@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from vehicle.errors import DataError
@@ -69,16 +70,16 @@ def copy_of(time_step: float, first: Real, second: Real, band: tuple[float, floa
     Source: Knapp and Carter, IEEE Trans. ASSP 24 (1976) 320 (phase transform).
     """
     count = first.size
-    line = 1.0 / (2 * count * time_step)
+    length = int(scipy.fft.next_fast_len(2 * count, real=True))  # a prime factor of the count takes much memory
+    line = 1.0 / (length * time_step)
     window = slice(int(band[0] / line), int(band[1] / line) + 1)
-    x, y = (np.fft.rfft(signal - signal.mean(), 2 * count) for signal in (first, second))
+    x, y = (np.fft.rfft(signal - signal.mean(), length) for signal in (first, second))
     cross = np.zeros_like(x)
     size = np.abs(x * y)[window]
     driven = size > DRIVEN * size.max()
     cross[window][driven] = (y * x.conj())[window][driven] / size[driven]
-    correlation = np.fft.irfft(cross)
-    shift = int(np.argmax(np.abs(correlation)))
-    shift -= 2 * count if shift > count else 0
+    shift = int(np.argmax(np.abs(np.fft.irfft(cross, length))))
+    shift -= length if shift > length // 2 else 0
     shift = shift if abs(shift) < count // 2 else 0
     early, late = (first[: count - shift], second[shift:]) if shift >= 0 else (first[-shift:], second[:shift])
     taper = np.hanning(early.size)
