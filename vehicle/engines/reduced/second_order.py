@@ -23,6 +23,7 @@ from vehicle.engines.reduced.equivalent_damping import equivalent_damping
 from vehicle.engines.reduced.linear_motion import (
     BAND,
     RATE,
+    continued,
     periodic_spectra,
     plate_inputs,
     run_inputs,
@@ -46,8 +47,9 @@ NAMED = 4
 WINDOW = 30.0
 """Length of the parts of a record that are evaluated one after another [s]."""
 
-WEAK = 1e-3
-"""Products of two patterns whose shares of the motion have a smaller geometric mean are left out."""
+WEAK = 1e-4
+"""Products of two patterns whose shares of the motion have a smaller product are left out. With 1e-3, forces that
+balance were left out in part: the body of `sedan` along x was stated 17 % too low on class D, where it is 12 %."""
 
 HIGHEST = 1.45 * BAND
 """Highest frequency of the second order [Hz]."""
@@ -186,13 +188,18 @@ def rms_errors(
     rows = [second.channels.index(name) for name in names]
     parts = max(round(time.size * interval / WINDOW), 1)
     length = -(-time.size // (parts * every)) * every
-    sums, count = np.zeros((3, len(names))), 0
+    sums, count, start, end = np.zeros((3, len(names))), 0, None, None
     for first in range(0, time.size, length):
         part = slice(first, min(first + length, time.size))
-        spectra, samples = periodic_spectra(inputs(part), interval, every)
-        spectra = second.forms.projection @ state_spectra(second.model, spectra, interval * every, samples)
+        histories = inputs(part)
+        # The car is at rest at the first sample of the record.
+        start = histories[:, :1] if start is None else start
+        spectra, samples = periodic_spectra(histories - start, interval, every)
+        state = state_spectra(second.model, spectra, interval * every, samples)
         linear = np.array([channels[name][part][::every] for name in names])
-        coordinates = np.fft.irfft(spectra, samples, axis=1)
+        projection = second.forms.projection
+        lacking, end = continued(second.model, state, interval * every, samples, linear.shape[1], end)
+        coordinates = np.fft.irfft(projection @ state, samples, axis=1) + projection[:, : len(lacking)] @ lacking
         more = linear + second.response(coordinates, interval * every)[rows, : linear.shape[1]]
         sums += np.array([np.sum(linear, axis=1), np.sum(linear**2, axis=1), np.sum(more**2, axis=1)])
         count += linear.shape[1]
