@@ -123,7 +123,7 @@ class Equations:
     def __init__(self, car: Car) -> None:
         self.model = copy.copy(car.model.model)
         self.model.opt.timestep = NO_STEP
-        self.rows = Rows(self.model, car.model.static.preload)
+        self.rows, self.slope = Rows(self.model, car.model.static.preload), car.matrices.slope
         self.data = mujoco.MjData(self.model)
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
         self.joints = self.rows.layout.joints.ravel()
@@ -139,8 +139,13 @@ class Equations:
         ]
         self.channels = [f"{place}_acc_{axis}" for place in places_of(model) for axis in AXES]
 
-    def at(self, motion: Motion, sample: int, sign: float) -> tuple[Vector, Vector, Vector, Vector]:
-        """Return R, gaps, rates of the branches and places at a sample of a motion times +1, 0 or -1."""
+    def at(
+        self, motion: Motion, sample: int, sign: float, present_load: bool = True
+    ) -> tuple[Vector, Vector, Vector, Vector]:
+        """Return R, gaps, rates of the branches and places at a sample of a motion times +1, 0 or -1.
+
+        Without the present load, the static loads act on the slopes of the road, at the displaced wheels.
+        """
         model, data, state = self.model, self.data, self.rows.state
         u, v, a, branch, z, rate, slope, joints = (sign * values[:, sample] for values in motion)
         velocity, acceleration = v.copy(), a.copy()
@@ -153,11 +158,13 @@ class Equations:
         mujoco.mj_integratePos(model, data.qpos, u, 1.0)
         data.mocap_pos[:, 2] = self.level + z
         state.plate_velocity[:, 2], state.slope_velocity[:] = rate, slope
-        state.last_time[0], state.turning[:] = -1.0, 0.0
+        state.last_time[0] = -1.0
         state.branch_past[:], state.branch_past[self.present] = 0.0, branch
         state.branch_force[:] = state.branch_past
         mujoco.mj_fwdPosition(model, data)
         mujoco.mj_fwdVelocity(model, data)
+        # The law extrapolates it from the last time, which is the present.
+        state.turning[:, :3] = data.cvel[self.rows.layout.rolling.hubs, :3]
         self.rows(model, data)
         inertia = np.zeros((model.nv, model.nv))
         mujoco.mj_fullM(model, data, inertia)
@@ -165,6 +172,10 @@ class Equations:
         force = inertia @ acceleration - jacobian.T @ joints
         force -= data.qfrc_passive - data.qfrc_bias + data.qfrc_applied
         rates, rolling, modes = state.rate.copy(), self.rows.layout.rolling, self.rows.layout.modes
+        if not present_load:
+            static = self.rows.weights.preload[self.rows.layout.bushings.rows[rolling.tyres, 2]]
+            change = state.force[rolling.tyres, 2] / static - 1.0
+            force += self.slope[:, rolling.plates] @ (change * slope[rolling.plates])
         # At t = 0 the laws leave out the heading of rolling wheels.
         rates[rolling.tyres, 1] += rolling.speeds * state.heading[0]
         turn, modal = data.xmat[modes.body].reshape(3, 3), data.qpos[modes.positions]
@@ -174,14 +185,14 @@ class Equations:
         ]
         return force, data.efc_pos[self.joints].copy(), rates[self.present], np.concatenate(places)
 
-    def products(self, motion: Motion, every: int = 1) -> Products:
+    def products(self, motion: Motion, every: int = 1, present_load: bool = True) -> Products:
         """Return the quadratic parts of a motion at each `every`-th sample."""
         rest = self.at(motion, 0, 0.0)
         parts = [
             [
                 0.5 * (ahead + back) - still
                 for ahead, back, still in zip(
-                    self.at(motion, sample, 1.0), self.at(motion, sample, -1.0), rest, strict=True
+                    *(self.at(motion, sample, sign, present_load) for sign in (1.0, -1.0)), rest, strict=True
                 )
             ]
             for sample in range(0, motion.height.shape[1], every)
@@ -190,7 +201,14 @@ class Equations:
 
 
 def second_order(
-    car: Car, motion: Motion, interval: float, *, every: int = 1, damping: Vector | None = None, highest: float = 150.0
+    car: Car,
+    motion: Motion,
+    interval: float,
+    *,
+    every: int = 1,
+    damping: Vector | None = None,
+    highest: float = 150.0,
+    present_load: bool = True,
 ) -> dict[str, Vector]:
     """Return the second order of all acceleration channels, defined as in `recorded_acceleration`.
 
@@ -202,12 +220,15 @@ def second_order(
             1/(2 every interval).
         damping: constants of further viscous dampers in the place of friction [N s/m]; (d,).
         highest: highest frequency of the response [Hz].
+        present_load: False if the change of the load on slopes is left out, as it is in the reduced engine.
 
     Returns:
         Channel to acceleration [m/s2]; (samples,).
     """
     equations, system, samples = Equations(car), car.matrices.system, motion.height.shape[1]
-    force, gaps, rates, places = (np.fft.rfft(part, axis=1) * every for part in equations.products(motion, every))
+    force, gaps, rates, places = (
+        np.fft.rfft(part, axis=1) * every for part in equations.products(motion, every, present_load)
+    )
     s = 2j * np.pi * np.fft.rfftfreq(samples, interval)[: force.shape[1]]
     total = system.damping.copy()
     if damping is not None:

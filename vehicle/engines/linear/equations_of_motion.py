@@ -13,7 +13,11 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from vehicle.engines.linear.car_matrices import CarMatrices
+from vehicle.engines.linear.displacement_laws import BUSHING, SPRING
+from vehicle.engines.linear.first_order import free_basis
 from vehicle.engines.simulation.car_model import CarModel
+from vehicle.engines.simulation.element_records import RubberFriction
 from vehicle.engines.simulation.row_layout import numeric, places_of
 from vehicle.engines.simulation.rows import Rows
 
@@ -28,18 +32,32 @@ class Equations:
 
     Args:
         car: assembled car.
-        basis: free motions of the joints; (n, m).
+        matrices: its linear car.
     """
 
-    def __init__(self, car: CarModel, basis: Vector) -> None:
-        self.model, self.basis = copy.copy(car.model), basis
+    def __init__(self, car: CarModel, matrices: CarMatrices) -> None:
+        self.model, self.basis, self.slope = copy.copy(car.model), free_basis(matrices.system), matrices.slope
         self.model.opt.timestep = SHORT
         self.rows = Rows(self.model, car.static.preload)
-        # Laws over displacement and lifting tyres are forces of the linear motion; their kinks have no second order.
+        # What laws over displacement and lifting tyres exceed their tangents by are forces of the linear motion, which
+        # act along the displaced elements like preloads; those on a coordinate of their own have no second order.
         layout = self.rows.layout
         tables = layout.tables._replace(kinds=layout.tables.kinds[:0])
         bushings = layout.bushings._replace(one_sided=layout.bushings.one_sided[:0])
-        self.rows.layout = layout._replace(tables=tables, bushings=bushings)
+        rubber = layout.rubber
+        rubber = RubberFriction(rubber.elements[:0], rubber.axes[:0], rubber.stiffness[:0], rubber.limit[:0])
+        self.rows.layout = layout._replace(tables=tables, bushings=bushings, rubber=rubber)
+        self.preload = self.rows.weights.preload.copy()
+        self.rows.weights = self.rows.weights._replace(preload=self.preload.copy())
+        elements = [law.element for law in matrices.laws]
+        self.laws = np.array([k for k, (kind, _, _) in enumerate(elements) if kind in (BUSHING, SPRING)], dtype=int)
+        self.law_rows = np.array(
+            [
+                layout.springs.rows[index] if kind == SPRING else bushings.rows[index, axis]
+                for kind, index, axis in (elements[k] for k in self.laws)
+            ],
+            dtype=int,
+        )
         self.data = mujoco.MjData(self.model)
         model, layout = self.model, self.rows.layout
         self.start, self.level = self.data.qpos.copy(), self.data.mocap_pos[:, 2].copy()
@@ -52,27 +70,21 @@ class Equations:
         shapes = [numeric(model, f"shape/place/{point}") for point in points]
         self.flexible = [k for k, shape in enumerate(shapes) if shape is not None]
         self.shapes = np.array([np.reshape(shape, (3, -1)) for shape in shapes if shape is not None])
-        mujoco.mj_kinematics(model, self.data)
-        mujoco.mj_comPos(model, self.data)
-        self.hubs = np.zeros((len(layout.rolling.hubs), 3, model.nv))
-        for rows, hub in zip(self.hubs, layout.rolling.hubs, strict=True):
-            mujoco.mj_jac(model, self.data, None, rows, np.zeros(3), int(hub))
 
     def at(self, motions: tuple[Vector, ...]) -> Vector:
         """Return forces, gaps, branch rates, positions and tyre deflections of motions; (rows, motions).
 
         Args:
-            motions: u, u', u'', f_b, z, z', l; (..., motions) each. Slopes are level: the present load on them is in
-                the reduced engine already.
+            motions: u, u', u'', f_b, z, z', V tan(beta), forces of laws, l; (..., motions) each. On slopes the static
+                loads act at the displaced wheels: their change is in the reduced engine already.
         """
-        u, v, a, branch, height, rate, joints = (part.T.copy() for part in motions)
+        u, v, a, branch, height, rate, slope, laws, joints = (part.T.copy() for part in motions)
         x, y, z = (u[:, self.turning[:, axis]] for axis in range(3))
         for vector in (v, a):
             # Angular velocity of the rotation exp(theta) in axes of the body: theta' - theta x theta'/2 + ...
             p, q, r = (vector[:, self.turning[:, axis]] for axis in range(3))
             vector[:, self.turning] -= 0.5 * np.stack([y * r - z * q, z * p - x * r, x * q - y * p], axis=2)
         model, data, state, size = self.model, self.data, self.rows.state, len(u)
-        omega = (v @ self.hubs.reshape(-1, model.nv).T).reshape(size, *self.hubs.shape[:2])
         position, level = np.tile(self.start, (size, 1)), self.level + height
         branches = np.zeros((size, *self.present.shape))
         branches[:, self.present] = branch
@@ -82,17 +94,25 @@ class Equations:
         gaps, points = np.zeros((size, len(self.joints))), np.zeros((size, *data.site_xpos.shape))
         rates, turns = np.zeros((size, *state.rate.shape)), np.zeros((size, *data.xmat.shape))
         deflections, headings = np.zeros((size, len(level[0]))), np.zeros((size, *state.heading[0].shape))
+        changes, rolling = np.zeros(slope.shape), self.rows.layout.rolling
+        static = self.preload[self.rows.layout.bushings.rows[rolling.tyres, 2]]
+        preload, preloads = self.rows.weights.preload, np.tile(self.preload, (size, 1))
+        np.subtract.at(preloads.T, self.law_rows, laws.T[self.laws])
         # Views of MuJoCo's arrays: to ask for one takes as long as to fill it.
         qpos, qvel, mocap, sites, matrices = data.qpos, data.qvel, data.mocap_pos, data.site_xpos, data.xmat
+        spatial = data.cvel
         passive, bias, applied, tyres = data.qfrc_passive, data.qfrc_bias, data.qfrc_applied, self.rows.layout.tyres
-        data.time, state.slope_velocity[:] = 0.0, 0.0
+        data.time = 0.0
         for k in range(size):
             mujoco.mj_integratePos(model, position[k], u[k], 1.0)
             qpos[:], qvel[:], mocap[:, 2] = position[k], v[k], level[k]
-            state.plate_velocity[:, 2], state.last_time[0], state.turning[:, :3] = rate[k], -1.0, omega[k]
+            state.plate_velocity[:, 2], state.last_time[0] = rate[k], -1.0
             state.branch_past[:] = state.branch_force[:] = branches[k]
+            state.slope_velocity[:], preload[:] = slope[k], preloads[k]
             mujoco.mj_fwdPosition(model, data)
             mujoco.mj_fwdVelocity(model, data)
+            # Gyroscopic moments take the angular velocity of the last time, too.
+            state.turning[:, :3] = spatial[rolling.hubs, :3]
             self.rows(model, data)
             gaps[k] = data.efc_pos[self.joints]
             mujoco.mj_mulJacTVec(model, data, pull[k], pulls[k])
@@ -102,7 +122,8 @@ class Equations:
             force[k] -= applied
             rates[k], headings[k], deflections[k] = state.rate, state.heading[0], state.residual[tyres, 2]
             points[k], turns[k] = sites, matrices
-        rolling, modes = self.rows.layout.rolling, self.rows.layout.modes
+            changes[k, rolling.plates] = state.force[rolling.tyres, 2] / static - 1.0
+        modes = self.rows.layout.modes
         # At t = 0 the laws leave out the heading of rolling wheels.
         rates[:, rolling.tyres, 1] += rolling.speeds * headings
         points = points[:, self.sites]
@@ -111,5 +132,7 @@ class Equations:
             points[:, self.flexible] += (
                 turn @ (self.shapes @ position[:, modes.positions].T).transpose(2, 0, 1)[..., None]
             )[..., 0]
+        if self.slope.size:
+            force += (changes * slope) @ self.slope.T
         force = (force - pull) @ self.basis
         return np.hstack([force, gaps, rates[:, self.present], points.reshape(size, -1), deflections]).T

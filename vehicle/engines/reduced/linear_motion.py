@@ -3,8 +3,8 @@
 The inputs of the poles are the plates z and z', the slopes of rolling tyres, the nonlinear forces of dampers and of
 laws over displacement, and the histories of applied forces. With the spectrum X of an input, xi = b X / (s - p), and
 every linear quantity of the car is a row over the state S = (Re xi, Im xi, inputs): displacements u, velocities,
-accelerations, forces of the Maxwell branches and of ideal joints. The record ends with a
-return to its start, so that it is periodic.
+accelerations, forces of the Maxwell branches and of ideal joints. The record is continued by a return to its start, so
+that it is periodic.
 """
 
 from __future__ import annotations
@@ -29,8 +29,14 @@ BAND = 90.0
 RATE = 3.0 * BAND
 """Rate at which products are computed [Hz], so that they are true up to `BAND`."""
 
+SLOWEST = 0.01
+"""Rate of a pole that a constant input moves to a place [rad/s]."""
+
+SLOW = 3.5
+"""Rate of decay up to which a motion is not at rest after the pause [1/s]: 0.1 % are left of a faster one."""
+
 RETURN, PAUSE = 1.0, 3.0
-"""Last part of a record in which all inputs return to their start, and time until the motion repeats [s]."""
+"""Time in which inputs return to their start, and until the motion repeats [s]."""
 
 
 class MotionRows(NamedTuple):
@@ -41,6 +47,8 @@ class MotionRows(NamedTuple):
             about their axles in `displacement`; (n, states).
         branch: forces of the Maxwell branches; (b, states).
         height, height_rate: plates; (w, states).
+        slope: V tan(beta) of the road under rolling tyres times the present load over the static one; (w, states).
+        laws: forces of laws over displacement beyond their tangents; (l, states).
         joints: forces of the ideal joints; (k, states).
     """
 
@@ -50,6 +58,8 @@ class MotionRows(NamedTuple):
     branch: Vector
     height: Vector
     height_rate: Vector
+    slope: Vector
+    laws: Vector
     joints: Vector
 
 
@@ -85,16 +95,19 @@ def motion_rows(model: PoleModel) -> MotionRows:
     needed = system.mass @ acceleration + system.damping @ velocity + system.stiffness @ displacement
     needed += system.effects.T @ branch
     needed[:, -count:] -= forces
-    plates = np.zeros((2 * wheels, displacement.shape[1]))
-    plates[:, -count:][:, : 2 * wheels] = np.eye(2 * wheels)
+    inputs = np.eye(count, displacement.shape[1], displacement.shape[1] - count)
+    height_rate, last = inputs[wheels : 2 * wheels], count - len(matrices.laws)
+    rolling = matrices.slope.size > 0
     displacement[list(system.cyclic)] = 0.0
     return MotionRows(
         displacement=displacement,
         velocity=velocity,
         acceleration=acceleration,
         branch=branch,
-        height=plates[:wheels],
-        height_rate=plates[wheels:],
+        height=inputs[:wheels],
+        height_rate=height_rate,
+        slope=height_rate + inputs[2 * wheels : 3 * wheels] if rolling else np.zeros_like(height_rate),
+        laws=inputs[last:],
         joints=np.linalg.pinv(system.constraints.T) @ needed,
     )
 
@@ -113,40 +126,74 @@ def state_spectra(model: PoleModel, spectra: Complex, interval: float, samples: 
     """
     wheels, lines = len(model.matrices.system.inputs), spectra.shape[1]
     s = 2j * np.pi * np.arange(lines) / (samples * interval)
-    at = np.flatnonzero((s.imag > 0.0) & (s.imag <= 2.0 * np.pi * BAND))
+    at = np.flatnonzero(s.imag <= 2.0 * np.pi * BAND)
     height, others = spectra[:wheels, at], spectra[wheels:, at]
     inputs, effects = np.vstack([height, s[at] * height, others]), input_effects(model)
     poles = model.poles[:, None]
-    ahead, back = (effects @ inputs) / (s[at] - poles), (effects.conj() @ inputs) / (s[at] - poles.conj())
+    # The constant part of a motion that nothing holds stays unknown.
+    held = (s[at] != 0.0) | (np.abs(poles) > SLOWEST)
+    ahead, back = (
+        np.divide(b @ inputs, s[at] - p, out=np.zeros(held.shape, dtype=complex), where=held)
+        for b, p in ((effects, poles), (effects.conj(), poles.conj()))
+    )
     result = np.zeros((2 * len(poles) + len(inputs), lines), dtype=complex)
     result[:, at] = np.vstack([0.5 * (ahead + back), -0.5j * (ahead - back), inputs])
     return result
 
 
-def returning(samples: int, interval: float) -> int:
-    """Return the number of samples at the end of a record in which its inputs return to their start."""
-    return min(round(RETURN / interval), samples // 2)
-
-
 def periodic_spectra(inputs: Vector, interval: float, every: int) -> tuple[Complex, int]:
     """Return the spectra of inputs that return to their start, at each `every`-th sample, and the samples of a period.
 
-    Inputs return together: motion and friction become small together, and dampers that stick go on sticking. A friction
-    that was held instead, without the motion that it stops, would move the car on its springs.
-
     Args:
-        inputs: histories; (inputs, n).
+        inputs: histories, less what they are at rest; (inputs, n).
         interval: sampling interval of the histories [s].
         every: samples from one to the next of the result.
     """
-    count = inputs.shape[1]
-    fall = returning(count, interval)
+    count, fall = inputs.shape[1], round(RETURN / interval)
     coarse = -(-(count + round(PAUSE / interval)) // every)
     period = fast_length(coarse)
-    padded = np.zeros((len(inputs), period * every))
-    padded[:, :count] = inputs - inputs[:, :1]
-    padded[:, count - fall : count] *= 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
+    padded = np.tile(inputs[:, :1], period * every)
+    padded[:, :count] = inputs
+    way = 0.5 * (1.0 + np.cos(np.pi * np.arange(fall) / fall))
+    padded[:, count : count + fall] += (inputs[:, -1:] - inputs[:, :1]) * way
     return np.fft.rfft(padded, axis=1)[:, : period // 2 + 1] / every, period
+
+
+def continued(
+    model: PoleModel, state: Complex, interval: float, samples: int, count: int, start: Complex | None
+) -> tuple[Vector, Complex]:
+    """Return what a periodic motion lacks to one that continues that of the samples before.
+
+    Poles with a decay rate below `SLOW` would begin with what is left of the end of the period.
+
+    Args:
+        model: the car.
+        state: spectra of the state over the period; (states, lines).
+        interval: sampling interval [s].
+        samples: samples of the period.
+        count: samples of the record; from there to the end of the period the difference returns to its start.
+        start: state of the slow poles at the first sample; None at rest.
+
+    Returns:
+        The difference of the state; (2 p, samples). State of the slow poles after the record.
+    """
+    poles = len(model.poles)
+    slow = np.flatnonzero(model.poles.real > -SLOW)
+    spectra = np.vstack([state[slow], state[poles + slow]])
+
+    def present(sample: int) -> Complex:
+        turned = spectra * np.exp(2j * np.pi * sample / samples * np.arange(spectra.shape[1]))
+        real, imaginary = np.split((2.0 * np.sum(turned.real, axis=1) - turned[:, 0].real) / samples, 2)
+        return np.asarray(real + 1j * imaginary)
+
+    lacking = -present(0) if start is None else start - present(0)
+    decay = np.exp(model.poles[slow, None] * (interval * np.arange(samples)))
+    end = present(count) + lacking * np.exp(model.poles[slow] * (interval * count))
+    way = 0.5 * (1.0 - np.cos(np.pi * np.arange(samples - count) / (samples - count)))
+    decay[:, count:] += (1.0 - decay[:, count:]) * way
+    difference = np.zeros((2 * poles, samples))
+    difference[slow], difference[poles + slow] = (lacking[:, None] * decay).real, (lacking[:, None] * decay).imag
+    return difference, end
 
 
 def plate_inputs(
