@@ -25,7 +25,9 @@ from vehicle.core.build import SOURCES, compile_core  # noqa: E402
 from vehicle.core.library import COMPILERS, platform_name  # noqa: E402
 
 CHECKS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1"]
-CALLBACK = [f"tests/core/test_{name}.py" for name in ("laws", "lengths", "equal_rows", "own_law", "spectra")]
+CALLBACK = [
+    f"tests/core/test_{name}.py" for name in ("laws", "lengths", "equal_rows", "own_law", "own_friction", "spectra")
+]
 CALLBACK += ["tests/engines/simulation/test_sparse_rows.py"]
 """Tests that run with it: single laws, records of wrong lengths, every law in the rows of MuJoCo in both variants."""
 

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from vehicle.errors import VehicleError as VehicleError
     from vehicle.handover.fmu.fmu_file import write_fmu as write_fmu
     from vehicle.handover.page.report_file import write_report as write_report
+    from vehicle.model.laws.friction_by_address import register_friction as register_friction
     from vehicle.model.laws.law_by_address import register_law as register_law
     from vehicle.model.parameters.shipped import shipped_cars as shipped_cars
     from vehicle.runs.car.car import Car as Car
@@ -131,6 +132,7 @@ _MODULES = {
     "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",
     "read_signal": "vehicle.signals.excitation.signal_file",
+    "register_friction": "vehicle.model.laws.friction_by_address",
     "register_law": "vehicle.model.laws.law_by_address",
     "replicate_drive": "vehicle.studies.replication.drive_search",
     "road": "vehicle.runs.car.road",

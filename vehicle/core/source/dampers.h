@@ -120,7 +120,7 @@ static void dampers(const Now *o, const Layout *e, const Weights *c, State *s) {
     if (law->side_force > 0.0) limit += law->side_force * side_force(n, o, e, s);
     o->D[p->rows.at[n]] = c->damper_impedance.at[n];
     o->aref[p->rows.at[n]] = 0.0;
-    o->D[row] = larger(slope_at_rest(limit, law->smoothing) * h, EMPTY_ROW);
+    o->D[row] = larger(EMPTY_ROW, slope_at_rest(limit, law->smoothing) * h); /* in this order NaN stays NaN */
     o->aref[row] = -sliding / h;
     o->loss[row] = s->limit.at[n] = limit;
   }

@@ -34,8 +34,18 @@ static inline double stribeck_limit(const DamperLaw *law, double velocity) {
 #define NUMBER_OF_LAW(name) LAW_##name,
 enum { EACH_FRICTION_LAW(NUMBER_OF_LAW) };
 
-/* Friction limit L(v) of a damper [N] by its law. */
+/* Law by address: double function(void *memory, double first, double second); `call`: address of a Call. */
+typedef double LawByAddress(void *memory, double first, double second);
+static inline double call_law(double call, double first, double second) {
+  const Call *c = (const Call *)(uintptr_t)call;
+  return ((LawByAddress *)(uintptr_t)c->function)((void *)(uintptr_t)c->memory, first, second);
+}
+
+/* Friction limit L(v) of a damper [N] by its law. From FIRST_ADDRESS on, the law is no index but the address of a Call of
+ * Fd and v; a limit below zero counts as zero, and NaN stays NaN. */
+enum { FIRST_ADDRESS = 4096 };
 static inline double friction_limit(const DamperLaw *law, double velocity) {
+  if (law->friction_law >= FIRST_ADDRESS) return larger(0.0, call_law(law->friction_law, law->friction_limit, velocity));
   switch ((int)law->friction_law) {
 #define LIMIT_OF_LAW(name) case LAW_##name: return name##_limit(law, velocity);
     EACH_FRICTION_LAW(LIMIT_OF_LAW)
@@ -53,13 +63,6 @@ static inline double curve_force(double x, const double *edge, const double *slo
 /* Jenkins element after a further displacement: clamp(t + k dx, l). */
 static inline double jenkins(double force, double stiffness, double change, double limit) {
   return clamp(force + stiffness * change, limit);
-}
-
-/* Law by address: double function(void *memory, double first, double second); `call`: address of a Call. */
-typedef double LawByAddress(void *memory, double first, double second);
-static inline double call_law(double call, double first, double second) {
-  const Call *c = (const Call *)(uintptr_t)call;
-  return ((LawByAddress *)(uintptr_t)c->function)((void *)(uintptr_t)c->memory, first, second);
 }
 
 /* Force of a damper by address beyond its line, F(x, v) - D v [N]. */

@@ -27,7 +27,7 @@
 
 /* Damper. viscous_damping: D [N s/m], the smallest slope of the curve; smoothing: eps [s/m]; friction_limit: Fd [N];
  * static_limit: Fs [N]; stribeck_velocity: vs [m/s]; stribeck_exponent: delta [-]; rest_force: F_c(0) - F_gas [N];
- * shift: shift - F_gas [N]; friction_law: index in FRICTION_LAWS; side_force: growth of the limit with it [-]. */
+ * shift: shift - F_gas [N]; friction_law: index in FRICTION_LAWS, or an address (laws.h); side_force: growth of the limit with it [-]. */
 #define DAMPER_LAW_FIELDS(F) \
   F(double, viscous_damping) F(double, smoothing) F(double, friction_limit) F(double, static_limit) \
   F(double, stribeck_velocity) F(double, stribeck_exponent) F(double, rest_force) F(double, shift) \

@@ -194,7 +194,8 @@ class CarTable:
             **first_rows,
         )
         varying = sizes["rest"] > 0
-        varying |= any(damper.friction_law not in CONSTANT for data_of_car in dampers for damper in data_of_car)
+        every = [damper for data_of_car in dampers for damper in data_of_car]
+        varying |= any(damper.friction_law not in CONSTANT or damper.friction_function for damper in every)
         self.laws = np.ascontiguousarray(record[:, : lanes // split] if varying else record[:0])
 
     def at_rest(self, start: Vector) -> Table:

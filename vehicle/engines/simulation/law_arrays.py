@@ -7,12 +7,14 @@ from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from vehicle.engines.simulation.element_records import Layout, OwnDampers, RubberFriction, Tables, Vector
 from vehicle.engines.simulation.force_curves import tables_through
 from vehicle.model.assembly.element_numbers import AVERAGED, DECOUPLER, FLUID, TURNING
 from vehicle.model.laws.control_laws import NUMBERS, in_steps
 from vehicle.model.laws.damper import unpack
+from vehicle.model.laws.friction_by_address import friction_by_address
 from vehicle.model.laws.law_by_address import RECORD, LawByAddress, law_by_address
 from vehicle.names import AXES
 
@@ -120,7 +122,7 @@ def with_numbers(layout: Layout, names: LawNames, numbers: Numbers, timestep: fl
             stiffness=np.array([float(numbers[f"law/{name}"][0]) for name in names.springs])
         ),
         dampers=layout.dampers._replace(
-            laws=unpack([numbers[f"actuator/{name}"] for name in names.dampers]),
+            laws=_damper_records(names, numbers),
             pieces=np.reshape([numbers[f"law/{name}"] for name in names.valves], (-1, 3)).astype(float),
         ),
         presliding=layout.presliding._replace(
@@ -164,13 +166,27 @@ def _own_laws(names: LawNames, numbers: Numbers) -> list[tuple[int, LawByAddress
     Raises:
         ConfigurationError: a law is not registered in this process.
     """
-    fields = [(index, f"function/{name}/") for index, name in enumerate(names.dampers)]
+    return [(index, law_by_address(law)) for index, law in _words(names, numbers, "function")]
+
+
+def _words(names: LawNames, numbers: Numbers, kind: str) -> list[tuple[int, str]]:
+    """Return the dampers with a word of a kind, which is a part of the name of a field, and these words."""
+    starts = [(index, f"{kind}/{name}/") for index, name in enumerate(names.dampers)]
     return [
-        (index, law_by_address(field.removeprefix(start)))
-        for index, start in fields
-        for field in numbers
-        if field.startswith(start)
+        (index, field.removeprefix(start)) for index, start in starts for field in numbers if field.startswith(start)
     ]
+
+
+def _damper_records(names: LawNames, numbers: Numbers) -> npt.NDArray[Any]:
+    """Return the records of the dampers, with the addresses of friction laws of the user's own.
+
+    Raises:
+        ConfigurationError: a law is not registered in this process.
+    """
+    records = unpack([numbers[f"actuator/{name}"] for name in names.dampers])
+    for index, law in _words(names, numbers, "limit"):
+        records["friction_law"][index] = friction_by_address(law).call.address
+    return records
 
 
 def _rubber(names: LawNames, numbers: Numbers) -> RubberFriction:

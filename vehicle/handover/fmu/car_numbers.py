@@ -113,11 +113,13 @@ def numbers_with(car: Car, step: float, read: tuple[Sequence[Output], OutputRows
             "a car with dampers at its wheels"
         )
     for damper in composition:
-        if damper.law.function is not None:
-            raise ConfigurationError(
-                f"{damper.name}.function: found {damper.law.function!r}, a function of this process, which neither an "
-                "FMU nor a page can contain; set the viscous law, as points of a table"
-            )
+        own = {"function": "viscous law, as points of a table", "friction_function": "friction law"}
+        for name, other in own.items():
+            if (found := getattr(damper.law, name)) is not None:
+                raise ConfigurationError(
+                    f"{damper.name}.{name}: found {found!r}, a function of this process, which neither an FMU nor a "
+                    f"page can contain; set the {other}"
+                )
         if damper.law.controlled is not None and damper.law.controlled.law == FMU:
             raise ConfigurationError(
                 f"{damper.name}.control.law: found {FMU!r}; an FMU of a car does not contain another FMU: set law = "

@@ -6,6 +6,7 @@ Cars that differ only in these numbers share a model: see `vehicle.engines.linea
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any
@@ -113,6 +114,8 @@ def damper_numbers(placed: PlacedDamper) -> Numbers:
     if placed.law.function is not None:
         # The name is in that of the field, because a field has numbers only.
         numbers[f"function/{placed.name}/{placed.law.function}"] = np.ones(1)
+    if placed.law.friction_function is not None:
+        numbers[f"limit/{placed.name}/{placed.law.friction_function}"] = np.ones(1)
     if elements.size:
         numbers[f"presliding/{placed.name}"] = elements.ravel()
     numbers[f"actuator/{placed.name}"] = actuator
@@ -123,7 +126,9 @@ def damper_numbers(placed: PlacedDamper) -> Numbers:
 def _packed(law: Damper) -> tuple[Vector, Vector, Vector | None, Vector]:
     """Return steeper segments, presliding elements, control and record; cached, as an axle has equal dampers."""
     control = None if law.controlled is None else control_laws.pack(law.controlled)
-    return damper_curve(law).clamped(), presliding_elements(law), control, actuator_parameters(pack(law))
+    # A model has no address: it is valid in one process.
+    record = pack(dataclasses.replace(law, friction_function=None))
+    return damper_curve(law).clamped(), presliding_elements(law), control, actuator_parameters(record)
 
 
 def joint_numbers(spring: JointSpring) -> Numbers:

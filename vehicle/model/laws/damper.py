@@ -23,6 +23,7 @@ from vehicle.core.library import core
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.curve import Curve
 from vehicle.model.laws.friction import Friction
+from vehicle.model.laws.friction_by_address import OwnFriction, friction_by_address
 from vehicle.model.laws.law import Constant, ForceLaw, Parallel
 from vehicle.model.laws.law_by_address import law_by_address
 from vehicle.model.parameters.force_elements import FRICTION_LAWS, Damper
@@ -39,7 +40,7 @@ RECORD = np.dtype(
             "stribeck_exponent",  # delta [-]
             "rest_force",  # F_c(0) - F_gas [N]
             "shift",  # shift - F_gas [N]
-            "friction_law",  # index in FRICTION_LAWS
+            "friction_law",  # index in FRICTION_LAWS; in a run the address of the call of a user's own function
             "side_force",  # growth of the limit with the side force [-]
         )
     ],
@@ -50,7 +51,11 @@ of the model."""
 
 
 def pack(damper: Damper) -> npt.NDArray[Any]:
-    """Return the record of the laws of a damper; ()."""
+    """Return the record of the laws of a damper; ().
+
+    Raises:
+        ConfigurationError: a law by address is not registered in this process.
+    """
     curve = damper_curve(damper)
     force_at_rest = float(curve.force(0.0)) - damper.gas_force
     return np.array(
@@ -64,7 +69,9 @@ def pack(damper: Damper) -> npt.NDArray[Any]:
             damper.stribeck_exponent or 1.0,
             force_at_rest,
             force_at_rest - curve.at_rest(),
-            FRICTION_LAWS.index(damper.friction_law),
+            FRICTION_LAWS.index(damper.friction_law)
+            if damper.friction_function is None
+            else friction_by_address(damper.friction_function).call.address,
             damper.side_force_coefficient,
         ),
         dtype=RECORD,
@@ -117,6 +124,9 @@ def damper_law(damper: Damper) -> Parallel:
     """Return the total force of a damper as a law of arrays, with friction in the smooth form."""
     record, law = pack(damper), FRICTION[damper.friction_law]
     friction = law(**{entry.name: float(record[entry.name]) for entry in dataclasses.fields(law)})
+    if damper.friction_function is not None:
+        limit, smoothing = damper.coulomb_friction, damper.smoothing
+        friction = OwnFriction(name=damper.friction_function, friction_limit=limit, smoothing=smoothing)
     return Parallel(laws=(viscous_law(damper), Constant(value=-damper.gas_force), friction))
 
 

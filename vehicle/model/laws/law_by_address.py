@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import ctypes
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -49,7 +50,8 @@ STROKES = (-0.05, -0.01, 0.01, 0.05)
 AT_REST = 1e-6
 """Maximum force at rest over the force at `STEP`: far above round-off, far below the effect of a spring."""
 
-_CALL = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
+CALL = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_void_p, ctypes.c_double, ctypes.c_double)
+"""Type of these functions."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -77,7 +79,7 @@ class LawByAddress:
             velocity: v [m/s].
             displacement: x [m]; both broadcast together.
         """
-        function, pairs = _CALL(self.address), np.broadcast(displacement, velocity)
+        function, pairs = CALL(self.address), np.broadcast(displacement, velocity)
         return np.array([function(self.memory, float(x), float(v)) for x, v in pairs]).reshape(pairs.shape)
 
     def slope(self, velocity: Numbers) -> npt.NDArray[np.float64]:
@@ -111,9 +113,7 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
         ConfigurationError: the name is not valid or belongs to another function, there is no address, or the force is
             not finite, not zero at rest or falls at rest.
     """
-    if not re.fullmatch(r"[A-Za-z0-9_.-]+", name):
-        raise ConfigurationError(f"damper law {name!r}: a name has letters, digits, '_', '.' and '-' only")
-    address = _address(name, function)
+    address = checked_address(name, function)
     earlier = _LAWS.get(name)
     if earlier is not None and (earlier.address, earlier.memory) != (address, memory):
         raise ConfigurationError(
@@ -148,19 +148,26 @@ def law_by_address(name: str) -> LawByAddress:
         ConfigurationError: no law of this name is registered in this process.
     """
     if name not in _LAWS:
-        raise ConfigurationError(
-            f"damper law {name!r}: not registered in this process, which knows {', '.join(_LAWS) or 'none'}; call "
-            "vehicle.register_law first, and run sweeps of such a car with jobs=1"
-        )
+        raise missing("damper law", name, _LAWS, "register_law")
     return _LAWS[name]
 
 
-def _address(name: str, function: Any) -> int:
-    """Return the address of a function.
+def missing(kind: str, name: str, known: Iterable[str], register: str) -> ConfigurationError:
+    """Return the error of a name that no law of a kind has in this process."""
+    return ConfigurationError(
+        f"{kind} {name!r}: not registered in this process, which knows {', '.join(known) or 'none'}; call "
+        f"vehicle.{register} first, and run sweeps of such a car with jobs=1"
+    )
+
+
+def checked_address(name: str, function: Any) -> int:
+    """Return the address of a function that gets a name.
 
     Raises:
-        ConfigurationError: the object has none.
+        ConfigurationError: the object has none, or the name is not valid.
     """
+    if not re.fullmatch(r"[A-Za-z0-9_.-]+", name):
+        raise ConfigurationError(f"law {name!r}: a name has letters, digits, '_', '.' and '-' only")
     value = getattr(function, "address", function)
     if callable(value):
         try:
@@ -169,7 +176,7 @@ def _address(name: str, function: Any) -> int:
             value = None
     if not isinstance(value, int) or isinstance(value, bool) or value <= 0:
         raise ConfigurationError(
-            f"damper law {name!r}: found {type(function).__name__} without an address; pass an integer, a function "
+            f"law {name!r}: found {type(function).__name__} without an address; pass an integer, a function "
             "of ctypes (CFUNCTYPE), or numba.cfunc"
         )
     return value

@@ -293,7 +293,7 @@ class Damper:
     on first loading the force rises with K slope[j] up to Fd force[j] on each segment j, and after a reversal by twice
     that curve (`vehicle.model.laws.presliding`); the smoothing has no effect.
     Parameters of a law that is not chosen are optional. A control law other than "passive", or a function F(x, v) of
-    the user's own, replaces the viscous law.
+    the user's own, replaces the viscous law; a function L(Fd, v) of the user's own is the limit in place of Fd.
     """
 
     viscous: float | None = quantity("N s/m", "D, damping constant", at_least=0.0, default=None, **STRONGEST)
@@ -317,6 +317,7 @@ class Damper:
     stop: ForceTable | None = None
     control: SemiActiveDamper | None = None
     friction_law: str = quantity("-", "friction law", choices=FRICTION_LAWS)
+    friction_function: str | None = quantity("-", "law of `vehicle.register_friction` for the limit", default=None)
     coulomb_friction: float = quantity("N", "Fd, Coulomb friction", at_least=0.0, **RUBBED)
     smoothing: float = quantity(
         "s/m", "eps: friction has the slope (2/pi) Fd eps at rest", above=0.0, at_least=10.0, at_most=1e8,
@@ -358,6 +359,9 @@ class Damper:
             raise ConfigurationError(
                 f"Damper.function: found {self.function!r} with control.law = {self.controlled.law}; remove one"
             )
+        if self.friction_function is not None and self.friction_law != "coulomb":
+            found = f"found {self.friction_function!r} with friction_law = {self.friction_law}"
+            raise ConfigurationError(f"Damper.friction_function: {found}; it replaces friction_law = coulomb")
         if self.static_friction < self.coulomb_friction:
             raise ConfigurationError(
                 f"Damper.stribeck_friction: found {self.stribeck_friction!r} N, must be at least "
