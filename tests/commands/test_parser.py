@@ -39,7 +39,7 @@ LINES: dict[str, dict[str, tuple[list[str], list[str]]]] = {
     },
     "road": {"a road of a class": (["--profile", "p.csv"], ["--class", "C"])},
     "kinematics": {"loads on the wheels": (["--ideal"], []), "files": ([], ["--output", "axle"])},
-    "modes": {"files": ([], ["--uff", "m.uff"])},
+    "modes": {"files": ([], ["--uff", "m.uff"]), "a decoupling": ([], ["--decoupling", "engine"])},
 }
 """Command to its groups: a command line on which each does nothing, and one on which it acts."""
 
