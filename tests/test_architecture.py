@@ -66,7 +66,7 @@ ROOMS: dict[str, set[str]] = {
     "car": {"handed_down", "analysis", "excitation", "flexbody", "kinematics", "laws", "linear", "notebook"}
     | {"parameters", "records", "reduced", "rendering", "simulation", "threads"},
     "comparison": {"analysis", "car", "formats", "linear", "records", "rendering", "threads"},
-    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "parameters"}
+    "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "parameters"}
     | {"records", "rendering", "replacement", "simulation"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records"}
     | {"rendering", "simulation", "version"},

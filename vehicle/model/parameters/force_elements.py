@@ -10,7 +10,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.curves import require_curve
 from vehicle.model.parameters.force_table import ForceTable
 from vehicle.model.parameters.hardpoints import Point
-from vehicle.model.parameters.quantity import quantity, validate
+from vehicle.model.parameters.quantity import Validated, quantity, validate
 from vehicle.model.parameters.semi_active_damper import PASSIVE, SemiActiveDamper
 from vehicle.names import AXES
 
@@ -241,7 +241,7 @@ DECOUPLER = ("decoupler_gap", "decoupler_mass", "decoupler_damping", "decoupler_
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class MainSpring:
+class MainSpring(Validated):
     """Spring between the lower spring seat and the strut top, along the line between both.
 
     A table over the extension from the unloaded length replaces the stiffness."""
@@ -251,31 +251,22 @@ class MainSpring:
     )
     table: ForceTable | None = None
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Stabilizer:
+class Stabilizer(Validated):
     """Torsion spring between the two halves of the stabilizer bar."""
 
     torsional_stiffness: float = quantity(
         "N m/rad", "torque over relative angle of the halves", at_least=0.0, **TWISTED
     )
 
-    def __post_init__(self) -> None:
-        validate(self)
-
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class SlideSpring:
+class SlideSpring(Validated):
     """Spring and damper along a slide: f = -k q - d q'."""
 
     stiffness: float = quantity("N/m", "stiffness", at_least=0.0, **STIFFEST)
     damping: float = quantity("N s/m", "damping", at_least=0.0, default=0.0, **STRONGEST)
-
-    def __post_init__(self) -> None:
-        validate(self)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
