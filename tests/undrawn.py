@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 UNDRAWN = ("tests/commands/", "tests/documentation/test_pages", "tests/signals/")
 """Folders and modules of tests that do not look at their figures."""
 
-DRAWN = ("tests/commands/test_body_show", "tests/signals/formats/test_full_disk")
-"""Modules of these folders that do."""
+DRAWN = ("tests/signals/formats/test_full_disk",)
+"""Modules of these folders that need every drawing, beside those that look at a file (`_looks`)."""
 
 SVG = '<svg viewBox="0 0 1 1"></svg>'
 PNG = bytes.fromhex(
@@ -38,7 +39,8 @@ def leave_out_drawings(present: Callable[[], str]) -> None:
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     def all_of() -> bool:
-        return not present().startswith(UNDRAWN) or present().startswith(DRAWN)
+        node = present()
+        return not node.startswith(UNDRAWN) or node.startswith(DRAWN) or _looks(node.partition("::")[0])
 
     save, lay_out = Figure.savefig, ConstrainedLayoutEngine.execute
 
@@ -58,6 +60,13 @@ def leave_out_drawings(present: Callable[[], str]) -> None:
 
     Figure.savefig = savefig  # type: ignore[method-assign, assignment]
     ConstrainedLayoutEngine.execute = execute  # type: ignore[method-assign, assignment]
+
+
+@cache
+def _looks(module: str) -> bool:
+    """Return True for a module of tests that takes sizes or bytes of files, among them of pictures."""
+    path = Path(__file__).parents[1] / module
+    return path.is_file() and any(word in path.read_text(encoding="utf-8") for word in ("st_size", "read_bytes"))
 
 
 def _plotting() -> tuple[str, str]:

@@ -81,7 +81,7 @@ FAULTS = (
     Fault("vehicle/studies/mounts/decoupler_balance.py", "np.arcsin(ratio) + ratio * np.sqrt", "np.arcsin(ratio) - ratio * np.sqrt", "studies/mounts"),
     Fault("vehicle/studies/replication/iteration.py", "0.5 * current_gain", "1.0 * current_gain", "studies/replication commands/test_drive_command.py"),
     Fault("vehicle/studies/design/mass_balance.py", "share = 1.0 - front / mass", "share = front / mass", "studies/design/test_new_car.py"),
-    Fault("vehicle/commands/input_options.py", "else float(text)", "else float(text) * 1.0001", "commands system"),
+    Fault("vehicle/commands/input_options.py", "return float(text)", "return float(text) * 1.0001", "commands system"),
     Fault("scenarios/verdict.py", "(-ERRORS, 0.0, ERRORS)", "(0.0, ERRORS)", "scenarios/test_claim.py"),
     Fault("scenarios/interval_probability.py", "math.sqrt(1.0 + 1.0 / n)", "math.sqrt(1.0 / n)", "scenarios/test_interval_probability.py"),
     Fault("scenarios/damper_choice/optimum.py", "float(coarse[max(best - 1, 0)])", "float(coarse[best])", "scenarios/test_damper_optimum.py"),

@@ -135,7 +135,7 @@ def test_a_road_is_evaluated_from_two_seconds_on(shaker, tmp_path):
         (["--road", "Z", "--speed", "80"], "road class 'Z': must be one of A, B"),
         (
             ["--road", "none.csv", "--speed", "80"],
-            "--road none.csv: no class of ISO 8608 (A to H), no file of a measured profile, and no obstacle",
+            "--road none.csv: no class of ISO 8608 (A to H), no file of a measured profile, no obstacle",
         ),
         (["--road", "C", "--speed", "80", "--input", "low.csv"], "--road C and --input: set only one of them"),
         (
