@@ -23,7 +23,7 @@ AT_FDCWD = -100
 """Relative names are relative to the working folder; renameat2(2)."""
 
 _being_made: set[Path] = set()
-"""Hidden folders of this process whose files nobody reads before the whole folder is complete."""
+"""Hidden folders and files of this process, which nobody reads before they are complete."""
 
 
 def synchronise(path: Path) -> None:
@@ -84,13 +84,13 @@ def exchange(first: Path, second: Path) -> bool:
 
 
 @contextmanager
-def being_made(folder: Path) -> Iterator[None]:
-    """Declare a hidden folder, renamed when it is complete: files in it are written directly."""
-    _being_made.add(folder.absolute())
+def being_made(path: Path) -> Iterator[None]:
+    """Declare a hidden folder or file, renamed when it is complete: it, and files in it, are written directly."""
+    _being_made.add(path.absolute())
     try:
         yield
     finally:
-        _being_made.discard(folder.absolute())
+        _being_made.discard(path.absolute())
 
 
 def folder_being_made(path: Path) -> Path | None:
@@ -99,8 +99,8 @@ def folder_being_made(path: Path) -> Path | None:
 
 
 def is_being_made(path: Path) -> bool:
-    """True if a file is in a folder of `being_made`."""
-    return folder_being_made(path) is not None
+    """True if a file is in a folder of `being_made`, or is a temporary file of `replaced_file`."""
+    return path.absolute() in _being_made or folder_being_made(path) is not None
 
 
 def temporary_name(path: Path) -> Path:
@@ -113,7 +113,7 @@ def replaced_file(path: Path) -> Iterator[Path]:
     """Yield a name for a new file in the same folder; on success, it takes the place of the file, else it is removed.
 
     Args:
-        path: final name. In a folder of `being_made` it is yielded itself.
+        path: final name. It is yielded itself if it `is_being_made`: a writer of a file can be used in this context.
 
     Raises:
         OSError: the file cannot be written; an existing file is unchanged.
@@ -123,7 +123,8 @@ def replaced_file(path: Path) -> Iterator[Path]:
         return
     temporary = temporary_name(path)
     try:
-        yield temporary
+        with being_made(temporary):
+            yield temporary
         synchronise(temporary)
         temporary.replace(path)
     finally:

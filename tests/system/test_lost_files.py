@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from vehicle.errors import ConfigurationError, OutputError
+from vehicle.replacement import replaced_file
 from vehicle.runs.output import written_files
 from vehicle.runs.output.folder import (
     check_file,
@@ -51,6 +52,20 @@ def test_only_what_a_run_wrote_is_replaced(tmp_path):
         put(run, "a.csv", force=True)
     assert (run / "thesis.tex").exists() and (run / "notes" / "one.txt").exists()
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_a_writer_in_the_context_of_another_makes_one_temporary_file(tmp_path):
+    """`body build` hands the temporary name to a writer that makes one of its own: a kill left a file of two names."""
+
+    def write(path: Path) -> None:
+        with replaced_file(path) as inner:
+            inner.write_text("new")
+            seen.extend(file.name for file in tmp_path.iterdir() if file.name.endswith(".partial.txt"))
+
+    seen: list[str] = []
+    write_whole(tmp_path / "a.txt", write)
+    assert seen == [f".a.txt.{os.getpid()}.partial.txt"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [MARKER, "a.txt"]
 
 
 def test_a_file_that_comes_during_the_run_is_kept(tmp_path):
