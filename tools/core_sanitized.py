@@ -43,10 +43,14 @@ def main() -> int:
             [compiler], platform_name().split("-")[0], library, ["-fPIC", *CHECKS], ["-shared", "-lm", *CHECKS]
         )
         subprocess.run([sys.executable, "-m", "tests.core.recorded_march", marches], cwd=ROOT, check=True)
-        runtime = subprocess.run([compiler, "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
+        # the C++ library too: the checks refuse an exception of C++, as matplotlib throws, where it is loaded later
+        runtimes = [
+            subprocess.check_output([compiler, f"-print-file-name={name}"], text=True).strip()
+            for name in ("libasan.so", "libstdc++.so")
+        ]
         environment = {
             **os.environ,
-            "LD_PRELOAD": runtime.stdout.strip(),
+            "LD_PRELOAD": ":".join(runtimes),
             "ASAN_OPTIONS": "detect_leaks=0",
             "VEHICLE_CORE": str(library),
         }
