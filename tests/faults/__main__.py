@@ -32,7 +32,7 @@ others too, and is run here before the results are judged.
 Each command that writes has a row, for each option and format that writes; a test compares them with the parsers. The
 rows "only writing" write small files in each way that the commands use, without a computation. `bench` replaces nothing
 and has none. A film is written by ffmpeg, a process of its own whose calls do not fail here: the rows of both films are
-of the calls of this process, its other files and the exchange, with fewer cases, as each draws a film; a test writes a
+of the calls of this process, its other files and the exchange, fewer for the film of a run; a test writes a
 film, and each other format, beyond a limit of the size of files. Files with the time that was computed (`summary.json`,
 `timing.csv`, `rows.jsonl`, `report.html` of a run) differ between two equal commands and are compared with their list
 of digests; all other files must be the same twice, byte for byte, in each format.

@@ -21,7 +21,7 @@ from vehicle.core.records import Packed, packed
 from vehicle.errors import ConfigurationError
 from vehicle.model.laws.friction import Friction
 from vehicle.model.laws.law import Numbers
-from vehicle.model.laws.law_by_address import CALL, checked_address, missing
+from vehicle.model.laws.law_by_address import CALL, checked_address, missing, taken
 
 TRIED = (0.0, 1e-3, -1e-3, 0.1, -0.1, 1.0, -1.0)
 """Velocities at which a limit is tested [m/s]."""
@@ -105,10 +105,7 @@ def register_friction(name: str, function: Any, memory: int = 0) -> FrictionByAd
     address, earlier = checked_address(name, function), _LAWS.get(name)
     call = packed("Call", {"function": address, "memory": memory})
     if earlier is not None and bytes(earlier.call.memory) != bytes(call.memory):
-        raise ConfigurationError(
-            f"friction law {name!r}: the name belongs to another function in this process, and cars that have it would "
-            "change; register the new one with another name"
-        )
+        raise taken("friction law", name)
     for velocity in TRIED:
         limit = CALL(address)(memory, USUAL, velocity)
         if not 0.0 <= limit < np.inf:

@@ -116,10 +116,7 @@ def register_law(name: str, function: Any, memory: int = 0) -> LawByAddress:
     address = checked_address(name, function)
     earlier = _LAWS.get(name)
     if earlier is not None and (earlier.address, earlier.memory) != (address, memory):
-        raise ConfigurationError(
-            f"damper law {name!r}: the name belongs to another function in this process, and cars that have it would "
-            "change; register the new one with another name"
-        )
+        raise taken("damper law", name)
     law = LawByAddress(name=name, address=address, memory=memory, viscous=0.0, kept=function)
     at_rest = law.force(0.0, np.array([0.0, *STROKES]))
     ends = law.force(np.array([-STEP, STEP]))
@@ -150,6 +147,14 @@ def law_by_address(name: str) -> LawByAddress:
     if name not in _LAWS:
         raise missing("damper law", name, _LAWS, "register_law")
     return _LAWS[name]
+
+
+def taken(kind: str, name: str) -> ConfigurationError:
+    """Return the error of a name that another function of a kind has in this process."""
+    return ConfigurationError(
+        f"{kind} {name!r}: the name belongs to another function in this process, and cars that have it would change; "
+        "register the new one with another name"
+    )
 
 
 def missing(kind: str, name: str, known: Iterable[str], register: str) -> ConfigurationError:
