@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from vehicle.commands.road import main
+from vehicle.digits import number
+from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.signals.analysis.roughness_index import roughness_index
+from vehicle.signals.excitation.iso_road import IsoRoad, Side
 from vehicle.signals.excitation.signal_file import read_signal
+
+SIDES: tuple[Side, ...] = ("left", "right")
 
 
 def test_a_class_and_a_speed_make_a_signal_that_is_read_back(tmp_path, capsys):
@@ -95,3 +101,32 @@ def test_refusals(arguments, code, message, tmp_path, monkeypatch, capsys):
     assert main(arguments) == code
     assert message in capsys.readouterr().err
     assert not (tmp_path / "road.csv").exists()
+
+
+def test_roughness_index_of_a_profile(tmp_path, capsys):
+    """The file of a profile is rated at its own points, whatever the speed; the table holds every 100 m."""
+    distance = np.arange(1001) * 0.25
+    tracks = [IsoRoad(level=CLASSES["B"], seed=2, track=1.5).height(0.0, 0.25, 1001, side, 1.6) for side in SIDES]
+    profile = tmp_path / "profile.csv"
+    rows = np.column_stack([distance, *tracks])
+    np.savetxt(profile, rows, delimiter=",", header="distance [m],left [m],right [m]", comments="", fmt="%.9g")
+    for speed in ("60", "120"):
+        file = tmp_path / f"at_{speed}.csv"
+        arguments = ["--profile", str(profile), "--speed", speed, "--output", str(file), "--no-figures", "--iri"]
+        assert main(arguments) == 0
+        said = capsys.readouterr().out
+        table = np.genfromtxt(tmp_path / f"at_{speed}_iri.csv", delimiter=",", names=True, skip_header=1)
+        assert table["from_m"].tolist() == [0.0, 100.0, 200.0]
+        for side, height in zip(SIDES, tracks, strict=True):
+            # The drive ends up to one step of the plates, 1 ms, before the last point.
+            expected = roughness_index(0.25, height - height[0])
+            np.testing.assert_allclose(table[f"iri_{side}_mkm"], expected.segments, rtol=1e-5)
+            assert f"IRI of the {side} track: {number(expected.overall)} m/km" in said
+        assert "class B of ISO 8608" in said
+
+
+def test_roughness_index_of_a_short_road_is_refused(tmp_path, capsys):
+    arguments = ["--obstacle", "cleat:20x50@2", "--speed", "10", "--duration", "2", "--output", str(tmp_path / "r.csv")]
+    assert main([*arguments, "--iri", "--no-figures"]) == 3
+    assert "the road is 5.55 m long; needed are 11 m or more" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -11,6 +11,7 @@ from vehicle.commands.destination import output_file_of
 from vehicle.commands.input_options import record_choice, road_options
 from vehicle.commands.options import command_parser, figures_option, message_options, output_options, vehicle_options
 from vehicle.commands.parser import Parser
+from vehicle.digits import number
 from vehicle.errors import ConfigurationError
 from vehicle.signals.excitation.road_settings import SETTINGS
 
@@ -39,6 +40,12 @@ def parser() -> Parser:
         "cobbles",
     )
     road_options(parser, lambda _: True, lambda options: options.road_class is not None)
+    parser.add_argument(
+        "--iri",
+        action="store_true",
+        help="also print the international roughness index of each track, with its class of ISO 8608, and write it for "
+        "every 100 m to FILE_iri.csv",
+    )
     output_options(parser, Path("road.csv"), metavar="FILE.csv")
     figures_option(parser)
     message_options(parser, quiet=True)
@@ -53,6 +60,7 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.signals.excitation.obstacle import Obstacle
     from vehicle.signals.excitation.road_drive import RoadDrive
     from vehicle.signals.excitation.signal_file import write_signal
+    from vehicle.signals.formats.text_format import write_table
 
     roads = [road for road in (options.road_class, options.profile, options.obstacle) if road is not None]
     if len(roads) != 1:
@@ -72,16 +80,33 @@ def _job(options: argparse.Namespace) -> None:
         beside = {f"road_{wheel} [m]": signal.profile[wheel] for wheel in signal.wheels}
         beside |= {f"slope_{wheel} [-]": slopes[wheel] for wheel in signal.wheels}
         comments.append("displacement and slope: what the tyre takes of the road below it")
-    with whole_files([path, picture]) as (new_path, new_picture):
+    indices = path.with_name(f"{path.stem}_iri.csv")
+    roughness = {}
+    if options.iri:
+        if not isinstance(drive, RoadDrive):
+            raise ConfigurationError("--iri: rates a road over its distance, not one that was recorded over time")
+        named_file(options.held, indices, ending=".csv", force=options.force, protect=inputs)
+        roughness = drive.roughness()
+    with whole_files([path, picture, indices]) as (new_path, new_picture, new_indices):
         comments = [signal.source, *comments]
         write_whole(new_path, lambda file: write_signal(file, signal, comments, beside=beside))
         if options.figures and isinstance(drive, RoadDrive):
             distance, tracks = _shown_tracks(drive, signal, slopes)
             title = drive.name.replace("_", " ")
             write_whole(new_picture, lambda file: plot_road(file, distance, tracks, title, signal.source))
+        if roughness:
+            edges = roughness["left"][0].edges
+            columns = [edges[:-1], edges[1:], *(index.segments for index, _ in roughness.values())]
+            cells = ["from [m]", "to [m]", *(f"iri_{side} [m/km]" for side in roughness)]
+            write_whole(new_indices, lambda file: write_table(file, cells, columns, comments[:1], "%.6g"))
     if not options.quiet:
         sizes = ", ".join(f"{wheel} {1e3 * float(z.std()):.3g}" for wheel, z in signal.displacement.items())
         print(f"{path}: {signal.source}; {signal.duration:g} s; RMS [mm] {sizes}")
+        for side, (index, level) in roughness.items():
+            low, high = number(index.segments.min()), number(index.segments.max())
+            ranged = f", {low} to {high} over 100 m" if index.segments.size > 1 else ""
+            rated = "" if level is None else f"; class {level.letter} of ISO 8608"
+            print(f"IRI of the {side} track: {number(index.overall)} m/km{ranged}{rated}")
 
 
 def _shown_tracks(

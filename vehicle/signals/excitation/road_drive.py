@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import math
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vehicle.errors import ConfigurationError
-from vehicle.signals.analysis.road_level import CLASSES
+from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.road_level import CLASSES, RoadLevel, road_level
+from vehicle.signals.analysis.roughness_index import RoughnessIndex, roughness_index
 from vehicle.signals.excitation.band import samples_of
 from vehicle.signals.excitation.iso_road import RISE_S, IsoRoad, Side, drive
 from vehicle.signals.excitation.measured_road import MeasuredRoad, read_road
@@ -49,6 +52,9 @@ obstacle and the end. In 3 s a motion of 1 Hz with a damping ratio of 0.2 decays
 
 AROUND, SHOWN = 0.3, 10.0
 """Lengths for a picture [m]: on both sides of an obstacle, and of another road."""
+
+ROUGHNESS_STEP, LEVEL_WINDOW = 0.05, 100.0
+"""Distance of the points for the roughness index [m], 5 to its average over 250 mm; windows of a road's density [m]."""
 
 AFTER_RISE_S = 0.5
 """Minimum time [s] from the end of the rise at the last wheel to the default of --skip."""
@@ -171,32 +177,63 @@ class RoadDrive:
         Raises:
             ConfigurationError, DataError: see `IsoRoad`, `read_road`, `drive`.
         """
-        speed, duration = self.speed / 3.6, self.duration
-        road: IsoRoad | MeasuredRoad
-        if isinstance(self.road, Path):
-            road = read_road(self.road, self.track, self.patch, self.envelope)
-            duration = math.floor(road.length / speed * self.rate) / self.rate if duration is None else duration
-        elif (obstacle := self.obstacle) is not None:
-            if duration is None:
-                duration = math.ceil(10.0 * (self._times(obstacle)[1] + AFTER_S)) / 10.0
-            road = obstacle.road(length=duration * speed + 1.0, patch=self.patch, envelope=self.envelope)
-        elif self.road == LEVEL:
-            return self._level(USUAL_DURATION if duration is None else duration)
-        else:
-            road = IsoRoad(
-                level=CLASSES[self.road],
-                seed=self.seed,
-                track=self.track,
-                coherence=self.coherence,
-                patch=self.patch,
-                envelope=self.envelope,
-            )
+        if self.road == LEVEL:
+            return self._level(USUAL_DURATION if self.duration is None else self.duration)
+        road, duration = self._road()
         wheels = {name: (behind, side) for name, behind, side in self.wheels}
-        duration = USUAL_DURATION if duration is None else duration
-        signal = drive(road, speed=speed, wheels=wheels, duration=duration, rate=self.rate)
+        signal = drive(road, speed=self.speed / 3.6, wheels=wheels, duration=duration, rate=self.rate)
         if isinstance(road, IsoRoad) or self.obstacle is not None:
             return signal
         return replace(signal, notices=(*road.notices, *acceleration_events(signal.displacement, signal.timestep)))
+
+    def _road(self) -> tuple[IsoRoad | MeasuredRoad, float]:
+        """Return the road, which is not level, and the length of the drive [s]."""
+        speed, duration = self.speed / 3.6, self.duration
+        if isinstance(self.road, Path):
+            road = read_road(self.road, self.track, self.patch, self.envelope)
+            return road, math.floor(road.length / speed * self.rate) / self.rate if duration is None else duration
+        if (obstacle := self.obstacle) is not None:
+            if duration is None:
+                duration = math.ceil(10.0 * (self._times(obstacle)[1] + AFTER_S)) / 10.0
+            return obstacle.road(length=duration * speed + 1.0, patch=self.patch, envelope=self.envelope), duration
+        iso_road = IsoRoad(
+            level=CLASSES[self.road],
+            seed=self.seed,
+            track=self.track,
+            coherence=self.coherence,
+            patch=self.patch,
+            envelope=self.envelope,
+        )
+        return iso_road, USUAL_DURATION if duration is None else duration
+
+    def roughness(self) -> dict[Side, tuple[RoughnessIndex, RoadLevel | None]]:
+        """Return the international roughness index of each track over the driven length, and its ISO 8608 level.
+
+        It is that of the road itself, without contact patch or cams and without the rise at the start. A profile with
+        equal steps is rated at its own points, any other road every `ROUGHNESS_STEP`. An obstacle, and a track
+        too short for a class, have no level.
+
+        Raises:
+            ConfigurationError, DataError: see `signal` and `roughness_index`.
+        """
+        if self.road == LEVEL:
+            raise ConfigurationError("IRI: a level road has none; give a class, a profile or an obstacle")
+        road, duration = self._road()
+        length, step = duration * self.speed / 3.6, ROUGHNESS_STEP
+        if isinstance(road, MeasuredRoad):
+            length = road.length if self.duration is None else min(length, road.length)
+            if road.sampled:
+                step = road.length / (road.distance.size - 1)
+        steps = math.floor(length / step * (1.0 + 1e-9)) + 1
+        found: dict[Side, tuple[RoughnessIndex, RoadLevel | None]] = {}
+        for side in reversed(get_args(Side)):
+            height, _ = road.bare.contact(0.0, step, steps, side, 0.4 / step)
+            level = None
+            if self.obstacle is None:
+                with suppress(DataError):
+                    level = road_level(step, height, 1.0, window_s=LEVEL_WINDOW)
+            found[side] = roughness_index(step, height), level
+        return found
 
     def _level(self, duration: float) -> Signal:
         """Return plates at rest."""
