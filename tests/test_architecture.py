@@ -25,7 +25,7 @@ WINGS = {
     "model": ("parameters", "laws", "flexbody", "shapes", "assembly", "templates", "vehicles"),
     "engines": ("simulation", "kinematics", "linear", "reduced"),
     "drawing": ("rendering", "notebook"),
-    "runs": ("car", "comparison", "output", "report"),
+    "runs": ("car", "comparison", "output", "targets", "report"),
     "handover": ("fmu", "page", "bench"),
     "studies": ("design", "mounts", "dampers", "replication", "sweeps", "tuning", "optimisation"),
     "commands": (),
@@ -68,11 +68,12 @@ ROOMS: dict[str, set[str]] = {
     "comparison": {"analysis", "car", "formats", "linear", "records", "rendering", "threads"},
     "output": {"analysis", "car", "comparison", "excitation", "flexbody", "formats", "linear", "parameters"}
     | {"records", "rendering", "replacement", "simulation"},
+    "targets": {"analysis", "car", "output", "parameters", "records", "simulation"},
     "report": {"analysis", "car", "excitation", "flexbody", "linear", "output", "parameters", "records"}
-    | {"rendering", "simulation", "version"},
+    | {"rendering", "simulation", "targets", "version"},
     "fmu": {"car", "core", "linear", "parameters", "reduced", "version"},
     "page": {"analysis", "car", "excitation", "fmu", "linear", "output", "parameters", "reduced"}
-    | {"rendering", "report", "simulation"},
+    | {"rendering", "report", "simulation", "targets"},
     "bench": {"analysis", "assembly", "car", "excitation", "formats", "linear", "output", "page"}
     | {"parameters", "records", "reduced", "rendering", "report", "shapes", "threads"},
     "design": {"car", "flexbody", "kinematics", "parameters", "simulation", "threads"},

@@ -22,6 +22,11 @@ def parser() -> Parser:
         metavar="RUN",
         help="folder of a run, as runs/low; the others are compared with the first",
     )
+    parser.add_argument(
+        "--targets",
+        metavar="FILE.toml",
+        help="begin with the verdict on figures with limits; 'ride' is the shipped file, to be copied and changed",
+    )
     head_options(parser)
     output_options(
         parser, None, default=f"{REPORT} in the folder of a single run, and here for several,", metavar="FILE.html"
@@ -43,6 +48,7 @@ def _job(options: argparse.Namespace) -> None:
         path,
         force=options.force,
         progress=ProgressLine("report    ", enabled=not options.quiet),
+        targets=options.targets,
         author=options.author,
         project=options.project,
     )

@@ -11,6 +11,7 @@ from vehicle.runs.output.folder import check_file, write_text
 from vehicle.runs.output.work_folder import put_in_order
 from vehicle.runs.report.finished_run import read_run
 from vehicle.runs.report.page import report_page
+from vehicle.runs.targets.verdict import read_targets
 
 
 def write_report(
@@ -19,6 +20,7 @@ def write_report(
     *,
     force: bool = False,
     progress: Callable[[float], None] | None = None,
+    targets: Path | str | None = None,
     author: str = "",
     project: str = "",
 ) -> Path:
@@ -29,6 +31,7 @@ def write_report(
         file: name of the report, with the ending .html.
         force: replace a report that was written there before.
         progress: called with the finished fraction.
+        targets: TOML file of figures with limits, or "ride" for the shipped one; the report begins with the verdict.
         author, project: names in the head of the page; may be empty.
 
     Returns:
@@ -47,7 +50,8 @@ def write_report(
         raise ConfigurationError(f"{missing}: is no folder; give the folder of a run, as runs/low")
     path = Path(file)
     check_file(path, ending=".html", force=force)
+    figures = None if targets is None else read_targets(targets)
     finished = [read_run(folder) for folder in folders]
-    page = report_page(finished, progress, trial=trial, author=author, project=project)
+    page = report_page(finished, progress, trial=trial, targets=figures, author=author, project=project)
     write_text(path, page)
     return path

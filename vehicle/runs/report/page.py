@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import dataclasses
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
@@ -27,6 +27,8 @@ from vehicle.runs.report.modes_section import Modes, car_modes_of, modes_of, mov
 from vehicle.runs.report.moving_modes import as_json
 from vehicle.runs.report.response_section import responses
 from vehicle.runs.report.spectra_section import spectra
+from vehicle.runs.report.verdict_section import verdict_section
+from vehicle.runs.targets.figure import Figure
 from vehicle.version import package_version
 
 fill = templates(__file__)
@@ -57,6 +59,7 @@ def report_page(
     progress: Callable[[float], None] | None = None,
     *,
     trial: Callable[[FinishedRun], Trial],
+    targets: Mapping[str, Figure] | None = None,
     author: str = "",
     project: str = "",
 ) -> str:
@@ -66,6 +69,7 @@ def report_page(
         runs: finished runs.
         progress: called with the finished fraction.
         trial: makes the section for trials of a single run.
+        targets: figures with their limits; the report then begins with the verdict on them.
         author, project: names in the head of the page; may be empty.
 
     Returns:
@@ -86,6 +90,8 @@ def report_page(
         parts = _of_one(runs[0], modes[0], tried.content)
     else:
         parts = _of_several(runs, modes, lambda share: done(0.1 + 0.8 * share))
+    if targets is not None:
+        parts.insert(0, ("Targets", "targets", verdict_section(targets, runs)))
     first, others = runs[0].name, [run.name for run in runs[1:]]
     names = f"{' and '.join(others) if len(others) < 4 else f'{len(others)} runs'} against {first}" if others else first
     captions = "; ".join(dict.fromkeys(run.caption for run in runs))

@@ -79,7 +79,7 @@ def roughness_index(step: float, height: ArrayLike, *, segment: float = 100.0) -
     Args:
         step: distance of the samples [m], at most `COARSEST`.
         height: height of the road [m], shape (n,).
-        segment: length of the segments with an index of their own [m].
+        segment: length of a segment [m].
 
     Raises:
         DataError: the samples are too far apart, or the road is shorter than `STARTED`.

@@ -225,15 +225,15 @@ class RoadDrive:
             if road.sampled:
                 step = road.length / (road.distance.size - 1)
         steps = math.floor(length / step * (1.0 + 1e-9)) + 1
-        found: dict[Side, tuple[RoughnessIndex, RoadLevel | None]] = {}
+        indices: dict[Side, tuple[RoughnessIndex, RoadLevel | None]] = {}
         for side in reversed(get_args(Side)):
             height, _ = road.bare.contact(0.0, step, steps, side, 0.4 / step)
             level = None
             if self.obstacle is None:
                 with suppress(DataError):
                     level = road_level(step, height, 1.0, window_s=LEVEL_WINDOW)
-            found[side] = roughness_index(step, height), level
-        return found
+            indices[side] = roughness_index(step, height), level
+        return indices
 
     def _level(self, duration: float) -> Signal:
         """Return plates at rest."""

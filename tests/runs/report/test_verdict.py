@@ -1,0 +1,32 @@
+"""First page of a report with targets."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from vehicle.commands.report import main
+from vehicle.digits import number
+
+
+def test_targets_come_first(reported, tmp_path, monkeypatch, capsys):
+    """Sentence, limit and value of a figure on the first page; a figure without a run, and a wrong file."""
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "targets.toml"
+    file.write_text(
+        '[loud]\nquantity = "rms"\nchannels = ["seat rail x", "seat rail y", "seat rail z"]\nweighting = "seat"\n'
+        'unit = "m/s2"\nat_most = 1e-3\nsource = "of this test"\n'
+        '[rough]\nquantity = "tyre_load"\nroad = "C"\nunit = "-"\nat_most = 0.3\n',
+        encoding="utf-8",
+    )
+    assert main([str(reported.folder), "--targets", "targets.toml", "--output", "verdict.html"]) == 0
+    page = Path("verdict.html").read_text(encoding="utf-8")
+    first = page[page.index('<section id="targets">') : page.index('<section id="result">')]
+    assert "meets 0 of 1 targets and misses loud; there is no run for rough." in first
+    comfort = json.loads((reported.folder / "summary.json").read_text(encoding="utf-8"))["comfort"]["seat_rail"]
+    value = number(comfort["iso2631"]["vector_sum"]["weighted_rms"])
+    assert f'≤ 0.001</td><td>m/s2</td><td class="number">{value}</td><td class="missed">missed</td>' in first
+    assert "of this test" in first and '<td class="no-run">no run</td>' in first
+    file.write_text(file.read_text(encoding="utf-8").replace("seat rail x", "seat rail q"), encoding="utf-8")
+    assert main([str(reported.folder), "--targets", "targets.toml", "--output", "wrong.html"]) == 2
+    assert "loud on run: " in capsys.readouterr().err and not Path("wrong.html").exists()

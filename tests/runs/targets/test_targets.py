@@ -1,0 +1,229 @@
+"""Targets: every figure equals the value of its run elsewhere; verdict, error, inputs, and wrong files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.validation import validated
+from vehicle import Car, road
+from vehicle.errors import ConfigurationError
+from vehicle.runs.output.run_obstacle import obstacle_values
+from vehicle.runs.targets.figure import QUANTITIES, Figure
+from vehicle.runs.targets.values import Histories, value_of
+from vehicle.runs.targets.verdict import MET, MISSED, NOT_RUN, UNDECIDED, Rated, read_targets, sentence, state_of
+from vehicle.signals.analysis.ride_comfort import comfort_columns
+from vehicle.studies.optimisation.ride import ride_measure
+
+RAIL = ("seat rail x", "seat rail y", "seat rail z")
+
+
+def ride_of(run, **changes):
+    """Return the histories of a run that was not saved."""
+    vehicle = run.car.vehicle
+    obstacle = obstacle_values(run)
+    ride = Histories(
+        time=run.time,
+        of=run.recording.__getitem__,
+        unit=run.recording.units.__getitem__,
+        named=run._named,
+        skip=run.skip,
+        tyre_load=dict(run.car.static.tyre_load),
+        dampers=vehicle.damped_wheels,
+        slip_velocity=vehicle.damper.slip_velocity,
+        left_obstacle=None if obstacle is None else obstacle["to_s"],
+        random=obstacle is None,
+    )
+    return replace(ride, **changes)
+
+
+def figure(quantity, **keys):
+    unit = QUANTITIES[quantity].unit or "m/s2"
+    return Figure(**{"quantity": quantity, "unit": unit, "at_most": 1.0, **keys})
+
+
+@pytest.fixture(scope="module")
+def sedan():
+    return Car.load("sedan")
+
+
+@pytest.fixture(scope="module")
+def on_road(sedan):
+    return sedan.run(road("B", 60, duration=10), engine="reduced")
+
+
+@pytest.fixture(scope="module")
+def on_cleat(sedan):
+    return sedan.run(road("cleat:20x50", 30), engine="reduced")
+
+
+def test_figures_of_a_road_are_those_of_run_and_search(sedan, on_road):
+    ride = ride_of(on_road)
+    comfort, bands = on_road.comfort(), {"band": (2.0, 50.0)}
+    pairs = {
+        "weighted": (figure("rms", channels=RAIL, weighting="seat"), comfort.weighted.overall),
+        "unweighted": (figure("rms", channels=RAIL, **bands), comfort.unweighted.overall),
+        "weighted z": (figure("rms", channels=("seat rail z",), weighting="Wk"), comfort.weighted.z),
+        "stick": (figure("stick_share", wheels=("fr",)), 1.0 - on_road.slip_share("fr")),
+    }
+    numbers = ride_measure(sedan.vehicle, ("tyre_load", "tyre_load_rl", "travel", "travel_fr"), on_road.skip)(on_road)
+    pairs |= {
+        "tyre_load": (figure("tyre_load"), numbers["tyre_load"]),
+        "tyre_load_rl": (figure("tyre_load", wheels=("rl",)), numbers["tyre_load_rl"]),
+        "travel": (figure("travel"), numbers["travel"]),
+        "travel_fr": (figure("travel", wheels=("fr",)), numbers["travel_fr"]),
+    }
+    for name, (each, expected) in pairs.items():
+        assert value_of(each, ride)[0] == pytest.approx(expected, rel=1e-12), name
+    rail = np.stack([on_road.recording[f"seat_rail_acc_{axis}"] for axis in "xyz"])[None]
+    error = comfort_columns(ride.step, rail, skip=on_road.skip)["unweighted_error"][0]
+    value, found = value_of(pairs["unweighted"][0], ride)
+    assert found == pytest.approx(error * value, rel=1e-12)
+    assert value_of(pairs["travel"][0], ride)[1] is None
+
+
+def test_largest_of_all_wheels_and_channels(on_road):
+    ride = ride_of(on_road)
+    every = value_of(figure("stick_share"), ride)[0]
+    assert every == max(value_of(figure("stick_share", wheels=(wheel,)), ride)[0] for wheel in ("fr", "fl", "rr", "rl"))
+    peaks = [value_of(figure("peak", channels=(channel,)), ride)[0] for channel in RAIL]
+    assert value_of(figure("peak", channels=RAIL), ride)[0] == max(peaks)
+
+
+def test_ratio_of_two_waves():
+    """A tone of 2 m/s2 over one of 5: the ratio is 0.4, with no scatter over the blocks."""
+    time = np.linspace(0.0, 15.999, 16_000)
+    waves = {"above": 2.0 * np.sin(2.0 * np.pi * 4.0 * time), "below": 5.0 * np.sin(2.0 * np.pi * 4.0 * time + 1.0)}
+    ride = Histories(
+        time=time, of=waves.__getitem__, unit=lambda _: "m/s2", named=tuple, skip=0.0, tyre_load={}, dampers=(),
+        slip_velocity=0.0, random=True,
+    )  # fmt: skip
+    value, error = value_of(figure("ratio", channels=("above",), over=("below",), band=(1.0, 10.0)), ride)
+    assert value == pytest.approx(0.4, rel=1e-12) and error == pytest.approx(0.0, abs=1e-12)
+
+
+def test_figures_of_an_obstacle_are_those_of_its_summary(on_cleat):
+    ride, summary = ride_of(on_cleat), obstacle_values(on_cleat)
+    assert summary is not None
+    peak, error = value_of(figure("peak_to_peak", channels=("seat rail z",)), ride)
+    assert peak == pytest.approx(summary["peak_to_peak"]["seat_rail"]["z"], rel=1e-12) and error is None
+    dose = value_of(figure("vdv", channels=RAIL, weighting="seat"), ride)[0]
+    assert dose == pytest.approx(summary["vdv"]["seat_rail"]["overall"], rel=1e-12)
+    assert value_of(figure("settling", channels=("seat rail z",)), ride)[0] == summary["settling_s"]["seat_rail"]
+    never = {name: np.ones(ride.time.size) for name in on_cleat.channels}
+    assert value_of(figure("settling", channels=("seat rail z",)), ride_of(on_cleat, of=never.__getitem__))[0] == np.inf
+
+
+def test_error_of_a_share_over_random_records():
+    """Stick share of coloured noise: the scatter of 200 records against the mean of their stated errors."""
+    rng, limit = np.random.default_rng(7), 0.5
+    shares, errors = [], []
+    for _ in range(200):
+        noise = np.convolve(rng.standard_normal(20_000 + 99), np.ones(100) / 10.0, mode="valid")
+        ride = Histories(
+            time=np.linspace(0.0, 19.999, 20_000), of={"damper_fr_velocity": noise}.__getitem__, unit=str, named=tuple,
+            skip=0.0, tyre_load={}, dampers=("fr",), slip_velocity=limit, random=True,
+        )  # fmt: skip
+        share, error = value_of(figure("stick_share"), ride)
+        shares.append(share)
+        assert error is not None
+        errors.append(error**2)
+    # The standard deviation of 200 values is known to 5 %, the stated variance to 4 %.
+    validated(
+        "Statistics and intervals", "standard error of a share of time, mean of the stated ones",
+        float(np.sqrt(np.mean(errors))), float(np.std(shares, ddof=1)), rel=0.15,
+        source="second derivation: scatter of 200 random records",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("keys", "value", "error", "state"),
+    [
+        ({"at_most": 1.0}, 0.9, None, MET),
+        ({"at_most": 1.0}, 1.1, None, MISSED),
+        ({"at_most": 1.0}, 0.9, 0.049, MET),
+        ({"at_most": 1.0}, 0.9, 0.051, UNDECIDED),
+        ({"at_most": 1.0}, 1.1, 0.051, UNDECIDED),
+        ({"at_most": 1.0}, 1.1, 0.049, MISSED),
+        ({"at_most": None, "at_least": 1.0}, 1.1, 0.049, MET),
+        ({"at_most": None, "at_least": 1.0}, 0.9, 0.0, MISSED),
+        ({"at_most": 1.0}, np.inf, None, MISSED),
+    ],
+)
+def test_state(keys, value, error, state):
+    assert state_of(figure("peak", channels=("a",), **keys), value, error) == state
+
+
+def test_inputs_of_a_figure():
+    on_c = {"class": "C", "speed_kmh": 80.0}
+    cleat = {"class": None, "speed_kmh": 30.0, "obstacle": "cleat (height 20 mm, length 50 mm) both sides, at 12 m"}
+    each = figure("peak", channels=("a",), road="c", speed=80.0)
+    assert each.on("x", "", on_c) and not each.on("x", "", on_c | {"speed_kmh": 60.0}) and not each.on("x", "", cleat)
+    assert not each.on("x", "low.csv", None)
+    assert figure("peak", channels=("a",), obstacle="cleat").on("x", "", cleat)
+    assert figure("peak", channels=("a",), signal="low.csv").on("x", "/some/low.csv", None)
+    assert figure("peak", channels=("a",), run="laden*").on("laden_C", "", on_c)
+    assert each.where == "class c, 80 km/h"
+
+
+def test_sentence():
+    figures = {name: figure("peak", channels=("a",), words=name) for name in ("one", "two", "three", "four")}
+    rated = dict(zip(figures, (Rated(state=state) for state in (MET, MISSED, MISSED, NOT_RUN)), strict=True))
+    assert sentence(figures, "sedan", rated) == (
+        "sedan meets 1 of 3 targets and misses two and three; there is no run for four."
+    )
+
+
+FAULTS = {
+    "quantity = 'noise'\nunit = 'm/s2'\nat_most = 1": "a.quantity: found 'noise', must be one of rms",
+    "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1": "a.channels: missing; rms needs it",
+    "quantity = 'peak'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [1, 2]": "a.band: peak does not have it",
+    "quantity = 'tyre_load'\nunit = '-'": "a.at_most: set either at_most or at_least",
+    "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nat_least = 0": "a.at_most: set either at_most or at_least",
+    "quantity = 'tyre_load'\nunit = '-'\nat_most = nan": "a.at_most: limit nan and weight 1",
+    "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nweight = 0": "a.at_most: limit 1 and weight 0",
+    "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nband = [5, 2]": "a.band: found [5.0, 2.0]",
+    "quantity = 'rms'\nunit = 'm/s2'\nat_most = 1\nchannels = ['b']\nweighting = 'Wx'": "a.weighting: found 'Wx'",
+    "quantity = 'tyre_load'\nunit = '-'\nat_most = 1\nspede = 3": "a.spede: unknown parameter",
+    "quantity = 'tyre_load'\nat_most = 1": "a.unit: missing",
+}
+
+
+@pytest.mark.parametrize(("text", "message"), FAULTS.items(), ids=range(len(FAULTS)))
+def test_wrong_tables(tmp_path, text, message):
+    file = tmp_path / "targets.toml"
+    file.write_text(f"[a]\n{text}\n", encoding="utf-8")
+    with pytest.raises(ConfigurationError) as refusal:
+        read_targets(file)
+    assert str(refusal.value).startswith(str(file)) and message in str(refusal.value)
+
+
+def test_wrong_files(tmp_path):
+    empty, plain = tmp_path / "empty.toml", tmp_path / "plain.toml"
+    empty.write_text("", encoding="utf-8")
+    plain.write_text("limit = 3\n", encoding="utf-8")
+    with pytest.raises(ConfigurationError, match="no target; needed is a table"):
+        read_targets(empty)
+    with pytest.raises(ConfigurationError, match="must be a table, as"):
+        read_targets(plain)
+    with pytest.raises(ConfigurationError, match="no such file"):
+        read_targets(tmp_path / "missing.toml")
+
+
+def test_what_a_run_does_not_have(on_road):
+    ride = ride_of(on_road)
+    for wrong, message in (
+        (figure("peak", channels=("seat rail z",), unit="g"), "unit: found 'g'"),
+        (figure("stick_share", wheels=("xx",)), "wheels: found xx"),
+        (figure("settling", channels=("seat rail z",)), "the run has no obstacle"),
+        (figure("vdv", channels=("damper fr force",), weighting="seat"), "has no axis x, y or z"),
+    ):
+        with pytest.raises(ConfigurationError, match=message):
+            value_of(wrong, ride)
+
+
+def test_shipped_targets():
+    figures = read_targets("ride")
+    assert len(figures) >= 10 and all(each.source for each in figures.values())

@@ -1,0 +1,56 @@
+"""First section of a report: targets with limits, values and verdict, on a page of A4."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from markupsafe import Markup
+
+from vehicle.digits import number
+from vehicle.runs.report.finished_run import FinishedRun
+from vehicle.runs.report.markup import templates
+from vehicle.runs.targets.figure import Figure
+from vehicle.runs.targets.verdict import NOT_RUN, Rated, RatedRun, sentence, verdict
+
+fill = templates(__file__)
+
+
+def verdict_section(figures: Mapping[str, Figure], runs: Sequence[FinishedRun]) -> Markup:
+    """Return the verdict on each car in a sentence, and the table of limits and values.
+
+    Args:
+        figures: figures with their limits, see `vehicle.runs.targets.verdict.read_targets`.
+        runs: finished runs of one or several cars.
+    """
+    rated = verdict(
+        figures,
+        [RatedRun(name=run.name, car=run.car, recording=run.recording, summary=run.summary) for run in runs],
+    )
+    rows = [
+        {
+            "words": figure.words or name.replace("_", " "),
+            "where": figure.where or "every run",
+            "limit": f"{'≤' if figure.sense > 0 else '≥'} {number(figure.limit)}",
+            "unit": figure.unit,
+            "cells": [(_value(each[name]), each[name].state) for each in rated.values()],
+            "source": figure.source,
+        }
+        for name, figure in figures.items()
+    ]
+    return fill(
+        "verdict",
+        sentences=[sentence(figures, car, each) for car, each in rated.items()],
+        cars=list(rated),
+        rows=rows,
+        caption="value and its 95 % interval on a random road; undecided where the limit lies inside it; of several "
+        "runs, the worst",
+    )
+
+
+def _value(rated: Rated) -> str:
+    """Return value and half of its interval as text."""
+    if rated.state == NOT_RUN:
+        return "–"
+    if rated.value == float("inf"):
+        return "not settled"
+    return number(rated.value) + (f" ± {number(2.0 * rated.error, 2)}" if rated.error else "")

@@ -1,0 +1,1 @@
+"""Targets of ride comfort: figures with limits, their values on finished runs, and the verdict."""

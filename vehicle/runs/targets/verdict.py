@@ -1,0 +1,190 @@
+"""Verdict: the figures of a targets file on finished runs, met, missed, or undecided within their error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+from vehicle.engines.simulation.recording import Recording
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.channel_words import channels_named
+from vehicle.model.parameters.toml_file import build, read_table
+from vehicle.runs.car import Car
+from vehicle.runs.targets.figure import Figure
+from vehicle.runs.targets.values import Histories, value_of
+from vehicle.signals.records.run_summary import RunSummary
+
+MET, MISSED, UNDECIDED, NOT_RUN = "met", "missed", "undecided", "no run"
+"""States of a figure."""
+
+CONFIDENCE = 2.0
+"""Standard errors between a value and its limit from which the verdict is decided: 95 % for a normal error."""
+
+SHIPPED = "ride"
+"""Name of the targets file that is shipped."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Rated:
+    """Figure of a car.
+
+    Attributes:
+        value: value, that of the worst run if several belong to the figure; NaN without a run.
+        error: standard error; None if unknown.
+        state: `MET`, `MISSED`, `UNDECIDED` or `NOT_RUN`.
+        run: name of the run; empty without one.
+        runs: number of runs of the figure.
+    """
+
+    value: float = math.nan
+    error: float | None = None
+    state: str = NOT_RUN
+    run: str = ""
+    runs: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RatedRun:
+    """Finished run for the verdict.
+
+    Attributes:
+        name: name of its folder.
+        car: its car.
+        recording: time histories.
+        summary: content of its `summary.json`.
+    """
+
+    name: str
+    car: Car
+    recording: Recording
+    summary: RunSummary
+
+    @property
+    def label(self) -> str:
+        """Name of the car and its changed parameters, except those set by the road."""
+        vehicle = self.summary["vehicle"]
+        changed = [
+            text for text in vehicle["overrides"] if not text.startswith("driving.speed=") and "one_sided=" not in text
+        ]
+        return ", ".join([vehicle["name"], *changed])
+
+    @property
+    def histories(self) -> Histories:
+        """Time histories and static data for the figures."""
+        recording, vehicle = self.recording, self.car.vehicle
+        road, obstacle = self.summary["input"].get("road") or {}, self.summary.get("obstacle")
+        return Histories(
+            time=recording.time,
+            of=recording.__getitem__,
+            unit=recording.units.__getitem__,
+            named=lambda texts: channels_named(texts, tuple(recording.channels)),
+            skip=float((self.summary.get("evaluated_s") or (0.0,))[0]),
+            tyre_load=dict(self.summary["static"]["tyre_load_n"]),
+            dampers=vehicle.damped_wheels,
+            slip_velocity=vehicle.damper.slip_velocity if vehicle.damped_wheels else 0.0,
+            left_obstacle=None if obstacle is None else obstacle["to_s"],
+            random=road.get("class") is not None or road.get("profile") is not None,
+        )
+
+
+def read_targets(file: Path | str) -> dict[str, Figure]:
+    """Return the figures of a targets file by the names of their tables.
+
+    Args:
+        file: TOML file with a table for each figure, see `Figure`; or "ride", the shipped one.
+
+    Raises:
+        ConfigurationError: the file is missing, has no table, or a table is wrong; the message names it.
+    """
+    shipped = str(file) == SHIPPED and not Path(file).exists()
+    path = Path(str(resources.files("vehicle.runs.targets") / f"{SHIPPED}.toml")) if shipped else Path(file)
+    tables = read_table(path)
+    if not tables:
+        raise ConfigurationError(f"{path}: no target; needed is a table for each figure, as [primary_ride]")
+    figures = {}
+    for name, table in tables.items():
+        if not isinstance(table, Mapping):
+            raise ConfigurationError(f"{path}: {name}: found {table!r}, must be a table, as [{name}]")
+        try:
+            figures[name] = build(Figure, table, name)
+        except ConfigurationError as error:
+            raise ConfigurationError(f"{path}: {error}") from None
+    return figures
+
+
+def state_of(figure: Figure, value: float, error: float | None) -> str:
+    """Return the state of a figure: `MET`, `MISSED` or `UNDECIDED`.
+
+    Args:
+        figure: the figure.
+        value: its value; infinite for an acceleration that does not settle.
+        error: standard error; None if unknown.
+    """
+    excess, doubt = figure.sense * (value - figure.limit), CONFIDENCE * (error or 0.0)
+    return MET if excess + doubt <= 0.0 else MISSED if excess - doubt > 0.0 else UNDECIDED
+
+
+def verdict(figures: Mapping[str, Figure], runs: Sequence[RatedRun]) -> dict[str, dict[str, Rated]]:
+    """Compare the figures of finished runs with their limits.
+
+    Args:
+        figures: see `read_targets`.
+        runs: finished runs of one or several cars.
+
+    Returns:
+        Car to the rated figures by name.
+
+    Raises:
+        ConfigurationError: a channel is not recorded, or the unit of a figure is wrong; with figure and run.
+        DataError: a record is too short for a band.
+    """
+    rated: dict[str, dict[str, Rated]] = {run.label: {} for run in runs}
+    for name, figure in figures.items():
+        values: dict[str, list[Rated]] = {car: [] for car in rated}
+        for run in runs:
+            excitation = run.summary["input"]
+            if not figure.on(run.name, excitation["file"], excitation.get("road")):
+                continue
+            try:
+                value, error = value_of(figure, run.histories)
+            except ConfigurationError as fault:
+                raise ConfigurationError(f"{name} on {run.name}: {fault}") from None
+            state = state_of(figure, value, error)
+            values[run.label].append(Rated(value=value, error=error, state=state, run=run.name, runs=1))
+        for car, each in values.items():
+            worst = max(each, key=lambda rated_run: figure.sense * rated_run.value, default=Rated())
+            rated[car][name] = Rated(
+                value=worst.value, error=worst.error, state=worst.state, run=worst.run, runs=len(each)
+            )
+    return rated
+
+
+def sentence(figures: Mapping[str, Figure], car: str, rated: Mapping[str, Rated]) -> str:
+    """Return a sentence with the met and missed targets of a car.
+
+    Args:
+        figures: see `read_targets`.
+        car: the car.
+        rated: its figures, see `verdict`.
+    """
+
+    def named(state: str) -> list[str]:
+        return [figures[name].words or name.replace("_", " ") for name, each in rated.items() if each.state == state]
+
+    met, missed, undecided, absent = (named(state) for state in (MET, MISSED, UNDECIDED, NOT_RUN))
+    text = f"{car} meets {len(met)} of {len(rated) - len(absent)} targets"
+    if missed:
+        text += f" and misses {_enumeration(missed)}"
+    if undecided:
+        text += f"; the run is too short to decide on {_enumeration(undecided)}"
+    if absent:
+        text += f"; there is no run for {_enumeration(absent)}"
+    return f"{text}."
+
+
+def _enumeration(texts: Sequence[str]) -> str:
+    """Return texts as "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))
