@@ -14,18 +14,18 @@ BOXES = {
     "studies": (420, 96, 550, 66, ["design  mounts  dampers  replication  sweeps  tuning  optimisation"]),
     "model": (210, 200, 180, 156, ["parameters", "laws", "flexbody", "shapes", "assembly", "templates, vehicles"]),
     "engines": (420, 200, 170, 120, ["simulation", "kinematics", "linear", "reduced"]),
-    "runs": (620, 200, 160, 120, ["car", "comparison", "output", "report"]),
+    "runs": (620, 200, 160, 138, ["car", "comparison", "output", "targets", "report"]),
     "handover": (810, 200, 160, 120, ["fmu", "page", "bench"]),
     "signals": (210, 392, 180, 138, ["formats", "records", "excitation", "analysis", "inputs"]),
     "core": (420, 356, 170, 66, ["laws and march in C"]),
-    "drawing": (620, 356, 160, 84, ["rendering", "notebook"]),
+    "drawing": (620, 374, 160, 84, ["rendering", "notebook"]),
 }
 """Wing: left, top, width, height, and its rooms."""
 
 FILES = {
     "vehicle file": (30, 250, 130),
     "input or record": (30, 440, 130),
-    "folder of a run": (635, 470, 130),
+    "folder of a run": (635, 490, 130),
     "FMU, report": (840, 356, 100),
 }
 """Files: left, top, width."""
@@ -37,7 +37,7 @@ ARROWS = [
     (590, 265, 620, 265, ""),
     (780, 265, 810, 265, ""),
     (505, 356, 505, 320, ""),
-    (700, 356, 700, 320, ""),
+    (700, 374, 700, 338, ""),
     (890, 320, 890, 356, "write"),
     (700, 200, 700, 162, "many"),
 ]
@@ -45,7 +45,7 @@ ARROWS = [
 
 BENT = [
     [(390, 440), (405, 440), (405, 300), (420, 300)],
-    [(780, 300), (795, 300), (795, 485), (765, 485)],
+    [(780, 300), (795, 300), (795, 505), (765, 505)],
 ]
 """Flows with corners: signals to the engines, a run to its folder."""
 

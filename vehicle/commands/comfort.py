@@ -60,7 +60,8 @@ def parser() -> Parser:
         default="seat",
         metavar="NAME",
         help="point of contact, names weightings and factors: seat (default; z Wk, x and y Wd), backrest, feet, "
-        "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841",
+        "seat_rotation, standing, seat_bs6841, backrest_bs6841, feet_bs6841, hand (ISO 5349-1: Wh), train_floor "
+        "(EN 12299: mean comfort of 5 minutes)",
     )
     weighting.add_argument(
         "--offset",
@@ -76,6 +77,13 @@ def parser() -> Parser:
         default=0.0,
         metavar="S",
         help="seconds left out at the beginning of the weighted records; 0 by default",
+    )
+    weighting.add_argument(
+        "--exposure",
+        type=float,
+        metavar="HOURS",
+        help="daily duration of this vibration; adds the exposure A(8) of a hand, a seat or a standing person, with "
+        "action value and limit value (Directive 2002/44/EC)",
     )
     weighting.add_argument(
         "--mtvv", choices=("linear", "exponential"), default="linear", help="running average of the MTVV"
@@ -129,6 +137,7 @@ def evaluated(options: argparse.Namespace) -> RecordComfort:
         offset=options.offset,
         average=options.mtvv,
         skip=options.skip,
+        hours=options.exposure,
     )
     if options.rail is None and "seat" not in options.picks:
         return result

@@ -201,7 +201,7 @@ def test_slow_sampling_is_refused():
 def test_an_unknown_weighting_is_rejected_with_the_known_names():
     with pytest.raises(ConfigurationError) as refusal:
         weighting("Wx")
-    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb"
+    assert str(refusal.value) == "weighting: found 'Wx', must be one of Wk, Wd, Wf, Wc, We, Wj, Wb, Wb_en12299, Wh"
 
 
 def test_a_frequency_that_is_not_finite_is_rejected():
@@ -216,5 +216,7 @@ def test_a_filter_has_settled_when_its_step_response_stays_below_a_hundredth(nam
     last = np.flatnonzero(response[: 79 * rate] > 0.01 * response.max())[-1] / rate  # the end rings for Wj
     assert 0.5 * curve.settling_s < last < curve.settling_s
     # the range of the standard, and one over the width of its lowest third octave
-    assert curve.lowest_frequency == pytest.approx(0.1 if name == "Wf" else 0.5)
-    assert curve.shortest_record_s == pytest.approx(43.2 if name == "Wf" else 8.64, rel=1e-3)
+    lowest, shortest = {"Wf": (0.1, 43.2), "Wh": (7.887, 0.5475)}.get(name, (0.5, 8.64))
+    assert curve.lowest_frequency == pytest.approx(lowest, rel=1e-3)
+    assert curve.shortest_record_s == pytest.approx(shortest, rel=1e-3)
+    assert curve.highest_frequency == {"Wf": 0.5, "Wh": 1000.0}.get(name, 80.0)

@@ -1,8 +1,8 @@
-"""Evaluate the vibration at a point of contact after ISO 2631-1 or BS 6841, and the effect of an offset."""
+"""Vibration at a point of contact after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299; effect of an offset."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis import rail_comfort
 from vehicle.signals.analysis.exposure import (
     RunningAverage,
     crest_factor,
+    daily_exposure,
     estimated_vibration_dose_value,
     motion_sickness_dose_value,
     mtvv,
@@ -22,7 +24,7 @@ from vehicle.signals.analysis.exposure import (
     weighted_rms,
 )
 from vehicle.signals.analysis.samples import USABLE, checked_rows, checked_signals, checked_time_step, is_constant
-from vehicle.signals.analysis.weighting import FULL_SAMPLING_RATE, weighted_record, weighting
+from vehicle.signals.analysis.weighting import weighted_record, weighting
 
 AXES = ("x", "y", "z")
 """Basicentric axes. The weightings of x and y are equal, so sign and order of the horizontal axes have no effect except
@@ -36,6 +38,10 @@ START_UP_EFFECT = 0.01
 """Minimum relative excess of the maximum during the settling of a filter over the later maximum, for a notice [-]."""
 CLOCK_TOLERANCE = 1e-3
 """Maximum relative error of a sampling rate computed from times with jitter [-]."""
+DOSES = ("vdv", "estimated_vdv", "msdv", "msdv_weighting", "vdv_ratio")
+"""Values of an axis that are None for a standard without dose values."""
+EXPOSURE_VALUES = {"hand": (2.5, 5.0), "seat": (0.5, 1.15), "standing": (0.5, 1.15)}
+"""Point of contact to action value and limit value of A(8) [m/s2] (Directive 2002/44/EC, article 3)."""
 OFFSET_EFFECT = 0.01
 """Maximum relative change of a weighted RMS or VDV by the offset; above it the user must choose a treatment [-]."""
 LARGEST_MEAN = 1.0
@@ -54,7 +60,12 @@ class Application:
     """multiplying factors k for comfort [-]"""
     health_factors: tuple[float, float, float] | None = None
     """multiplying factors k for health [-]; None if the standard has no such factors"""
+    doses: bool = True
+    """False for a standard without dose values"""
 
+
+HEALTH = (1.4, 1.4, 1.0)
+"""Factors of x, y and z for the health of a seated person [-] (ISO 2631-1:1997, 7.2.3; Directive 2002/44/EC)."""
 
 _CLAUSE = "ISO 2631-1:1997, 8.2.2"
 _SEAT, _BACKREST, _FEET = (1.0, 1.0, 1.0), (0.8, 0.5, 0.4), (0.25, 0.25, 0.4)  # k there
@@ -62,13 +73,15 @@ _ROTATION = f"{_CLAUSE}.1 (rx, ry, rz in rad/s2, factors in m/rad)"
 
 APPLICATIONS: MappingProxyType[str, Application] = MappingProxyType(
     {
-        "seat": Application("ISO 2631-1:1997, 7.2.3 and 8.2.2.1", ("Wd", "Wd", "Wk"), _SEAT, (1.4, 1.4, 1.0)),
+        "seat": Application("ISO 2631-1:1997, 7.2.3 and 8.2.2.1", ("Wd", "Wd", "Wk"), _SEAT, HEALTH),
         "backrest": Application(f"{_CLAUSE}.1", ("Wc", "Wd", "Wd"), _BACKREST),
         "feet": Application(f"{_CLAUSE}.1", ("Wk", "Wk", "Wk"), _FEET),
         "seat_rotation": Application(_ROTATION, ("We", "We", "We"), (0.63, 0.4, 0.2)),
         "standing": Application(f"{_CLAUSE}.2", ("Wd", "Wd", "Wk"), (1.0, 1.0, 1.0)),
         "seat_bs6841": Application("BS 6841:1987", ("Wd", "Wd", "Wb"), _SEAT),
         "backrest_bs6841": Application("BS 6841:1987", ("Wc", "Wd", "Wd"), _BACKREST),
+        "hand": Application("ISO 5349-1:2001", ("Wh", "Wh", "Wh"), _SEAT, doses=False),
+        "train_floor": Application("EN 12299:2009", rail_comfort.WEIGHTINGS, _SEAT),
         "feet_bs6841": Application("BS 6841:1987", ("Wb", "Wb", "Wb"), _FEET),
     }
 )
@@ -249,6 +262,8 @@ def evaluate(
     for axis, record in zip(axes, rows, strict=True):
         values[axis], axis_remarks = _axis(span, record, *weighting_of[axis], average)
         remarks += [f"{axis}: {remark}" for remark in axis_remarks]
+        if not contact_point.doses:
+            values[axis] |= dict.fromkeys(DOSES)
     duration = span.whole(rows[0]).size * step
     sums = _sums(values, contact_point) if len(axes) == 3 else None
     reasons = [
@@ -256,16 +271,17 @@ def evaluate(
         for axis in axes
         if values[axis]["crest_factor"] is None
     ]
-    reasons += remarks + _about_motion_sickness(duration)
+    reasons += remarks + (_about_motion_sickness(duration) if contact_point.doses else [])
     if sums is None:
         missing = [axis for axis in AXES if axis not in axes]
         reasons.append(f"{' and '.join(missing)}: missing, so there is no vector sum")
     band = USABLE / step if highest is None else min(highest, USABLE / step)
-    limited = band < USABLE * FULL_SAMPLING_RATE * (1.0 - CLOCK_TOLERANCE)
+    range_end = max(weighting(name).highest_frequency for name in contact_point.weightings)
+    limited = band < range_end * (1.0 - CLOCK_TOLERANCE)
     if limited:
         reasons.append(
-            f"the record contains vibration up to {band:.4g} Hz; the values exclude higher frequencies (to 80 Hz in "
-            "ISO 2631-1)"
+            f"the record contains vibration up to {band:.4g} Hz; the values exclude higher frequencies (to "
+            f"{range_end:g} Hz in {contact_point.standard.partition(':')[0]})"
         )
     if contact_point.health_factors is None:
         reasons.append(f"vector_sum.health_weighted_rms: the standard has no health factors for {contact}")
@@ -282,12 +298,50 @@ def evaluate(
     }
 
 
+def exposure(values: Mapping[str, Any], hours: float) -> dict[str, Any]:
+    """Return the daily exposure A(8) to the vibration of a record, with action value and limit value.
+
+    It is that of the vector sum for a hand, that of the largest of 1.4 a_x, 1.4 a_y and a_z for a body.
+
+    Args:
+        values: values of a record, see `evaluate`.
+        hours: daily duration of this vibration [h].
+
+    Returns:
+        {"hours", "a8", "axis", "action_value", "limit_value"}, accelerations in m/s2; the axis is "all" for a hand.
+
+    Raises:
+        ConfigurationError: a duration out of range, or a point of contact without exposure values.
+        DataError: an axis is missing.
+
+    Source: Directive 2002/44/EC; ISO 5349-1:2001; ISO 2631-1:1997, 7.2.
+    """
+    contact = values["place"]
+    if contact not in EXPOSURE_VALUES:
+        raise ConfigurationError(
+            f"exposure: {contact} has no action value; the point of contact must be {', '.join(EXPOSURE_VALUES)}"
+        )
+    missing = [axis for axis in AXES if values[axis] is None]
+    if missing:
+        raise DataError(f"exposure: {' and '.join(missing)} missing; A(8) needs x, y and z")
+    if contact == "hand":
+        axis, acceleration = "all", values["vector_sum"]["weighted_rms"]
+    else:
+        weighted = {name: factor * values[name]["weighted_rms"] for name, factor in zip(AXES, HEALTH, strict=True)}
+        axis, acceleration = max(weighted.items(), key=lambda item: item[1])
+    action, limit = EXPOSURE_VALUES[contact]
+    a8 = daily_exposure(acceleration, hours)
+    return {"hours": hours, "a8": a8, "axis": axis, "action_value": action, "limit_value": limit}
+
+
 def _sums(values: dict[str, Any], contact_point: Application) -> dict[str, float | None]:
     """Return the vector sums over three axes: weighted RMS, VDV, and RMS with health factors."""
     rms = [values[axis]["weighted_rms"] for axis in AXES]
     return {
         "weighted_rms": vector_sum(rms, contact_point.comfort_factors),
-        "vdv": vector_sum([values[axis]["vdv"] for axis in AXES], contact_point.comfort_factors, power=4.0),
+        "vdv": vector_sum([values[axis]["vdv"] for axis in AXES], contact_point.comfort_factors, power=4.0)
+        if contact_point.doses
+        else None,
         "health_weighted_rms": None
         if contact_point.health_factors is None
         else vector_sum(rms, contact_point.health_factors),

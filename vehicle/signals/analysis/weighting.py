@@ -1,4 +1,4 @@
-"""Frequency weightings of ISO 2631-1 and BS 6841: analogue transfer functions, spectrum factors, weighted records."""
+"""Frequency weightings of ISO 2631-1, BS 6841, ISO 5349-1, EN 12299: transfer functions, factors, weighted records."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ from vehicle.signals.analysis.samples import checked_signals, checked_time_step
 
 LEAST_SAMPLING_RATE = 25.0
 """Minimum sampling rate of a weighted record [Hz], for vibration up to 10 Hz, the range in which Wk is highest."""
-FULL_SAMPLING_RATE = 200.0
-"""Minimum sampling rate of a record with vibration up to 80 Hz, the range of ISO 2631-1:1997, 1 [Hz]."""
 LINES_AT_ONCE = 2**18
 """Lines of a long record weighted in a batch."""
 KEPT_LINES = 2**16
@@ -54,6 +52,11 @@ class Weighting:
     def lowest_frequency(self) -> float:
         """Lower end of the frequency range of the standard [Hz]: 0.5 (Wf: 0.1), which is f1 10^(1/10) rounded."""
         return 1.25 * self.f1
+
+    @property
+    def highest_frequency(self) -> float:
+        """Upper end of the frequency range of the standard [Hz]: 80 (Wh: 1000), which is f2 10^(-1/10) rounded."""
+        return float(f"{0.8 * self.f2:.2g}")
 
     @property
     def settling_s(self) -> float:
@@ -132,6 +135,33 @@ WEIGHTINGS: MappingProxyType[str, Weighting] = MappingProxyType(
             # for 1.024 (2.5/4)^2 = 0.4
             Weighting(
                 name="Wb", f1=0.4, f2=100.0, f3=16.0, f4=16.0, q4=0.55, f5=2.5, q5=0.9, f6=4.0, q6=0.95, gain=1.024
+            ),
+            # EN 12299:2009, annex C: other quality factors, K = 0.4 without (f5/f6)^2
+            Weighting(
+                name="Wb_en12299",
+                f1=0.4,
+                f2=100.0,
+                f3=16.0,
+                f4=16.0,
+                q4=0.63,
+                f5=2.5,
+                q5=0.8,
+                f6=4.0,
+                q6=0.8,
+                gain=1.024,
+            ),
+            # ISO 5349-1:2001, annex A, with the exact frequencies of ISO 8041:2005
+            Weighting(
+                name="Wh",
+                f1=10.0**0.8,
+                f2=10.0**3.1,
+                f3=50.0 / np.pi,
+                f4=50.0 / np.pi,
+                q4=0.64,
+                f5=_INFINITE,
+                q5=1.0,
+                f6=_INFINITE,
+                q6=1.0,
             ),
         )
     }

@@ -1,4 +1,4 @@
-"""Evaluate the comfort of an acceleration record after ISO 2631-1 or BS 6841: sensor offset, SEAT value."""
+"""Comfort of an acceleration record after ISO 2631-1, BS 6841, ISO 5349-1 or EN 12299: offset, SEAT value."""
 
 from __future__ import annotations
 
@@ -17,11 +17,13 @@ from vehicle.signals.analysis.evaluation import (
     OFFSET_EFFECT,
     application,
     evaluate,
+    exposure,
     offset_effect,
     offset_line,
     without_offset,
 )
 from vehicle.signals.analysis.exposure import RunningAverage
+from vehicle.signals.analysis.rail_comfort import comfort_words, rail_comfort
 from vehicle.signals.analysis.seat_value import seat_value
 from vehicle.signals.formats.table import Record
 from vehicle.signals.records.acceleration import read_acceleration
@@ -93,10 +95,23 @@ class RecordComfort:
             lines.append(f"vector sum of RMS (comfort)  {sums['weighted_rms']:.4g} m/s2")
             if sums["health_weighted_rms"] is not None:
                 lines.append(f"vector sum of RMS (health)   {sums['health_weighted_rms']:.4g} m/s2")
-            lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
+            if sums["vdv"] is not None:
+                lines.append(f"sum of VDV (fourth power)    {sums['vdv']:.4g} m/s^1.75")
         if "seat_value" in result:
             ratio = result["seat_value"]
             lines.append(f"SEAT value (z, {ratio['weighting']})       {ratio['rms']:.4g}, of VDV {ratio['vdv']:.4g}")
+        if "exposure" in result:
+            day = result["exposure"]
+            above = sum(day["a8"] >= day[key] for key in ("action_value", "limit_value"))
+            state = ("below the action value", "above the action value", "above the limit value")[above]
+            lines.append(f"exposure A(8), {day['hours']:g} h a day  {day['a8']:.4g} m/s2, {state}")
+            lines.append(f"{'':16}action value {day['action_value']:g}, limit value {day['limit_value']:g} m/s2")
+        if "rail_comfort" in result:
+            rated = result["rail_comfort"]
+            means = ", ".join(f"{mean:.3g} ({text})" for mean, text in zip(rated["mean"], rated["words"], strict=True))
+            lines.append(f"mean comfort N_MV of each 5 minutes (EN 12299)  {means}")
+            largest = ", ".join(f"{axis} {value:.3g}" for axis, value in rated["largest_continuous"].items())
+            lines.append(f"largest continuous comfort, 5 s  {largest} m/s2")
         lines.append("values of this record, without statistical error (repeat the ride for the spread)")
         return "\n".join(lines)
 
@@ -124,6 +139,7 @@ def evaluate_comfort(
     offset: str = "refuse",
     average: RunningAverage = "linear",
     skip: float = 0.0,
+    hours: float | None = None,
 ) -> RecordComfort:
     """Evaluate a record of acceleration: weighted RMS, MTVV, crest factor, VDV, MSDV and vector sums.
 
@@ -138,6 +154,7 @@ def evaluate_comfort(
             record that begins at rest.
         average: running average of the MTVV, "linear" or "exponential".
         skip: time skipped at the beginning of the weighted records [s].
+        hours: daily duration of this vibration [h], for the exposure A(8); None without it.
 
     Returns:
         Comfort values; `print` shows a table.
@@ -146,7 +163,7 @@ def evaluate_comfort(
         ConfigurationError: unknown file or point of contact, or a SEAT value of a point other than a seat.
         DataError: bad data, or a mean or drift that changes the result.
 
-    Source: ISO 2631-1:1997; BS 6841:1987; ISO 10326-1 (SEAT).
+    Source: ISO 2631-1:1997; BS 6841:1987; ISO 10326-1 (SEAT); ISO 5349-1:2001; EN 12299:2009; Directive 2002/44/EC.
     """
     application(contact)
     if offset not in OFFSETS:
@@ -179,6 +196,17 @@ def evaluate_comfort(
         "drift": dict(zip(axes, (float(value) for value in line[:, -1] - line[:, 0]), strict=True)),
     }
     summary = {"input": str(file), "offset": offset_summary, **result, "notices": [*record.notices, *copied]}
+    if hours is not None:
+        summary["exposure"] = exposure(summary, hours)
+    if contact == "train_floor":
+        rail_values = rail_comfort(
+            record.step, without_offset(xyz) if removed else xyz, skip=skip, from_rest=offset == "keep"
+        )
+        summary["rail_comfort"] = {
+            "mean": rail_values.mean.tolist(),
+            "words": [comfort_words(mean) for mean in rail_values.mean],
+            "largest_continuous": dict(zip(AXES, rail_values.continuous.max(axis=1).tolist(), strict=True)),
+        }
     if seated:
         below = _read(file, rail, rail_choice, contact, offset, checked="z")
         if "z" not in record.channels or "z" not in below.channels:
