@@ -87,6 +87,8 @@ if TYPE_CHECKING:
     from vehicle.studies.replication.drive_files import save_drive as save_drive
     from vehicle.studies.replication.drive_search import FoundDrive as FoundDrive
     from vehicle.studies.replication.drive_search import replicate_drive as replicate_drive
+    from vehicle.studies.sweeps.effects import Effects as Effects
+    from vehicle.studies.sweeps.effects import parameter_effects as parameter_effects
     from vehicle.studies.sweeps.indices import SobolIndices as SobolIndices
     from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
     from vehicle.studies.sweeps.plan import sweep as sweep
@@ -105,6 +107,7 @@ _MODULES = {
     "Comparison": "vehicle.runs.comparison.comparison",
     "ConfigurationError": "vehicle.errors",
     "DataError": "vehicle.errors",
+    "Effects": "vehicle.studies.sweeps.effects",
     "FittedDamper": "vehicle.studies.dampers.fitted_damper",
     "FoundCars": "vehicle.studies.optimisation.search_result",
     "FoundDrive": "vehicle.studies.replication.drive_search",
@@ -129,6 +132,7 @@ _MODULES = {
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",
+    "parameter_effects": "vehicle.studies.sweeps.effects",
     "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",
     "read_signal": "vehicle.signals.excitation.signal_file",

@@ -1,0 +1,136 @@
+"""Effects of single parameters: those of single runs, their ranking, their error, and the sentence on them."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from vehicle import Car, road
+from vehicle.errors import ConfigurationError
+from vehicle.studies.sweeps.case import parameter_cells
+from vehicle.studies.sweeps.differences import DifferencesWriter
+from vehicle.studies.sweeps.effects import (
+    Effect,
+    Effects,
+    effect_sentence,
+    effects_of,
+    parameter_effects,
+    single_changes,
+    varied_parameters,
+    write_effects,
+)
+from vehicle.studies.sweeps.plan import plan_sweep
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("name", "ride", "groups"),
+    [
+        ("sedan", road("B", 80, duration=4), ("rear.damper", "front.bushings.tyre.stiffness", "main_spring.stiffness")),
+        ("focus", "bump_7p5mm.csv", ("damper.coulomb_friction", "damper.viscous", "body.mass")),
+        ("focus_road_seated", road("A", 60, duration=4), ("seat.driver.bushings.cushion.stiffness", "viscous")),
+    ],
+)  # fmt: skip
+def test_changes_are_those_of_single_runs_and_ranked_by_brute_force(name, ride, groups):
+    car = Car.load(name)
+    found = parameter_effects(car, ride, groups=groups, share=0.1, engine="reduced")
+
+    def comfort(changed):
+        values = changed.run(ride, engine="reduced").comfort()
+        return (values.cushion or values).weighted.overall
+
+    base, largest = comfort(car), {}
+    assert found.base == pytest.approx(base, rel=1e-5)
+    for each in found.effects:
+        assert (each.low, each.high) == pytest.approx((0.9 * each.value, 1.1 * each.value))
+        single = [100.0 * (comfort(car.with_({each.path: value})) / base - 1.0) for value in (each.low, each.high)]
+        # Batches run in single precision: 1e-5 of a value, so 1e-3 points.
+        assert (each.change_low, each.change_high) == pytest.approx(single, abs=2e-3)
+        largest[each.path] = max(map(abs, single))
+    assert [each.path for each in found.effects] == sorted(largest, key=lambda path: -largest[path])
+    assert {*largest, *found.without} == set(varied_parameters(car.vehicle, groups))
+
+
+def test_error_of_a_change_is_that_of_the_differences_of_the_sweep():
+    car = Car.load("sedan")
+    parameters = varied_parameters(car.vehicle, ("rear.damper.viscous",))
+    changes, without = single_changes(car.vehicle, parameters, 0.2)
+    assert without == () and changes[0] == ()
+    table = plan_sweep(car, changes, road("B", 80, duration=6), engine="reduced").run()
+    file, paths = io.StringIO(), table.paths()
+    writer = DifferencesWriter(file, paths)
+    for case, row in zip(table.cases, table.rows(), strict=True):
+        writer.add(case, parameter_cells(case, paths), row)
+    writer.finish()
+    rows = list(csv.DictReader(io.StringIO(file.getvalue())))
+    widths = [float(row["half_width_95 [m/s2]"]) for row in rows[1:]]
+    (effect,) = effects_of(table, parameters, 0.2).effects
+    expected = 100.0 * max(widths) / float(rows[0]["unweighted [m/s2]"])
+    assert effect.half_width == pytest.approx(expected, rel=1e-4)
+
+
+def test_groups():
+    vehicle = Car.load("sedan").vehicle
+    every = varied_parameters(vehicle)
+    assert {unit for _, unit in every.values()} <= {"N/m", "N s/m", "N", "N m/rad", "N/rad", "kg"} and len(every) > 60
+    assert all(value != 0.0 for value, _ in every.values()) and not any("smoothing" in path for path in every)
+    assert set(varied_parameters(vehicle, ("rear.damper",))) >= {"rear.damper.viscous", "rear.damper.coulomb_friction"}
+    assert all(path.startswith("rear.damper.") for path in varied_parameters(vehicle, ("rear.damper",)))
+    assert set(varied_parameters(vehicle, ("coulomb_friction",))) == {
+        "front.damper.coulomb_friction", "rear.damper.coulomb_friction"
+    }  # fmt: skip
+    with pytest.raises(ConfigurationError, match=r"--vary rear.damber: no parameter that is a number"):
+        varied_parameters(vehicle, ("rear.damber",))
+    for share in (0.0, 1.0, -0.1, NAN):
+        with pytest.raises(ConfigurationError, match="must be above 0 and below 100 %"):
+            single_changes(vehicle, every, share)
+
+
+def test_parameters_without_effect_are_named():
+    """The Stribeck parameters of Coulomb friction have none; alone they are refused."""
+    vehicle = Car.load("focus").vehicle
+    parameters = varied_parameters(vehicle, ("damper.stribeck_friction", "damper.viscous"))
+    changes, without = single_changes(vehicle, parameters, 0.2)
+    assert without == ("front.damper.stribeck_friction",) and len(changes) == 3
+    with pytest.raises(ConfigurationError, match=r"no parameter has an effect on this car: front.damper.stribeck"):
+        single_changes(vehicle, varied_parameters(vehicle, ("damper.stribeck_friction",)), 0.2)
+
+
+def effect(path, low, high, half_width=NAN):
+    return Effect(path=path, unit="N", value=10.0, low=8.0, high=12.0, change_low=low, change_high=high,
+                  half_width=half_width)  # fmt: skip
+
+
+def of(*effects, without=()):
+    return Effects(effects=effects, name="weighted", base=0.5, share=0.2, without=without)
+
+
+def test_sentence():
+    assert effect_sentence(of(effect("a", -4.0, 3.0), effect("b", 1.0, -1.0), effect("c", 0.1, 0.0))) == (
+        "a matters most: -20 % makes the ride 4 % smoother, +20 % makes the ride 3 % rougher; then come b and c."
+    )
+    assert effect_sentence(of(effect("a", NAN, 3.0))) == "a matters most: +20 % makes the ride 3 % rougher."
+    assert effect_sentence(of(effect("a", -1.0, 0.9, 1.2))).startswith("No effect is larger than its error")
+    assert effect_sentence(of()) == "No varied parameter changes the comfort here."
+
+
+def test_table_file_and_picture(tmp_path):
+    effects = of(effect("a", -4.0, NAN, 0.5), effect("b", 1.0, -1.0), without=("c",))
+    write_effects(tmp_path / "effects.csv", effects)
+    assert (tmp_path / "effects.csv").read_text(encoding="utf-8").splitlines() == [
+        "parameter,unit,value,low,high,change_low [%],change_high [%],half_width_95 [%]",
+        "a,N,10,8,12,-4,,0.5",
+        "b,N,10,8,12,1,-1,",
+        "c,,,,,0,0,",
+    ]
+    text = str(effects)
+    assert "failed" in text and "without effect here: 1 parameters (c)" in text and "-4.00 %" in text
+    axes = effects.plot()
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert labels == ["a  10 N", "b  10 N"]
+    widths = np.array([bar.get_width() for bar in axes.patches])
+    np.testing.assert_allclose(widths, [-4.0, 1.0, 0.0, -1.0])
