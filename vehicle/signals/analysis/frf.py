@@ -66,31 +66,6 @@ class FrequencyResponse:
         )
 
 
-def frequency_response(
-    time_step: float,
-    excitation: ArrayLike,
-    responses: ArrayLike,
-    *,
-    window_s: float = 4.0,
-    overlap: float = 0.5,
-    band: tuple[float, float] = (1.0, 50.0),
-    names: Sequence[str] | None = None,
-    minimum_averages: float = MINIMUM_AVERAGES,
-) -> FrequencyResponse:
-    """Estimate the FRFs to one excitation (n,); for the other arguments see `frequency_responses`."""
-    return frequency_responses(
-        time_step,
-        np.asarray(excitation, dtype=np.float64)[None],
-        responses,
-        window_s=window_s,
-        overlap=overlap,
-        band=band,
-        input_names=("excitation",),
-        names=names,
-        minimum_averages=minimum_averages,
-    )[0]
-
-
 @one_blas_thread()
 def frequency_responses(
     time_step: float,
@@ -201,8 +176,7 @@ def frequency_responses(
         (~reached, "not excited, so the FRF is undefined"),
         (
             reached & ~separable,
-            "the inputs are fully correlated there, so their responses cannot be separated; use the single-input "
-            "frequency_response",
+            "the inputs are fully correlated there, so their responses cannot be separated; use one input",
         ),
     ):
         if lost.any():
@@ -246,6 +220,6 @@ def _refuse_dependent(
     raise DataError(
         f"excitations: fully correlated inputs, the matrix Gxx is rank-deficient (median minimum eigenvalue "
         f"{np.median(independence):.3g}, must be at least {INDEPENDENCE:g}): {which}; their responses cannot be "
-        "separated. Use the single-input frequency_response with one input (it returns the response to the common "
-        "motion), or drive them with independent signals"
+        "separated. Use one input alone (its FRF is the response to the common motion), or drive them with "
+        "independent signals"
     )

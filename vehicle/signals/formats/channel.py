@@ -111,7 +111,7 @@ class Measurement:
         path: measurement file.
         format: name of the file format.
         channels: channels in the order of the file, which numbers them from 1.
-        sha256: hexadecimal digest of the bytes of the file.
+        sha256: hexadecimal digest of the bytes of the file; `read_record` adds it.
         program: program that wrote the file; empty if unknown.
         start: date and time of the first sample, as written in the file.
         notices: messages on unusual content that was accepted.

@@ -19,7 +19,6 @@ from vehicle.errors import DataError
 from vehicle.signals.formats.can_decoder import decode, load_database, quiet
 from vehicle.signals.formats.can_frames import FD_LENGTHS, IDENTIFIER_BITS, BusLog, grouped, merged
 from vehicle.signals.formats.channel import NOT_OVER_TIME, ROAD_PROFILE, Channel, Measurement
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.optional_library import extra
 from vehicle.signals.formats.units import find_unit
 from vehicle.signals.formats.unpacked_size import require_unpacked
@@ -90,7 +89,6 @@ def read(path: Path, databases: Sequence[Path] = ()) -> Measurement:
         path=path,
         format="mdf",
         channels=tuple(channels),
-        sha256=digest(path),
         program=program,
         start=start,
         notices=tuple(notices),

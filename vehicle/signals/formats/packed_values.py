@@ -44,7 +44,7 @@ def unpacked(name: str, dataset: Any) -> Unpacked:
     """
     packed = np.asarray(dataset[()])
     attributes = dataset.attrs
-    if _text(attributes.get("_Unsigned")).lower() == "true" and packed.dtype.kind == "i":
+    if attribute_text(attributes.get("_Unsigned")).lower() == "true" and packed.dtype.kind == "i":
         packed = packed.view(packed.dtype.str.replace("i", "u"))
     values = packed.astype(complex if packed.dtype.kind == "c" else np.float64)
     factor, offset, notices, fault = 1.0, 0.0, [], ""
@@ -106,5 +106,6 @@ def _missing(dataset: Any, packed: NDArray[Any], values: NDArray[Any]) -> NDArra
     return missing
 
 
-def _text(value: Any) -> str:
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value or "")
+def attribute_text(value: Any) -> str:
+    """Return an attribute as text; empty for a missing attribute."""
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else "" if value is None else str(value)

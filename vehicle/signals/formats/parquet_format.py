@@ -11,11 +11,10 @@ import numpy as np
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement
 from vehicle.signals.formats.clock_text import epoch_seconds
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.heads import TIME_NAME, split_head
-from vehicle.signals.formats.optional_library import extra
+from vehicle.signals.formats.optional_library import extra, reading
 from vehicle.signals.formats.table import Vector
-from vehicle.signals.formats.units import find_unit
+from vehicle.signals.formats.units import seconds_in
 from vehicle.signals.formats.unpacked_size import require_unpacked
 
 
@@ -29,7 +28,7 @@ def read(path: Path) -> Measurement:
     extra("pyarrow", "parquet", "a Parquet file")
     parquet = import_module("pyarrow.parquet")
     notices: list[str] = []
-    try:
+    with reading(path, "Parquet", "export it again, or as CSV"):
         with parquet.ParquetFile(path, page_checksum_verification=True) as file:
             rows, fields = file.metadata.num_rows, file.schema_arrow
             wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
@@ -39,19 +38,15 @@ def read(path: Path) -> Measurement:
             table = file.read(columns=[fields[n].name for n in wanted])
             program = str(file.metadata.created_by or "")
         columns = [(name, *_column(table.column(n))) for n, name in enumerate(table.column_names)]
-    except DataError:
-        raise
-    except Exception as error:  # pyarrow raises errors of any type for damaged files
-        reason = " ".join(str(error).split())
-        raise DataError(f"{path}: cannot be read as Parquet ({reason}); export it again, or as CSV") from None
     if skipped:
         notices.append(f"columns without numbers are ignored: {', '.join(map(repr, skipped[:12]))}")
     axis, key, start = _axis(columns, notices)
-    channels = []
-    for index, (name, values, _) in enumerate(columns):
-        if index != key:
-            text, unit = split_head(name)
-            channels.append(Channel(name=text, values=np.asarray(values, dtype=np.float64), unit=unit, axis=axis))
+    heads = [split_head(name) for name, *_ in columns]
+    channels = [
+        Channel(name=text, values=np.asarray(columns[index][1], dtype=np.float64), unit=unit, axis=axis)
+        for index, (text, unit) in enumerate(heads)
+        if index != key
+    ]
     if not channels or not rows:
         raise DataError(
             f"{path}: no numeric column; it contains {', '.join(map(repr, fields.names[:12])) or 'nothing'}; "
@@ -61,7 +56,6 @@ def read(path: Path) -> Measurement:
         path=path,
         format="parquet",
         channels=tuple(channels),
-        sha256=digest(path),
         program=program[:80],
         start=start,
         notices=tuple(notices),
@@ -85,7 +79,7 @@ def _is_date(data_type: Any) -> bool:
 
 def _column(column: Any) -> tuple[Any, str]:
     """Return the numbers of a column, NaN if missing, and the unit of a date or duration; keep integer counts."""
-    unit = getattr(column.type, "unit", "") if hasattr(column.type, "unit") else ""
+    unit = getattr(column.type, "unit", "")
     if unit:
         column = column.cast("int32" if column.type.bit_width == 32 else "int64").cast("int64")
     elif not (column.type.bit_width or 0) or str(column.type).startswith("decimal"):
@@ -103,9 +97,9 @@ def _axis(columns: list[tuple[str, Any, str]], notices: list[str]) -> tuple[Vect
             return epoch[0], index, epoch[1]
     for index, (name, values, unit) in enumerate(columns):
         text, unit_in_name = split_head(name)
-        time_unit = find_unit(unit or unit_in_name)
-        if (unit or TIME_NAME.fullmatch(text)) and time_unit is not None and time_unit.quantity == "time":
-            return values * time_unit.factor, index, ""
+        factor = seconds_in(unit or unit_in_name)
+        if (unit or TIME_NAME.fullmatch(text)) and factor:
+            return values * factor, index, ""
     for index, (name, values, _) in enumerate(columns):
         epoch = epoch_seconds(values, "") if TIME_NAME.fullmatch(split_head(name)[0]) else None
         if epoch is not None:

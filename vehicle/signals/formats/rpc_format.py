@@ -16,7 +16,6 @@ import numpy as np
 
 from vehicle.errors import DataError
 from vehicle.signals.formats.channel import Channel, Measurement, check_length, clock_step, uniform_axis
-from vehicle.signals.formats.file_digest import digest
 from vehicle.signals.formats.text import LARGEST
 
 RECORD, BLOCK = 128, 512
@@ -95,7 +94,6 @@ def read(path: Path) -> Measurement:
         path=path,
         format="rpc",
         channels=tuple(channel_list),
-        sha256=digest(path),
         program=head.get("OPERATION", ""),
         start=head.get("DATE", "").removeprefix(NO_DATE),
         notices=tuple(notices),

@@ -126,6 +126,12 @@ def find_unit(text: str) -> Unit | None:
     return None if unit is None else unit._replace(factor=unit.factor * float(scaled["number"]))
 
 
+def seconds_in(text: str) -> float:
+    """Return the length of a unit of time [s]; 0 for other units."""
+    unit = find_unit(text)
+    return unit.factor if unit is not None and unit.quantity == "time" else 0.0
+
+
 GRAMS = ("g/s", "mg/s", "g/km", "g/h", "g/min", "g/l")
 """Ratios in which g is the gram: flows of air and fuel."""
 
