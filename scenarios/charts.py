@@ -25,23 +25,14 @@ LEVEL_COLOURS = (COLOURS[0], COLOURS[3], COLOURS[1])
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrfCurve:
-    """FRF curve of a chart.
+    """FRF curve of a chart."""
 
-    Attributes:
-        label: legend text.
-        frequency: frequencies [Hz], (m,).
-        response: FRF [m/s2 per m], (m,); NaN at gaps.
-        colour: colour of the line.
-        coherence: coherence [-], (m,); None for a linear model.
-        style: style of the line.
-    """
-
-    label: str
-    frequency: Vector
-    response: npt.NDArray[np.complex128]
-    colour: str
-    coherence: Vector | None = None
-    style: str = "-"
+    label: str  # legend text
+    frequency: Vector  # frequencies [Hz], (m,)
+    response: npt.NDArray[np.complex128]  # FRF [m/s2 per m], (m,); NaN at gaps
+    colour: str  # colour of the line
+    coherence: Vector | None = None  # coherence [-], (m,); None for a linear model
+    style: str = "-"  # style of the line
 
 
 def measured_curve(response: FrequencyResponse, row: int, label: str, colour: str, style: str = "-") -> FrfCurve:

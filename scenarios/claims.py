@@ -64,16 +64,15 @@ class Claim:
     source: Source
     interval: Interval | None = None
     """Lowest and highest published value, infinite for an open end; None if no interval is printed."""
-    place: str = ""
-    """Place in the source: "figure 3.13", "table 3.2", "section 3.3"."""
-    picture: str = ""
-    """File name of the figure of the study that shows the row, or nothing."""
-    probability: float | None = None
-    """Of the interval, where ours is a spread; see `interval_probability`."""
-    inside: bool | None = None
-    """True if our value, or its mean, is inside the interval; None without interval."""
-    evidence: str = ""
-    """Key in `scenarios.evidence`, or nothing for a row that had no part in the choice."""
+    place: str = ""  # Place in the source: "figure 3.13", "table 3.2", "section 3.3"
+    picture: str = ""  # File name of the figure of the study that shows the row, or nothing
+    probability: float | None = None  # Of the interval, where ours is a spread; see `interval_probability`
+    inside: bool | None = None  # True if our value, or its mean, is inside the interval; None without interval
+    evidence: str = ""  # Key in `scenarios.evidence`, or nothing for a row that had no part in the choice
+
+    def at(self, place: str = "", picture: str = "") -> Claim:
+        """Return the row with a place in the source and the figure of the study that shows it, unless it has them."""
+        return replace(self, place=self.place or place, picture=self.picture or picture)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +91,6 @@ class Kind:
         why: str,
         *,
         error: float = 0.0,
-        place: str = "",
-        picture: str = "",
     ) -> Claim:
         """Return the row of a printed number.
 
@@ -104,32 +101,15 @@ class Kind:
             tolerance: largest |ours - published|, in the unit of the value.
             why: reason of the tolerance, and of a disagreement.
             error: standard error of our value over seeds, roads or windows, in the unit of the value.
-            place: figure, table or section of the source.
-            picture: file name of the figure of the study that shows the row.
         """
-        deviation = float(ours - published) / published
-        within = self._judged(verdict(lambda value: abs(value - published) <= tolerance, float(ours), error))
         value = float(ours)
-        return Claim(
-            name, published, value, deviation, within, why, self.status, self.source, place=place, picture=picture
-        )
+        within = self._judged(verdict(lambda value: abs(value - published) <= tolerance, value, error))
+        return Claim(name, published, value, (value - published) / published, within, why, self.status, self.source)
 
-    def statement(
-        self, name: str, published: str, ours: str, holds: Verdict, why: str, *, place: str = "", picture: str = ""
-    ) -> Claim:
-        """Return the row of a printed statement in words; arguments as for `number`.
-
-        Args:
-            name: what is compared.
-            published: printed statement.
-            ours: own values.
-            holds: True if the statement is true of ours, None if undecided; see `scenarios.verdict`.
-            why: rule, and reason of a disagreement.
-            place: figure, table or section of the source.
-            picture: file name of the figure of the study that shows the row.
-        """
+    def statement(self, name: str, published: str, ours: str, holds: Verdict, why: str, *, picture: str = "") -> Claim:
+        """Return the row of a printed statement in words, `holds` is None if undecided; see `number`."""
         within = self._judged(None if holds is None else bool(holds))
-        return Claim(name, published, ours, None, within, why, self.status, self.source, place=place, picture=picture)
+        return Claim(name, published, ours, None, within, why, self.status, self.source, picture=picture)
 
     def _judged(self, holds: Verdict) -> Verdict:
         return None if self.status == "not testable" else holds
@@ -141,62 +121,31 @@ TABLE, INFERRED, DUPLICATE = Kind("predicted", "table"), Kind("predicted", "infe
 NOT_TESTABLE = Kind("not testable", "text")
 
 
-def interval_claim(
-    name: str,
-    interval: Interval,
-    ours: float,
-    why: str,
-    *,
-    status: Status = "predicted",
-    place: str = "",
-    picture: str = "",
-) -> Claim:
+def interval_claim(name: str, interval: Interval, ours: float, why: str, *, status: Status = "predicted") -> Claim:
     """Return the row of an extreme that is only known to lie between two labels of an axis; it agrees inside.
 
-    Args:
-        name: what is compared, with its unit.
-        interval: lowest and highest value; infinite where it is open.
-        ours: own value.
-        why: which axis, and the reason of a disagreement.
-        status: see `Claim`.
-        place: figure, table or section of the source.
-        picture: file name of the figure of the study that shows the row.
+    Arguments as for `Kind.number`; the interval is infinite at an open end.
     """
     value = float(ours)
     inside = interval[0] <= value <= interval[1]
     deviation = _interval_deviation(interval, value)
     within = None if status == "not testable" else inside
     row = Claim(name, between(interval), value, deviation, within, why, status, "axis interval", interval)
-    return replace(row, inside=inside, place=place, picture=picture)
+    return replace(row, inside=inside)
 
 
 def spread_claim(
-    name: str,
-    interval: Interval,
-    ours: npt.ArrayLike,
-    why: str,
-    *,
-    status: Status = "predicted",
-    place: str = "",
-    picture: str = "",
+    name: str, interval: Interval, ours: npt.ArrayLike, why: str, *, status: Status = "predicted"
 ) -> Claim:
     """Return the row of an extreme of a random signal that is only known to lie between two labels of an axis.
 
     The row agrees when the probability of the interval, estimated from our values, is above 5 %; it is undecided where
-    that depends on the standard error of their mean. A single value is compared as by `interval_claim`.
-
-    Args:
-        name: what is compared, with its unit.
-        interval: lowest and highest value of the published extreme.
-        ours: own values, one for each noise seed or window, (n,), best 8 or more.
-        why: which axis and values, and the reason of a disagreement.
-        status: see `Claim`.
-        place: figure, table or section of the source.
-        picture: file name of the figure of the study that shows the row.
+    that depends on the standard error of their mean. Ours are values of independent noise seeds or windows, (n,), best
+    8 or more; a single value is compared as by `interval_claim`, whose arguments these are.
     """
     values = np.atleast_1d(np.asarray(ours, dtype=float))
     middle = float(np.mean(values))
-    row = interval_claim(name, interval, middle, why, status=status, place=place, picture=picture)
+    row = interval_claim(name, interval, middle, why, status=status)
     if values.size == 1:
         return row
     probability = interval_probability(values, interval)
@@ -209,10 +158,7 @@ def spread_claim(
 def not_contradicted(values: npt.NDArray[np.float64], interval: Interval, error: float = 0.0) -> Verdict:
     """Return the verdict "probability of the interval above 5 %", undecided within two standard errors of the mean.
 
-    Args:
-        values: own values of independent seeds or windows, (n,).
-        interval: lowest and highest published value.
-        error: standard uncertainty of every value from another cause than the seed.
+    Arguments as for `interval_probability`.
     """
     mean_error = float(np.std(values, ddof=1)) / math.sqrt(values.size) if values.size > 1 else 0.0
     return verdict(
@@ -279,25 +225,16 @@ def claim_table(rows: Sequence[Mapping[str, Any]]) -> str:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Findings:
-    """Result of a study.
+    """Result of a study."""
 
-    Attributes:
-        title: heading of the text.
-        claims: rows of published statements with our values.
-        unjudged: name of a row to the reason why short signals cannot judge it; None if all rows are judged.
-        notes: paragraphs below the table.
-        data: further numbers for `results.json`, under their own keys.
-        values: lines for the console, as fitted values.
-        tyres: state of the tyres of the cars, see `tyre_words`.
-    """
-
-    title: str
-    claims: Sequence[Claim]
+    title: str  # heading of the text
+    claims: Sequence[Claim]  # rows of published statements with our values
+    # name of a row to the reason why short signals cannot judge it; None if all rows are judged
     unjudged: Mapping[str, str] | None = field(default_factory=dict)
-    notes: Sequence[str] = ()
-    data: Mapping[str, Any] = field(default_factory=dict)
-    values: Sequence[str] = ()
-    tyres: str = ""
+    notes: Sequence[str] = ()  # paragraphs below the table
+    data: Mapping[str, Any] = field(default_factory=dict)  # further numbers for `results.json`, under their own keys
+    values: Sequence[str] = ()  # lines for the console, as fitted values
+    tyres: str = ""  # state of the tyres of the cars, see `tyre_words`
 
     def write(self, folder: Path) -> str:
         """Write `results.md` and `results.json` without the unjudged rows; return the line to print."""
@@ -317,6 +254,11 @@ class Findings:
         return f"{counts}{f', {len(left)} not judged' if left else ''}{tyres}; see results.md"
 
 
+def placed(rows: Iterable[Claim], place: str, picture: str = "") -> list[Claim]:
+    """Return rows that share place and picture, see `Claim.at`."""
+    return [row.at(place, picture) for row in rows]
+
+
 def between(interval: Interval) -> str:
     """Return an interval in words: "0.4 to 0.6", "0.5 or more"."""
     low, high = interval
@@ -329,17 +271,10 @@ VERDICTS = {True: "yes", False: "NO", None: "undecided"}
 
 
 def cell(row: Mapping[str, Any], name: str) -> str:
-    """Return the text of a member of a row.
-
-    Args:
-        row: the row, see `Claim`.
-        name: name of the member.
-    """
+    """Return the text of a member of a row."""
     value = row[name]
     if name == "within":
-        return (
-            {True: "yes", False: "NO", None: "undecided"}[value] if row["status"] != "not testable" else row["status"]
-        )
+        return VERDICTS[value] if row["status"] != "not testable" else str(row["status"])
     if value is None:
         return ""
     if name == "inside":

@@ -46,21 +46,13 @@ def chosen_engine(asked: str) -> str:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Variation:
-    """Parameter with the values of its variation.
+    """Parameter with the values of its variation."""
 
-    Attributes:
-        name: name of the files.
-        label: label of the axis, with the unit.
-        path: path of the parameter; a component of a vector has the axis as suffix.
-        values: values in the unit of the parameter.
-        figures: figures of Bommer 2006; empty for variations that are not in the thesis.
-    """
-
-    name: str
-    label: str
-    path: str
-    values: tuple[float, ...]
-    figures: str = ""
+    name: str  # name of the files
+    label: str  # label of the axis, with the unit
+    path: str  # path of the parameter; a component of a vector has the axis as suffix
+    values: tuple[float, ...]  # values in the unit of the parameter
+    figures: str = ""  # figures of Bommer 2006; empty for variations that are not in the thesis
 
 
 def changes(vehicle: Vehicle, path: str, value: float) -> Changes:
@@ -70,17 +62,11 @@ def changes(vehicle: Vehicle, path: str, value: float) -> Changes:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Records:
-    """Records of road that every point of a study runs on: common random numbers.
+    """Records of road that every point of a study runs on: common random numbers."""
 
-    Attributes:
-        count: of records; record i has the seed i on both roads.
-        duration: evaluated length of each [s].
-        lead: left out before it [s].
-    """
-
-    count: int
-    duration: float = 60.0
-    lead: float = LEAD_S
+    count: int  # of records; record i has the seed i on both roads
+    duration: float = 60.0  # evaluated length of each [s]
+    lead: float = LEAD_S  # left out before it [s]
 
     def text(self) -> str:
         """Return a text on the records for captions."""
@@ -90,37 +76,22 @@ class Records:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Point:
-    """Means over the records of a car on a road, with standard errors.
+    """Means over the records of a car on a road, with standard errors."""
 
-    Attributes:
-        value: value of the parameter.
-        relative: comfort value over the comfort value of the reference [-].
-        relative_error: standard error of the ratio, from the ratios of the single records [-].
-        comfort: comfort value, `unweighted` [m/s2].
-        weighted: weighted RMS of the seat rail (ISO 2631-1) [m/s2].
-        relative_weighted: `weighted` over that of the reference [-].
-        comfort_error: standard error, from the single records [m/s2].
-        gaussian_error: standard error for a Gaussian road of this length, from the spectrum [m/s2].
-        slip, slip_error: share of the time above the slip velocity, right damper [-].
-        saturated, slip_left: share above 1 mm/s; share above the slip velocity, left damper [-].
-        lowest_load: minimum load of the tyre on the shaker [N].
-        pulling: share of the time with a negative load [-].
-    """
-
-    value: float
-    relative: float
-    relative_error: float
-    comfort: float
-    weighted: float
-    relative_weighted: float
-    comfort_error: float
-    gaussian_error: float
-    slip: float
+    value: float  # value of the parameter
+    relative: float  # comfort value over the comfort value of the reference [-]
+    relative_error: float  # standard error of the ratio, from the ratios of the single records [-]
+    comfort: float  # comfort value, `unweighted` [m/s2]
+    weighted: float  # weighted RMS of the seat rail (ISO 2631-1) [m/s2]
+    relative_weighted: float  # `weighted` over that of the reference [-]
+    comfort_error: float  # standard error, from the single records [m/s2]
+    gaussian_error: float  # standard error for a Gaussian road of this length, from the spectrum [m/s2]
+    slip: float  # slip, slip_error: share of the time above the slip velocity, right damper [-]
     slip_error: float
-    saturated: float
+    saturated: float  # saturated, slip_left: share above 1 mm/s; share above the slip velocity, left damper [-]
     slip_left: float
-    lowest_load: float
-    pulling: float
+    lowest_load: float  # minimum load of the tyre on the shaker [N]
+    pulling: float  # share of the time with a negative load [-]
 
 
 Curves = Mapping[str, Sequence[Point]]

@@ -22,35 +22,24 @@ Topic = Literal["shaker slip", "no slip", "road slip", "bump 7.5 mm", "bump 1.5 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Evidence:
-    """Statement of the thesis as an interval of a quantity.
+    """Statement of the thesis as an interval of a quantity."""
 
-    Attributes:
-        key: short name, for tables and `status_of`.
-        name: name of the compared quantity.
-        unit: unit of the quantity.
-        place: figure, table or section of the thesis.
-        interval: lowest and highest value, as printed or from the labels of an axis; infinite for an open end.
-        topic: stratum of the row.
-        how: computation of our value.
-        error: standard deviation of a normal error of the model, in the unit of the quantity; 0 if the scatter of the
-            input over its unpublished seeds is larger.
-        weight: weight in the sum of log-likelihoods; 1 / k for each of k rows from one curve or run.
-        before: status of the row in both halves: the body was fitted to it, or an earlier choice had it in view; None
-            if neither did.
-        same: key of the row that counts in place of this row: another figure with the same half second of the same
-            road; empty by default.
-    """
-
-    key: str
-    name: str
-    unit: str
-    place: str
-    interval: Interval
-    topic: Topic
-    how: str
+    key: str  # short name, for tables and `status_of`
+    name: str  # name of the compared quantity
+    unit: str  # unit of the quantity
+    place: str  # figure, table or section of the thesis
+    interval: Interval  # lowest and highest value, as printed or from the labels of an axis; infinite for an open end
+    topic: Topic  # stratum of the row
+    how: str  # computation of our value
+    # standard deviation of a normal error of the model, in the unit of the quantity; 0 if the scatter of the input over
+    # its unpublished seeds is larger
     error: float = 0.0
-    weight: float = 1.0
+    weight: float = 1.0  # weight in the sum of log-likelihoods; 1 / k for each of k rows from one curve or run
+    # status of the row in both halves: the body was fitted to it, or an earlier choice had it in view; None if neither
+    # did
     before: Status | None = None
+    # key of the row that counts in place of this row: another figure with the same half second of the same road; empty
+    # by default
     same: str = ""
 
 

@@ -14,9 +14,7 @@ from scenarios.evidence import Evidence, evidence_of, status_of
 from scenarios.interval_probability import AGREES_ABOVE, interval_probability
 
 
-def evidence_claim(
-    key: str, name: str, ours: npt.ArrayLike, why: str, *, printed: float | None = None, picture: str = ""
-) -> Claim:
+def evidence_claim(key: str, name: str, ours: npt.ArrayLike, why: str, *, printed: float | None = None) -> Claim:
     """Return the row of an evidence: it agrees where the probability of its interval is above 5 %.
 
     The probability contains the scatter of ours over its seeds and the error that the evidence states. The row is
@@ -28,13 +26,12 @@ def evidence_claim(
         ours: own value, or one for each seed, (n,); infinite where what is timed never happens.
         why: reason of a disagreement, and how ours was found.
         printed: the number itself where the source prints one, shown instead of the interval.
-        picture: file name of the figure of the study that shows the row.
     """
     evidence, values = evidence_of(key), np.atleast_1d(np.asarray(ours, dtype=float))
     row = interval_claim(name, evidence.interval, float(np.mean(values)), why, status=status_of(key))
     if evidence.same:
         why = f"the half second of {evidence_of(evidence.same).place} again, counted there; {why}"
-    row = replace(row, why=why, place=evidence.place, picture=picture, evidence=key, source=_source(evidence, printed))
+    row = replace(row, why=why, place=evidence.place, evidence=key, source=_source(evidence, printed))
     if printed is not None:
         deviation = (float(np.mean(values)) - printed) / printed if printed else None
         row = replace(row, published=printed, deviation=deviation)
@@ -54,12 +51,7 @@ def evidence_claim(
 
 
 def reason(interval: Interval, trials: Mapping[str, float]) -> str:
-    """Return a text on experiments for a disagreement: our value with each modification, first those in the interval.
-
-    Args:
-        interval: published interval.
-        trials: label of a modification of the model to our value with it.
-    """
+    """Return a text on experiments for a disagreement: our value with each change, those in the interval first."""
     low, high = interval
     texts = {label: f"{label} {value:.3g}" for label, value in trials.items()}
     inside = [texts[label] for label, value in trials.items() if low <= value <= high]

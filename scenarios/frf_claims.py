@@ -59,8 +59,7 @@ def axis_claims(
             value,
             f"{where}; every figure from 3.3 to 3.36 has this axis; {len(names)} outputs, {len(responses)} levels, "
             f"{reasons[word]}",
-            place="figures 3.3 to 3.36",
-        )
+        ).at("figures 3.3 to 3.36")
         for word, extreme in (("largest", max), ("smallest", min))
         for value, where in [extreme(lines, key=itemgetter(0))]
     ]
@@ -110,6 +109,4 @@ def coherence_claim(
         "least median " + ", ".join(f"{value:.2f} ({level})" for level, value in lowest.items()),
         min(lowest.values()) >= SATISFACTORY,
         why,
-        place="section 3.3",
-        picture="knuckle_z.png",
-    )
+    ).at("section 3.3", "knuckle_z.png")

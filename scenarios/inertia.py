@@ -131,17 +131,17 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             published,
             ROUND * ROLL,
             "dampers stuck; 5 %. The source shows roll as a peak of its FRFs: that row is below",
-            place="section 3.2.1.1",
-        ),
+        ).at("section 3.2.1.1"),
         replace(
-            Kind(status_of("rigid_modes"), "text").statement(
+            Kind(status_of("rigid_modes"), "text")
+            .statement(
                 "six rigid body modes",
                 "all below 10 Hz",
                 f"{len(rigid)}: {_list(rigid)} Hz",
                 len(rigid) == 6 and max(rigid) < 10.0,
                 "modes with the largest share of energy in the body, dampers stuck, Ixx 1000",
-                place="table 3.1",
-            ),
+            )
+            .at("table 3.1"),
             evidence="rigid_modes",
         ),
         FITTED.statement(
@@ -151,24 +151,21 @@ def mode_claims(cars: Sequence[Car]) -> list[Claim]:
             len(engine) == 6 and min(engine) >= lowest and max(engine) <= highest,
             "modes with the largest share of energy in the engine, dampers stuck; 5 % beyond the round limits. The "
             "engine brackets were fitted to it",
-            place="section 3.2.1.3",
-        ),
+        ).at("section 3.2.1.3"),
         TABLE.number(
             "hydromount, loss angle at 7 Hz [deg]",
             HYDROMOUNT_LOSS,
             loss_angle(hydromount, 7.0),
             ROUND * HYDROMOUNT_LOSS,
             "from Kz1, Kz2 and Dz2 of appendix F, which are rounded to two digits (1.0e5 N/m): 5 %",
-            place="section 3.2.1.3",
-        ),
+        ).at("section 3.2.1.3"),
         FITTED.statement(
             "flexible modes of the trimmed body",
             "9, from 19 to 43 Hz",
             f"{len(flexible)}, from {flexible[0]:.1f} to {flexible[-1]:.1f} Hz",
             len(flexible) == 9 and bool(np.allclose(flexible[[0, -1]], (19.0, 43.0), atol=0.5)),
             "the free body; its frame was fitted to these frequencies, so this says that the fit was carried through",
-            place="section 3.1.2",
-        ),
+        ).at("section 3.1.2"),
         torsion_claim(cars[0]),
     ]
 
@@ -192,8 +189,7 @@ def torsion_claim(car: Car) -> Claim:
         min(torsion(mode), wheels) >= COUPLED,
         f"shares of kinetic energy, dampers stuck; rule: at least {100.0 * COUPLED:g} % each. The torsion mode of the "
         "frame was fitted to the wheel mode",
-        place="section 3.1.2",
-    )
+    ).at("section 3.1.2")
 
 
 def roll_peak(response: FrequencyResponse, roll: float) -> float:
@@ -230,17 +226,14 @@ def roll_claims(
             published,
             f"simulated; the matrices have it at {modes[0]:.2f} Hz",
             printed=ROLL,
-            picture="seat_rail.png",
-        ),
+        ).at(picture="seat_rail.png"),
         PREDICTED.statement(
             "roll peak of the seat rail FRF, Ixx 1200 against 1000",
             "more than 10 % lower",
             f"{improved:.2f} Hz, {100 * (1 - improved / published):.0f} % lower",
             improved < LARGEST_SHARE * published,
             f"the matrices have it at {matrices} Hz: {roll_text(moments)}",
-            place="figure 3.37",
-            picture="seat_rail.png",
-        ),
+        ).at("figure 3.37", "seat_rail.png"),
         INFERRED.statement(
             "roll peak of the seat rail FRF, Ixx 1200 against the measured 5.8 Hz",
             "nearer to it than with Ixx 1000",
@@ -248,9 +241,7 @@ def roll_claims(
             off[1] < off[0],
             f"the source only says that the fit will improve, and that the decrease is larger than the 10 % it wanted; "
             f"{roll_text(moments)}{f'; experiment, matrices: Ixx {trials}' if trials else ''}",
-            place="figure 3.37",
-            picture="seat_rail.png",
-        ),
+        ).at("figure 3.37", "seat_rail.png"),
     ]
 
 
@@ -305,14 +296,7 @@ TITLES = ("vertical (figure 3.37)", "longitudinal", "lateral")
 def inertia_figure(
     path: Path, runs: Mapping[str, Run], responses: Sequence[FrequencyResponse], rolls: Sequence[float]
 ) -> None:
-    """Write the FRFs of the seat rail, one column for each direction.
-
-    Args:
-        path: PNG file.
-        runs: label to run.
-        responses: FRFs of each, rows as `CHANNELS`.
-        rolls: roll mode of each, dampers stuck [Hz].
-    """
+    """Write the FRFs of the seat rail, one column for each direction."""
     colours = (LEVEL_COLOURS[0], LEVEL_COLOURS[2])
     looks = list(zip(responses, runs, colours, strict=True))
     columns = [

@@ -15,11 +15,7 @@ SAMPLES = 200
 
 
 def make_room(panel: Any) -> None:
-    """Raise the upper limit of a panel until no curve is behind a legend at its upper edge.
-
-    Args:
-        panel: axes with final scales and curves, before the layout is computed.
-    """
+    """Raise the upper limit of a final panel before the layout until no curve is behind a legend at its upper edge."""
     legend = panel.get_legend()
     if legend is None:
         return
@@ -39,12 +35,7 @@ def make_room(panel: Any) -> None:
 
 
 def _highest(line: Any, left: float, right: float) -> float:
-    """Return the highest point of a line between two horizontal positions [dots]; -inf without one.
-
-    Args:
-        line: line of the panel.
-        left, right: positions [dots].
-    """
+    """Return the highest point of a line between two horizontal positions [dots]; -inf without one."""
     points: npt.NDArray[np.float64] = line.get_transform().transform(np.asarray(line.get_xydata(), dtype=float))
     points = points[np.isfinite(points).all(axis=1)]
     if not points.size:

@@ -102,22 +102,14 @@ def less_friction(runs: CarRuns) -> FrequencyResponse:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class LevelNumbers:
-    """Values of one excitation level.
+    """Values of one excitation level."""
 
-    Attributes:
-        slip: share of the time above the slip velocity, right and left damper [-].
-        wheel_hz: frequency [Hz] in `WHEEL_BAND` where the phase of the knuckle falls through 90 deg, or NaN.
-        wheel_peak_hz, wheel_peak: largest line of the knuckle in `WHEEL_BAND` [Hz], [m/s2 per m].
-        body_peak: largest line of the knuckle in `BODY_BAND` [m/s2 per m].
-        damper_ratio: |H| of the damper top over that of the knuckle, geometric mean over `DAMPER_BAND` [-].
-    """
-
-    slip: tuple[float, float]
-    wheel_hz: float
-    wheel_peak_hz: float
+    slip: tuple[float, float]  # share of the time above the slip velocity, right and left damper [-]
+    wheel_hz: float  # frequency [Hz] in `WHEEL_BAND` where the phase of the knuckle falls through 90 deg, or NaN
+    wheel_peak_hz: float  # wheel_peak_hz, wheel_peak: largest line of the knuckle in `WHEEL_BAND` [Hz], [m/s2 per m]
     wheel_peak: float
-    body_peak: float
-    damper_ratio: float
+    body_peak: float  # largest line of the knuckle in `BODY_BAND` [m/s2 per m]
+    damper_ratio: float  # |H| of the damper top over that of the knuckle, geometric mean over `DAMPER_BAND` [-]
 
 
 def numbers(run: Run, response: FrequencyResponse) -> LevelNumbers:
@@ -151,8 +143,7 @@ def other_damper_claim(run: Run) -> Claim:
         abs(ratio - 1.0) <= SAME_FRF,
         f"mean of |H| over |H|, {DAMPER_BAND[0]:g} to {DAMPER_BAND[1]:g} Hz, both to the moving plate; rule as on the "
         "right",
-        place="section 3.2.1.2",
-    )
+    ).at("section 3.2.1.2")
 
 
 def frequency_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
@@ -166,8 +157,7 @@ def frequency_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
             "where the knuckle FRF passes 90 deg. Fitted to it: body torsion, with the plate on the other side, and "
             "the stiffness of the strut tops, with the plate on this side (docs/theory/source-choice.md)",
             printed=WHEEL_HZ,
-            picture=KNUCKLE,
-        ),
+        ).at(picture=KNUCKLE),
         PREDICTED.statement(
             "vertical wheel mode for mid and high against low",
             "lower frequency",
@@ -175,9 +165,7 @@ def frequency_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
             low.wheel_hz > mid.wheel_hz > high.wheel_hz,
             "where the knuckle FRF passes 90 deg; falling from level to level. Largest lines: "
             f"{low.wheel_peak_hz:.1f}, {mid.wheel_peak_hz:.1f}, {high.wheel_peak_hz:.1f} Hz",
-            place="figures 3.29 and 3.30",
-            picture=KNUCKLE,
-        ),
+        ).at("figures 3.29 and 3.30", KNUCKLE),
     ]
 
 
@@ -191,18 +179,14 @@ def order_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
             f"peak {low.wheel_peak:.3g}, {mid.wheel_peak:.3g}, {high.wheel_peak:.3g} (m/s2)/m",
             low.wheel_peak > mid.wheel_peak > high.wheel_peak,
             "the same input in larger: a lower peak is more damping",
-            place="figures 3.29 and 3.30",
-            picture=KNUCKLE,
-        ),
+        ).at("figures 3.29 and 3.30", KNUCKLE),
         PREDICTED.statement(
             "rigid body modes in the knuckle for mid and high against low",
             "less influence, more damped",
             f"peak {low.body_peak:.3g}, {mid.body_peak:.3g}, {high.body_peak:.3g} (m/s2)/m",
             low.body_peak > mid.body_peak > high.body_peak,
             f"largest line of the knuckle FRF in {BODY_BAND[0]:g} to {BODY_BAND[1]:g} Hz",
-            place="figures 3.29 and 3.30",
-            picture=KNUCKLE,
-        ),
+        ).at("figures 3.29 and 3.30", KNUCKLE),
         PREDICTED.statement(
             "damper top against knuckle, low",
             "equal",
@@ -210,18 +194,14 @@ def order_claims(levels: Mapping[str, LevelNumbers]) -> list[Claim]:
             abs(low.damper_ratio - 1.0) <= SAME_FRF,
             f"mean of |H| over |H|, {DAMPER_BAND[0]:g} to {DAMPER_BAND[1]:g} Hz; equal in a figure with log axes: "
             f"{100.0 * SAME_FRF:g} %",
-            place="figure 3.6",
-            picture="damper_top_and_knuckle_z.png",
-        ),
+        ).at("figure 3.6", "damper_top_and_knuckle_z.png"),
         PREDICTED.statement(
             "damper top against knuckle, mid and high",
             "below for mid, further below for high",
             f"ratio {mid.damper_ratio:.3f}, {high.damper_ratio:.3f}",
             high.damper_ratio < mid.damper_ratio < low.damper_ratio,
             "falling from level to level",
-            place="figures 3.27 and 3.28",
-            picture="damper_top_and_knuckle_z.png",
-        ),
+        ).at("figures 3.27 and 3.28", "damper_top_and_knuckle_z.png"),
     ]
 
 
@@ -251,14 +231,7 @@ def channels_of(wheel: str, names: Sequence[str] = CHANNELS) -> tuple[str, ...]:
 def level_figures(
     folder: Path, runs: Mapping[str, Run], responses: Mapping[str, FrequencyResponse], outputs: Sequence[str]
 ) -> None:
-    """Write a figure for each output, and a figure of damper top and knuckle.
-
-    Args:
-        folder: folder of the figures.
-        runs: level to run.
-        responses: level to FRFs, rows as `CHANNELS`.
-        outputs: drawn channels of `OUTPUTS`.
-    """
+    """Write a figure for each output, and a figure of damper top and knuckle."""
     run = next(iter(runs.values()))
     levels = ", ".join(f"{level} {1e3 * run.signal.rms(run.wheel):.3g} mm RMS" for level, run in runs.items())
     note = (

@@ -73,21 +73,13 @@ SINGLE_PANELS = (
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Passage:
-    """Passage over an obstacle.
+    """Passage over an obstacle."""
 
-    Attributes:
-        vehicle: vehicle file.
-        overrides: overrides of the car.
-        engine: engine, see `Car.run`.
-        obstacle: text of the obstacle, see `Obstacle.parse`.
-        speed: speed [km/h].
-    """
-
-    vehicle: Path
-    overrides: tuple[str, ...]
-    engine: str
-    obstacle: str
-    speed: float
+    vehicle: Path  # vehicle file
+    overrides: tuple[str, ...]  # overrides of the car
+    engine: str  # engine, see `Car.run`
+    obstacle: str  # text of the obstacle, see `Obstacle.parse`
+    speed: float  # speed [km/h]
 
     def run(self) -> Run:
         """Run the car, whose tyres lift off."""
@@ -275,12 +267,7 @@ def film_passage(path: Path, run: Run) -> None:
 
 
 def film_pavement(path: Path, car: Car) -> None:
-    """Write a film of a car on the stone pavement of `scenarios.inputs.make_block`, at `FILM_SPEED`.
-
-    Args:
-        path: MP4 file.
-        car: car whose tyres lift off.
-    """
+    """Write a film of a car on the stone pavement of `scenarios.inputs.make_block`, at `FILM_SPEED`."""
     from vehicle.drawing.rendering.crew import drawing_jobs
     from vehicle.drawing.rendering.film import film
     from vehicle.drawing.rendering.shot import Take

@@ -60,16 +60,11 @@ class RoadMeasure:
     the slip velocity, for the damper of `wheel` and the damper of the opposite wheel; `saturated` is the share above
     1 mm/s for the damper of `wheel`; `lowest_load` is the minimum load of its tyre; `pulling` is the share of the time
     with a negative load.
-
-    Attributes:
-        lead: excluded time at the beginning [s].
-        wheel: wheel on the road.
-        timestep: maximum step of the reduced engine [s].
     """
 
-    lead: float
-    wheel: str
-    timestep: float = 5e-4
+    lead: float  # excluded time at the beginning [s]
+    wheel: str  # wheel on the road
+    timestep: float = 5e-4  # maximum step of the reduced engine [s]
 
     @property
     def channels(self) -> tuple[str, ...]:

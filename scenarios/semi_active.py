@@ -86,8 +86,7 @@ class RideMeasure:
     """
 
     wheels: tuple[str, ...]
-    timestep: float = 5e-4
-    """maximum step of the reduced engine [s]"""
+    timestep: float = 5e-4  # maximum step of the reduced engine [s]
 
     @property
     def channels(self) -> tuple[str, ...]:

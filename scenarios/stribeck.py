@@ -18,9 +18,8 @@ from scenarios.bump.runs import FULL, QUICK, SIZES, damper_velocity, relative_ac
 from scenarios.bump.seeds import RECORD, SEEDS
 from scenarios.car_runs import CarRuns
 from scenarios.charts import figure_file
-from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, interval_claim, markdown
+from scenarios.claims import OWN_CHECK, PREDICTED, Claim, Findings, interval_claim, markdown, placed
 from scenarios.interval_probability import AGREES_ABOVE
-from scenarios.places import placed
 from scenarios.signals.bump import BUMP_DURATION_S, BUMP_START_S, bump
 from scenarios.study import car_study, computed_by, setting
 from vehicle.drawing.rendering.figure import COLOURS
@@ -77,12 +76,7 @@ main = car_study("stribeck", study)
 
 
 def phases_of(run: Run, begin: float) -> list[SlipPhase]:
-    """Return the slip phases of the damper over the plate, from the start of the bump.
-
-    Args:
-        run: on the bump.
-        begin: of the bump [s].
-    """
+    """Return the slip phases of the damper over the plate, from the start of the bump."""
     return slip_phases(
         run.time,
         damper_velocity(run),
@@ -94,12 +88,7 @@ def phases_of(run: Run, begin: float) -> list[SlipPhase]:
 
 
 def counts_of_seeds(runs: CarRuns, count: int) -> dict[str, list[int]]:
-    """Return the number of extra peaks with each law for seeds of the unpublished noise; a compiler is needed.
-
-    Args:
-        runs: the car.
-        count: seeds.
-    """
+    """Return the number of extra peaks with each law for seeds of the unpublished noise; a compiler is needed."""
     wheel = runs.wheel
     channels = [f"{point}_{wheel}_acc_{axis}" for point in ("damper_top", "knuckle") for axis in AXES]
     counts: dict[str, list[int]] = {}
@@ -134,13 +123,7 @@ def force_error(run: Run) -> float:
 def peak_claims(
     runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]], counts: Mapping[str, Sequence[int]]
 ) -> list[Claim]:
-    """Return the rows on the extra peak with each law, and on the simulated force against the law.
-
-    Args:
-        runs: law to the pictured run.
-        phases: law to its slides.
-        counts: law to the number of extra peaks of each further seed of the noise.
-    """
+    """Return the rows on the extra peak with each law, and on the simulated force against the law."""
     rule = (
         f"an extremum of the relative acceleration 5 to {1e3 * SEARCHED:g} ms after the end of stick with a prominence "
         f"of at least {100 * STANDING_OUT:g} % of the largest break-away jump of its run"
@@ -159,9 +142,7 @@ def peak_claims(
                 sum(as_printed) / len(as_printed) > AGREES_ABOVE,
                 f"share of the seeds above {100.0 * AGREES_ABOVE:g} %; {rule}; largest jump "
                 f"{max((phase.jump for phase in phases[name]), default=0.0):.2f} m/s2",
-                place="figure 3.38",
-                picture="relative_acceleration.png",
-            )
+            ).at("figure 3.38", "relative_acceleration.png")
         )
     errors = {name: force_error(run) for name, run in runs.items()}
     claims.append(
@@ -211,14 +192,7 @@ DETAIL = (-0.01, 0.08)
 
 
 def peak_figure(path: Path, runs: Mapping[str, Run], phases: Mapping[str, list[SlipPhase]], start: float) -> None:
-    """Write the relative acceleration over the bump, and magnified after the first three ends of stick.
-
-    Args:
-        path: PNG file.
-        runs: law to run.
-        phases: law to slips.
-        start: of the bump [s].
-    """
+    """Write the relative acceleration over the bump, and magnified after the first three ends of stick."""
     shift = BUMP_START_S - start
     note = (
         "A = 7.5 mm; acceleration of the damper top relative to the knuckle along the strut axis; circles: extra "

@@ -66,13 +66,7 @@ def main_of(name: str) -> Callable[[list[str] | None], int]:
 
 
 def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
-    """Return a parser with the common options of studies.
-
-    Args:
-        name: name of the study; results go to runs/<name> without --output.
-        quick: help text of --quick.
-        jobs: addition to the help text of --jobs.
-    """
+    """Return a parser with the common options of studies."""
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
     output_options(parser, Path("runs") / name)
     parser.add_argument("--quick", action="store_true", help=quick)
@@ -83,16 +77,12 @@ def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Study(Generic[Subject]):
-    """Study as a command.
+    """Study as a command."""
 
-    Attributes:
-        parser: parser of the options.
-        load: function of the options that returns the subject of the study; called before the folder is created.
-        study: function that computes, writes figures into the folder and returns the findings, or a line to print.
-    """
-
-    parser: Parser
+    parser: Parser  # parser of the options
+    # function of the options that returns the subject of the study; called before the folder is created
     load: Callable[[argparse.Namespace], Subject]
+    # function that computes, writes figures into the folder and returns the findings, or a line to print
     study: Callable[[Subject, Path, argparse.Namespace], Findings | str]
 
     def __call__(self, arguments: list[str] | None = None) -> int:

@@ -66,21 +66,13 @@ SHARE = 0.2
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Parameter:
-    """A parameter of the chart.
+    """A parameter of the chart."""
 
-    Attributes:
-        label: with its unit.
-        path: of the parameter.
-        ends: its two values, where they are not the nominal one -20 and +20 %.
-        reason: why not.
-        power: the value follows (1 -+ 20 %) to this power.
-    """
-
-    label: str
-    path: str
-    ends: tuple[float, float] | None = None
-    reason: str = ""
-    power: float = 1.0
+    label: str  # with its unit
+    path: str  # of the parameter
+    ends: tuple[float, float] | None = None  # its two values, where they are not the nominal one -20 and +20 %
+    reason: str = ""  # why not
+    power: float = 1.0  # the value follows (1 -+ 20 %) to this power
 
 
 PARAMETERS = (
@@ -107,21 +99,14 @@ PARAMETERS = (
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Bar:
-    """Parameter with the comfort values at its two ends.
+    """Parameter with the comfort values at its two ends."""
 
-    Attributes:
-        label: with its unit.
-        nominal, low, high: values of the parameter.
-        reason: reason for ends other than -20 and +20 %.
-        at_low, at_high: road to point at each end; the error is NaN for a single record.
-    """
-
-    label: str
-    nominal: float
+    label: str  # with its unit
+    nominal: float  # nominal, low, high: values of the parameter
     low: float
     high: float
-    reason: str
-    at_low: Mapping[str, Point]
+    reason: str  # reason for ends other than -20 and +20 %
+    at_low: Mapping[str, Point]  # at_low, at_high: road to point at each end; the error is NaN for a single record
     at_high: Mapping[str, Point]
 
     def swing(self, road: str) -> float:
@@ -174,9 +159,7 @@ def tornado_claims(bars: Sequence[Bar]) -> list[Claim]:
                 ", ".join(f"{road} {100.0 * low:.1f} to {100.0 * high:.1f} %" for road, (low, high) in pairs.items()),
                 all((high > low) == rising for low, high in pairs.values()),
                 f"relative comfort value from {bar.low:g} to {bar.high:g}",
-                place="chapter 4",
-                picture="tornado.png",
-            )
+            ).at("chapter 4", "tornado.png")
         )
     return claims
 
@@ -206,13 +189,7 @@ LOW_COLOUR, HIGH_COLOUR = COLOURS[0], COLOURS[3]
 
 
 def draw_tornado(path: Path, comfort: ComfortRuns, bars: Sequence[Bar]) -> None:
-    """Write the chart: a row for each parameter, a column for each road, the largest swing on top.
-
-    Args:
-        path: PNG file.
-        comfort: what made the bars.
-        bars: sorted.
-    """
+    """Write the chart: a row for each parameter, a column for each road, the largest swing on top."""
     levels = " and ".join(f"{1e3 * rms:g} mm RMS ({road})" for road, rms in ROAD_RMS.items())
     caption = (
         f"Change of the comfort value (RMS of the seat rail, x, y and z, unweighted, {COMFORT_BAND[0]:g} to "

@@ -45,17 +45,14 @@ def slip_claims(bumps: Bumps, seeds: BumpSeeds) -> list[Claim]:
             "where the relative acceleration leaves zero. The reading of the printed amplitude as height was chosen by "
             "it and by the 1.5 mm bump",
             printed=FIRST_SLIP,
-            picture="friction.png",
-        ),
+        ).at(picture="friction.png"),
         PREDICTED.statement(
             "bump 7.5 mm, first slip against Fd",
             "later for a larger Fd, earlier for a smaller one",
             ", ".join(f"{friction:g} N {np.mean(times):.3f} s" for friction, times in ends.items()),
             rising,
             f"end of sticking, means of {low.size} seeds; rising from value to value in every seed",
-            place="figure 3.12",
-            picture="friction.png",
-        ),
+        ).at("figure 3.12", "friction.png"),
         no_slip_claim(bumps, low),
     ]
 
@@ -77,8 +74,7 @@ def no_slip_claim(bumps: Bumps, low: Vector) -> Claim:
         f"is saturated and sticking ends. The shipped bump reaches {1e3 * fastest(pictured):.2f} mm/s and is above "
         f"{1e3 * SATURATED_VELOCITY:g} mm/s for {1e3 * saturated_time(pictured):.0f} ms. The reading of the printed "
         "amplitude as height was chosen by it",
-        picture="relative_acceleration.png",
-    )
+    ).at(picture="relative_acceleration.png")
     return replace(row, within=common(low <= limit))
 
 
@@ -100,10 +96,10 @@ def extreme_claims(seeds: BumpSeeds, trials: Mapping[str, Mapping[str, float]]) 
             for column, word in enumerate(("lowest", "highest")):
                 key, ours = row_key(size, point, word), seeds.extremes[size, point][:, column]
                 row = f"bump {1e3 * size:g} mm, {word} {name} [m/s2]"
-                claim = evidence_claim(key, row, ours, AXIS, picture=picture_of(point))
+                claim = evidence_claim(key, row, ours, AXIS).at(picture=picture_of(point))
                 if not claim.within and trials:
                     why = reason(evidence_of(key).interval, {label: values[key] for label, values in trials.items()})
-                    claim = evidence_claim(key, row, ours, f"{AXIS}; {why}", picture=picture_of(point))
+                    claim = evidence_claim(key, row, ours, f"{AXIS}; {why}").at(picture=picture_of(point))
                 claims.append(claim)
     return claims
 
@@ -137,25 +133,21 @@ def ring_down_claims(bumps: Bumps) -> Iterator[Claim]:
         point = min(low, key=lambda motion: low[motion] / high[motion]) if name == WEAKEST else name
         why = f"definition below the table; {said}" if said else left_ringing(bumps.quiet[1], bumps.record.end, point)
         ratio = low[point] / high[point]
-        yield (PREDICTED if name == "engine" else OWN_CHECK).statement(
-            f"ring-down to 20 %, 1.5 mm against 7.5 mm, {name.replace('_', ' ')}",
-            "much longer (at least twice)",
-            f"{point.replace('_', ' ')}: {low[point]:.2f} s against {high[point]:.2f} s, {ratio:.1f} times",
-            ratio >= RATIO,
-            why,
-            place=source_place,
-            picture="ring_down.png",
+        yield (
+            (PREDICTED if name == "engine" else OWN_CHECK)
+            .statement(
+                f"ring-down to 20 %, 1.5 mm against 7.5 mm, {name.replace('_', ' ')}",
+                "much longer (at least twice)",
+                f"{point.replace('_', ' ')}: {low[point]:.2f} s against {high[point]:.2f} s, {ratio:.1f} times",
+                ratio >= RATIO,
+                why,
+            )
+            .at(source_place, "ring_down.png")
         )
 
 
 def left_ringing(run: Run, end: float, point: str) -> str:
-    """Return a text on the motion of a point that remains when the damper finally sticks after the high bump.
-
-    Args:
-        run: run of the high bump without noise.
-        end: end of the bump [s].
-        point: output point, or "body" for the RMS over the whole body.
-    """
+    """Return a text on the motion of a point that remains when the damper finally sticks after the high bump."""
     sliding = run.time[np.abs(damper_velocity(run)) > SATURATED_VELOCITY]
     stuck = max(float(sliding[-1]), end) if sliding.size else end
     status = "own check"

@@ -62,26 +62,13 @@ SHOWN = (-0.25, 3.25)
 
 
 def excerpt(run: Run, start: float, shown: tuple[float, float], values: Vector) -> tuple[Vector, Vector]:
-    """Return times, shifted to a bump that begins at 5 s, and values of a time window.
-
-    Args:
-        run: run on a bump.
-        start: start of the bump [s].
-        shown: begin and end of the window after the start of the bump [s].
-        values: values of every sample, (n,).
-    """
+    """Return times, shifted to a bump that begins at 5 s, and values, (n,), of a window after its start [s]."""
     keep = (run.time >= start + shown[0]) & (run.time <= start + shown[1])
     return run.time[keep] + BUMP_START_S - start, values[keep]
 
 
 def history_figures(folder: Path, bumps: Bumps, seeds: BumpSeeds) -> None:
-    """Write the figures of the time histories of all points, the low bump on the left and the high bump on the right.
-
-    Args:
-        folder: folder of the figures.
-        bumps: runs on both bumps.
-        seeds: extremes over further seeds, drawn as bars next to the published intervals.
-    """
+    """Write the figures of the time histories of all points, the low bump on the left, the high bump on the right."""
     start = bumps.record.start
     for name, title, channels in (
         ("histories_vertical", "Vertical accelerations", VERTICAL),
@@ -223,12 +210,6 @@ SHOWN_BUMP = 0.06
 
 def side_by_side(path: Path, runs: Sequence[Run], *, start: float, duration: float) -> None:
     """Write the film as H.264 in MP4.
-
-    Args:
-        path: MP4 file.
-        runs: low and high bump, with poses.
-        start: first time shown [s].
-        duration: length of the film [s].
 
     Raises:
         MissingPartError: no off-screen OpenGL library or no ffmpeg.

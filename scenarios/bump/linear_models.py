@@ -26,12 +26,7 @@ Errors = Mapping[str, Mapping[float, list[float]]]
 
 
 def linear_errors(runs: CarRuns, count: int) -> Errors:
-    """Return the RMS of the difference of the seat rail to the nonlinear car over its RMS, 3 s from the bump.
-
-    Args:
-        runs: runs of the car; the reduced engine.
-        count: number of seeds of the noise.
-    """
+    """Return the RMS of the difference of the seat rail to the nonlinear car over its RMS, 3 s from the bump."""
     errors: dict[str, dict[float, list[float]]] = {name: {size: [] for size in SIZES} for name in LINEAR}
     for size in SIZES:
         for seed in range(count):
@@ -61,6 +56,4 @@ def linear_claim(errors: Errors) -> Claim:
         f"rule: off by more than {100.0 * UNUSABLE:g} % of the RMS in each of {len(errors['slip'][low])} seeds; one "
         "set of parameters. At 7.5 mm the damper sticks again between its slides, so the slip model is off there too: "
         "it needs other parameters for each level, as the source says of its own",
-        place="section 3.5",
-        picture="histories_vertical.png",
-    )
+    ).at("section 3.5", "histories_vertical.png")

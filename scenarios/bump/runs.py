@@ -62,14 +62,7 @@ class Record:
         return self.start + BUMP_DURATION_S
 
     def signal(self, size: float, reading: Reading, wheel: str, *, noise: bool = True) -> Signal:
-        """Return a bump of amplitude A [m], with or without the noise of the thesis.
-
-        Args:
-            size: A [m].
-            reading: of the printed formula.
-            wheel: that it drives.
-            noise: whether there is noise.
-        """
+        """Return a bump of amplitude A [m], with or without the noise of the thesis."""
         duration, level = (self.noisy, NOISE_RMS) if noise else (self.quiet, 0.0)
         signal = bump(
             amplitude=size, reading=reading, duration=duration, start=self.start, noise_rms=level, wheel=wheel
@@ -88,22 +81,14 @@ OTHER: dict[Reading, Reading] = {"height": "literal", "literal": "height"}
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Bumps:
-    """Runs of the study, low bump before high one; times read off them are as if the bump began at 5 s.
+    """Runs of the study, low bump before high one; times read off them are as if the bump began at 5 s."""
 
-    Attributes:
-        record: times of the bump.
-        noisy, quiet: with and without the random noise.
-        other: with noise, in the other reading of the printed formula.
-        other_reading: name of it.
-        by_friction: friction limit [N] to the high bump.
-    """
-
-    record: Record
-    noisy: Sequence[Run]
+    record: Record  # times of the bump
+    noisy: Sequence[Run]  # noisy, quiet: with and without the random noise
     quiet: Sequence[Run]
-    other: Sequence[Run]
-    other_reading: Reading
-    by_friction: Mapping[float, Run]
+    other: Sequence[Run]  # with noise, in the other reading of the printed formula
+    other_reading: Reading  # name of it
+    by_friction: Mapping[float, Run]  # friction limit [N] to the high bump
 
     @property
     def slip_velocity(self) -> float:

@@ -40,20 +40,15 @@ LOW_EDGE_HZ = 1.5
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BumpSeeds:
-    """Values of the bump runs over all seeds.
+    """Values of the bump runs over all seeds."""
 
-    Attributes:
-        extremes: (amplitude A of the bump [m], key of the point) to lowest and highest acceleration [m/s2], (n, 2).
-        fastest: amplitude A to the largest velocity of the damper over the shaker plate [m/s], (n,).
-        stick_end: friction limit [N] to the end of sticking for a high bump that begins at 5 s [s], (n,);
-            infinite without slip.
-        engine: engine of the runs.
-    """
-
+    # (amplitude A of the bump [m], key of the point) to lowest and highest acceleration [m/s2], (n, 2)
     extremes: Mapping[tuple[float, str], Vector]
+    # amplitude A to the largest velocity of the damper over the shaker plate [m/s], (n,)
     fastest: Mapping[float, Vector]
+    # friction limit [N] to the end of sticking for a high bump that begins at 5 s [s], (n,); infinite without slip
     stick_end: Mapping[float, Vector]
-    engine: str
+    engine: str  # engine of the runs
 
     @property
     def count(self) -> int:
@@ -73,13 +68,9 @@ class BumpSeeds:
 
 
 def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], count: int = SEEDS) -> BumpSeeds:
-    """Run both bumps with many seeds of the noise, and the high bump also with other friction limits.
+    """Run both bumps with many seeds of the noise, and the high bump also with other friction limits [N].
 
-    Args:
-        runs: runs of the car, with the reduced engine: the parts rotate by less than its limit of validity.
-        reading: of the printed amplitude.
-        frictions: friction limits Fd [N].
-        count: number of seeds.
+    With the reduced engine: the parts rotate by less than its limit of validity.
     """
     engine = "reduced"
     ends: dict[float, list[float]] = {friction: [] for friction in frictions}
@@ -107,14 +98,7 @@ def many_seeds(runs: CarRuns, reading: Reading, frictions: Sequence[float], coun
 
 
 def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeeds) -> dict[str, Mapping[str, float]]:
-    """Return label of a modification to means of the extremes by "A in mm, key of the point, word".
-
-    Args:
-        runs: the car.
-        reading: of the printed amplitude.
-        other: the other reading of it.
-        seeds: names the points, and the engine.
-    """
+    """Return label of a modification to means of the extremes by "A in mm, key of the point, word"."""
     changed = {label: runs.car(changes) for label, changes in EXPERIMENTS.items()}
     trials: dict[str, tuple[Car, Reading, float, float]] = {
         f"{other} reading": (runs.car(), other, NOISE_RMS, SHAKER_EDGE_HZ),
@@ -137,24 +121,12 @@ def experiments(runs: CarRuns, reading: Reading, other: Reading, seeds: BumpSeed
 
 
 def row_key(size: float, point: str, word: str) -> str:
-    """Return the key of `scenarios.evidence` of an end of a panel.
-
-    Args:
-        size: A of the bump [m].
-        point: its key.
-        word: "lowest" or "highest".
-    """
+    """Return the key of `scenarios.evidence` of an end of a panel."""
     return f"bump_{'7p5' if size == SIZES[1] else '1p5'}_{point}_{word}"
 
 
 def motions(car: Car, signal: Signal, engine: str) -> dict[str, Vector]:
-    """Return accelerations [m/s2] by key of the point, and damper velocity over the plate [m/s], 3 s from the bump.
-
-    Args:
-        car: the car.
-        signal: of `RECORD`.
-        engine: of the run.
-    """
+    """Return accelerations [m/s2] by key of the point, and damper velocity over the plate [m/s], 3 s from the bump."""
     (wheel,) = signal.displacement
     channels = {
         "seat_rail_x": "seat_rail_acc_x",

@@ -156,13 +156,7 @@ def degressive_points(comfort: ComfortRuns) -> dict[str, Point]:
 def beyond_findings(
     comfort: ComfortRuns, folder: Path, linear: Mapping[str, Curves]
 ) -> tuple[list[str], dict[str, Any]]:
-    """Draw the figures into the folder; notes and data of the findings.
-
-    Args:
-        comfort: what runs the cars.
-        folder: where to.
-        linear: curves of Bommer 2006, with the linear damper.
-    """
+    """Draw the figures into the folder; notes and data of the findings."""
     against = degressive_points(comfort)
     damper = comfort.runs.car(DEGRESSIVE).vehicle.damper
     ratios = (

@@ -59,9 +59,7 @@ def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
             ", ".join(f"{100.0 * point.relative:.1f}" for point in points) + " %",
             is_monotone(points, rising=rising),
             "from point to point by more than twice the standard error of both",
-            place=f"figure {FIGURES[name, road]}",
-            picture=f"{name}.png",
-        )
+        ).at(f"figure {FIGURES[name, road]}", f"{name}.png")
         for name, rising in RISING.items()
         for road, points in curves[name].items()
     ]
@@ -78,9 +76,7 @@ def order_claims(curves: Mapping[str, Curves]) -> list[Claim]:
                 f"range {smooth:.1f} against {rough:.1f} points",
                 abs(rough - smooth) <= SAME_INFLUENCE * smooth if name == "mount_stiffness" else smooth > rough,
                 why,
-                place=f"figures {FIGURES[name, 'smooth']} and {FIGURES[name, 'rough']}",
-                picture=f"{name}.png",
-            )
+            ).at(f"figures {FIGURES[name, 'smooth']} and {FIGURES[name, 'rough']}", f"{name}.png")
         )
     return trends
 
@@ -90,31 +86,22 @@ Trials = Mapping[str, Mapping[tuple[str, str, float], float]]
 
 
 def size_claims(curves: Mapping[str, Curves], trials: Trials | None = None) -> list[Claim]:
-    """Return the rows on relative comfort at the ends of the curves.
-
-    Args:
-        curves: variation to its points.
-        trials: the same with a part of the model changed, as evidence for the reason of a disagreement.
-    """
+    """Return the rows on relative comfort at the ends of the curves, with trials as evidence for a disagreement."""
     claims = []
     for name, word, road, _, value, interval in COMFORT_ENDS:
         point = _at(curves[name][road], value)
         row = (f"comfort_{name}_{road}_{value:g}".replace("+0", ""), _end_name(word, value, road))
         why = f"standard error {100.0 * point.relative_error:.2f}"
-        claim = evidence_claim(*row, 100.0 * point.relative, why, picture=f"{name}.png")
+        claim = evidence_claim(*row, 100.0 * point.relative, why).at(picture=f"{name}.png")
         if not claim.within and trials:
             why += f"; {reason(interval, {label: values[name, road, value] for label, values in trials.items()})}"
-            claim = evidence_claim(*row, 100.0 * point.relative, why, picture=f"{name}.png")
+            claim = evidence_claim(*row, 100.0 * point.relative, why).at(picture=f"{name}.png")
         claims.append(claim)
     return claims
 
 
 def degressive_claim(points: Mapping[str, Point]) -> Claim:
-    """Return the row on the degressive damper in the complete car, which the source recommends and does not compute.
-
-    Args:
-        points: road to the car with the damper of equation C.1, relative to that with the linear damper.
-    """
+    """Return the row on the degressive damper in the complete car, which the source recommends and does not compute."""
     return NOT_TESTABLE.statement(
         "degressive damper in the complete car: comfort value over that with the linear damper",
         "recommended, not computed",
@@ -125,8 +112,7 @@ def degressive_claim(points: Mapping[str, Point]) -> Claim:
         None,
         "the source has this damper for the quarter car only; ours with the numbers of appendix C.2, ± two standard "
         "errors",
-        place="section 5",
-    )
+    ).at("section 5")
 
 
 def _end_name(word: str, value: float, road: str) -> str:

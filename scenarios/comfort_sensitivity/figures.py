@@ -48,17 +48,7 @@ def draw_variation(
     title: str = "",
     beside: Mapping[str, Curves] | None = None,
 ) -> None:
-    """Write the figure of a parameter: seat rail over time, its spectrum, relative comfort; a column for each road.
-
-    Args:
-        path: PNG file.
-        comfort: runs of the cars.
-        variation: varied parameter.
-        curves: points of the variation.
-        base: overrides of all cars.
-        title: title of the figure, by default that of the variation.
-        beside: label to further curves of relative comfort.
-    """
+    """Write the figure of a parameter: seat rail over time, its spectrum, relative comfort; a column for each road."""
     cars = comfort.cars(variation, base)
     step = max(1, -(-len(cars) // SHOWN))
     shown = {value: car for index, (value, car) in enumerate(cars.items()) if index % step == 0}
@@ -138,13 +128,7 @@ def draw_band_edge(path: Path, comfort: ComfortRuns, shares: Mapping[str, Sequen
 
 
 def draw_wheel(path: Path, comfort: ComfortRuns, levels: Mapping[str, RoadLevels]) -> None:
-    """Write the figure of the spectra of the wheel on both roads, with what was measured on asphalt and cobbles.
-
-    Args:
-        path: PNG file.
-        comfort: how the cars were run.
-        levels: of both roads.
-    """
+    """Write the figure of the spectra of the wheel on both roads, with what was measured on asphalt and cobbles."""
     caption = (
         f"Vertical acceleration of the knuckle over the plate, nominal car, {comfort.records.text()}; Welch, Hann "
         f"windows of {SPECTRUM_WINDOW_S:g} s, half overlapping. "

@@ -44,34 +44,22 @@ MEASURED_PEAKS = {"asphalt": 20.0, "cobbles": 13.0}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RoadLevels:
-    """Values of the time histories on one road, over all records.
+    """Values of the time histories on one road, over all records."""
 
-    Attributes:
-        largest: figure to the largest |vertical acceleration of the seat rail| over its cars in each 0.5 s
-            [m/s2], (w,).
-        seat_rail: (parameter, value) to the RMS of the vertical acceleration of the seat rail in each record [m/s2],
-            (records,).
-        apart: (parameter, value) to the RMS of the difference to the nominal car [m/s2], (records,).
-        swing: highest less lowest displacement of the road in each 30 s [m], (s,).
-        frequency, wheel: lines [Hz] and mean PSD of the vertical acceleration of the knuckle [(m/s2)2/Hz], (n,).
-    """
-
+    # figure to the largest |vertical acceleration of the seat rail| over its cars in each 0.5 s [m/s2], (w,)
     largest: Mapping[str, Vector]
+    # (parameter, value) to the RMS of the vertical acceleration of the seat rail in each record [m/s2], (records,)
     seat_rail: Mapping[tuple[str, float], Vector]
+    # (parameter, value) to the RMS of the difference to the nominal car [m/s2], (records,)
     apart: Mapping[tuple[str, float], Vector]
-    swing: Vector
+    swing: Vector  # highest less lowest displacement of the road in each 30 s [m], (s,)
+    # frequency, wheel: lines [Hz] and mean PSD of the vertical acceleration of the knuckle [(m/s2)2/Hz], (n,)
     frequency: Vector
     wheel: Vector
 
 
 def ends_of(comfort: ComfortRuns, variation: Variation, base: Changes = ()) -> dict[float, Changes]:
-    """Return value of the parameter to overrides, for the cars at both ends of a variation and the nominal car.
-
-    Args:
-        comfort: runs of the cars.
-        variation: varied parameter.
-        base: overrides of all cars.
-    """
+    """Return value of the parameter to overrides, for the cars at both ends of a variation and the nominal car."""
     cars = comfort.cars(variation, base)
     kept = {variation.values[0], variation.values[-1]}
     return {value: car for value, car in cars.items() if value in kept or car == base}
@@ -124,20 +112,18 @@ def _levels_of(comfort: ComfortRuns, road: str) -> RoadLevels:
 def level_claims(levels: Mapping[str, RoadLevels], trials: Mapping[str, Mapping[str, float]]) -> list[Claim]:
     """Return the rows on the level of the seat rail on both roads, and on the swing of the road.
 
-    Args:
-        levels: values of the histories on both roads.
-        trials: label of a modification to the mean of each figure, as evidence for the reason of a disagreement.
+    Trials, label of a modification to the mean of each figure, are evidence for the reason of a disagreement.
     """
     rows = []
     for figure, name, road, *_ in LEVELS:
         key, ours = f"level_{figure.replace('.', '_')}", levels[road].largest[figure]
         row = f"largest |seat rail, vertical| in {WINDOW_S:g} s of all curves of figure {figure}, {road} road [m/s2]"
         why = f"nominal car and both ends of {TITLES[name]}; the label is that of an axis that holds all curves"
-        claim = evidence_claim(key, row, ours, why, picture=f"{name}.png")
+        claim = evidence_claim(key, row, ours, why).at(picture=f"{name}.png")
         if not claim.within and trials:
             means = {label: values[figure] for label, values in trials.items()}
             why += f"; means of {reason(evidence_of(key).interval, means)}"
-            claim = evidence_claim(key, row, ours, why, picture=f"{name}.png")
+            claim = evidence_claim(key, row, ours, why).at(picture=f"{name}.png")
         rows.append(claim)
     rough = levels["rough"].swing * SWING_RMS / ROAD_RMS["rough"]
     smooth = 1e3 * np.median(levels["smooth"].swing)
@@ -175,9 +161,7 @@ def _lower(levels: Mapping[str, RoadLevels], variation: Variation, figure: str, 
         ", ".join(f"{value:g}: {np.mean(row):.3f}" for value, row in zip(values, rows, strict=True)) + " m/s2",
         bool(np.all(steps > 0.0) if rising else np.all(steps < 0.0)),
         "RMS of the vertical acceleration alone, unfiltered; in every record",
-        place=f"figure {figure}",
-        picture=f"{variation.name}.png",
-    )
+    ).at(f"figure {figure}", f"{variation.name}.png")
 
 
 def _share(level: RoadLevels, name: str) -> float:
@@ -204,9 +188,7 @@ def _clearer(levels: Mapping[str, RoadLevels], variation: Variation, figure: str
         f"{100.0 * rough:.0f} % of the nominal motion, {100.0 * smooth:.0f} % on the smooth road",
         rough < smooth,
         "RMS of the largest difference to the nominal car over its RMS",
-        place=f"figure {figure}",
-        picture=f"{variation.name}.png",
-    )
+    ).at(f"figure {figure}", f"{variation.name}.png")
 
 
 def _small(levels: Mapping[str, RoadLevels], variation: Variation, others: Sequence[Variation]) -> Claim:
@@ -220,9 +202,7 @@ def _small(levels: Mapping[str, RoadLevels], variation: Variation, others: Seque
         max(shares.values()) < smallest,
         f"RMS as above; smaller on both roads than every difference with Fd or mount stiffness (at least "
         f"{100.0 * smallest:.0f} %)",
-        place="figures 4.5 and 4.6",
-        picture=f"{variation.name}.png",
-    )
+    ).at("figures 4.5 and 4.6", f"{variation.name}.png")
 
 
 def wheel_modes(comfort: ComfortRuns) -> dict[float, float]:
@@ -245,8 +225,7 @@ def amplification_claim(nominal: Mapping[str, Point]) -> Claim:
         ", ".join(f"{road} {value:.4f} m/s2 per mm" for road, value in amplification.items()),
         amplification["smooth"] > amplification["rough"],
         "comfort value of the nominal car over the RMS of the road; one road at two levels",
-        place="chapter 4",
-    )
+    ).at("chapter 4")
 
 
 def stiffness_claim(wheel_mode: Mapping[float, float]) -> Claim:
@@ -258,8 +237,7 @@ def stiffness_claim(wheel_mode: Mapping[float, float]) -> Claim:
         ", ".join(f"{value:g} N/m: {wheel_mode[value]:.1f} Hz" for value in values),
         bool(np.all(np.diff([wheel_mode[value] for value in values]) > 0.0)),
         "matrices, dampers stuck: phase of the knuckle FRF through 90 degrees",
-        place="section 4.3",
-    )
+    ).at("section 4.3")
 
 
 def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
@@ -276,9 +254,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
             peaks[road][0],
             1.0,
             f"{unknown} (the {road} road of chapter 4)",
-            place="figure 2.1",
-            picture="wheel.png",
-        )
+        ).at("figure 2.1", "wheel.png")
         for (surface, printed), road in zip(MEASURED_PEAKS.items(), ROAD_RMS, strict=True)
     ]
     (low, narrow), (high, wide) = peaks["smooth"], peaks["rough"]
@@ -290,9 +266,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
             high < low and wide / high > narrow / low,
             "the trend of figure 2.1 and its reason, the friction of the damper, on the roads of chapter 4; more "
             "damped: a larger width over frequency",
-            place="figure 2.1",
-            picture="wheel.png",
-        )
+        ).at("figure 2.1", "wheel.png")
     )
     rows.append(
         NOT_TESTABLE.statement(
@@ -301,9 +275,7 @@ def wheel_claims(levels: Mapping[str, RoadLevels]) -> list[Claim]:
             ", ".join(f"{road} {value:.1f} m/s2" for road, value in sizes.items()),
             False,
             "the measured values are not printed",
-            place="chapter 4",
-            picture="wheel.png",
-        )
+        ).at("chapter 4", "wheel.png")
     )
     return rows
 

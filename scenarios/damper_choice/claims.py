@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim
+from scenarios.claims import CHOSEN, COMPARED, FITTED, PREDICTED, Claim, placed
 from scenarios.damper_choice.experiments import rear_experiment, wheel_experiments
 from scenarios.damper_choice.fit import FRONT_RATIOS, QUARTER_RATIOS, REAR_RATIOS
 from scenarios.damper_choice.optimum import Optimum
@@ -17,7 +17,6 @@ from scenarios.damper_choice.runs import HALF_DAMPING, QUARTER_DAMPING, RoadHold
 from scenarios.lumped.damper_choice import DamperChoiceParameters
 from scenarios.lumped.half_car_rider_model import ENDS
 from scenarios.lumped.road_holding import half_car_model, printed_load_fluctuation, quarter_car_model
-from scenarios.places import placed
 from scenarios.verdict import common
 
 Array = npt.NDArray[np.float64]
@@ -58,13 +57,7 @@ def ratio_claims(parameters: DamperChoiceParameters) -> list[Claim]:
 def quarter_response_claims(
     parameters: DamperChoiceParameters, lines: Array, responses: dict[float, Array]
 ) -> list[Claim]:
-    """Return the rows on figures 2 and 3.
-
-    Args:
-        parameters: parameters of the quarter car.
-        lines: frequencies [Hz], (m,).
-        responses: damping [N s/m] to |response| of wheel and body, (2, m).
-    """
+    """Return the rows on figures 2 and 3: damping [N s/m] to |response| of wheel and body over lines [Hz], (2, m)."""
     wheel = np.array([responses[c][0] for c in QUARTER_DAMPING])
     body = np.array([responses[c][1] for c in QUARTER_DAMPING])
     rows = _regions("quarter car wheel", lines, wheel, 2.0, "2 to 3 Hz")
@@ -127,13 +120,10 @@ def half_response_claims(
     responses: dict[float, Array],
     other: Refit | None = None,
 ) -> list[Claim]:
-    """Return the rows on figures 5 to 8.
+    """Return the rows on figures 5 to 8: damping [N s/m] to |response| over lines [Hz], (4, m).
 
-    Args:
-        parameters: parameters of the half car.
-        lines: frequencies [Hz], (m,).
-        responses: damping [N s/m] to |response| of front wheel, rear wheel, heave and pitch, (4, m).
-        other: vehicle fitted to these rows as well, the experiment for a row that disagrees.
+    The coordinates are front wheel, rear wheel, heave and pitch. The other vehicle, fitted to these rows as well, is
+    the experiment for a row that disagrees.
     """
     stack = np.array([responses[c] for c in HALF_DAMPING])  # (damping, coordinate, line)
     rows = []
@@ -154,9 +144,7 @@ def half_response_claims(
             f"{HALF_DAMPING[0]:.0f} N s/m",
             masses[1] > masses[0] and hop[1] < hop[0],
             "the masses are fitted to the printed R, optima and axes",
-            place="figures 5 and 6",
-            picture=PICTURES[5],
-        )
+        ).at("figures 5 and 6", PICTURES[5])
     )
     heave, pitch = stack[:, 2].max(axis=1), stack[:, 3].max(axis=1)
     dampings = ", ".join(f"{c:.0f}" for c in HALF_DAMPING)
@@ -167,9 +155,7 @@ def half_response_claims(
             f"pitch {_values(pitch)} rad/m, heave {_values(heave)} m/m at {dampings} N s/m",
             bool(np.all(np.diff(pitch) > 0.0) and np.all(np.diff(heave) < 0.0)),
             "equal dampers at unequal arms couple heave and pitch through c (a - b); the springs nearly balance",
-            place="figures 7 and 8",
-            picture=PICTURES[5],
-        )
+        ).at("figures 7 and 8", PICTURES[5])
     )
     rows.append(
         FITTED.number(
@@ -178,9 +164,7 @@ def half_response_claims(
             float(lines[stack[:, 2].argmax(axis=1)].mean()),
             0.5,
             "printed as the frequency of the quarter car; read from an axis with ticks every 5 Hz",
-            place="figure 7",
-            picture=PICTURES[5],
-        )
+        ).at("figure 7", PICTURES[5])
     )
     return rows
 
@@ -216,21 +200,13 @@ def quarter_optimum_claims(parameters: DamperChoiceParameters, road_holding: Roa
                 not bool(np.all(np.diff(signed) > 0.0)),
                 "bands in which the wheel moves more than the road count negative, so the signed sum only rises with "
                 "damping; the printed curves must come from magnitudes, and R as printed is taken with them",
-                place="equation 10",
-            )
+            ).at("equation 10")
         )
     return placed(rows, "figure 9", PICTURES[9])
 
 
 def _steeper(name: str, measure: str, best: Optimum, damping: Array, curve: Array) -> Claim:
-    """Return the row on the flanks of a curve of R, undecided where the distance from the optimum turns it.
-
-    Args:
-        name: vehicle.
-        measure: name of the measure.
-        best: optimum of the curve.
-        damping, curve: the curve [N s/m], [-], (m,).
-    """
+    """Return the row on the flanks of a curve of R, undecided where the distance from the optimum turns it."""
     rises = {
         distance: [float(np.interp(best.damping + side * distance, damping, curve)) - best.value for side in (-1, 1)]
         for distance in ASIDE
@@ -286,9 +262,7 @@ def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
                 step.damping,
                 READING,
                 why,
-                place=f"figure {figure}",
-                picture=ITERATION,
-            )
+            ).at(f"figure {figure}", ITERATION)
         )
     rows.append(
         row_maker.statement(
@@ -298,9 +272,7 @@ def half_optimum_claims(road_holding: RoadHolding, measure: str) -> list[Claim]:
             + ", ".join(f"{s.changed} {s.damping:.0f}" for s in road_holding.read_off),
             len(road_holding.read_off) == 3,
             "each end read among multiples of 250 N s/m, as printed",
-            place="section 4.2",
-            picture=ITERATION,
-        )
+        ).at("section 4.2", ITERATION)
     )
     return rows
 
@@ -310,11 +282,7 @@ def rate_claims(
 ) -> list[Claim]:
     """Return the rows on the values of R of the printed measure.
 
-    Args:
-        parameters: vehicle, road, bands.
-        found: printed measure on the highway.
-        at_front: R with 4000 N s/m at both ends.
-        at_rear: R with 3250 N s/m at both ends.
+    `at_front` and `at_rear` are R with 4000 and with 3250 N s/m at both ends.
     """
     first, second, third = road_holding.read_off[:3]
     rows = []

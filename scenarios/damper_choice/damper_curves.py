@@ -14,13 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from scenarios.charts import chart, lines
-from scenarios.claims import NOT_TESTABLE, Claim
+from scenarios.claims import NOT_TESTABLE, Claim, placed
 from scenarios.lumped.damper_choice import DamperChoiceParameters
 from scenarios.lumped.fixed_step_solution import fixed_step_solution
 from scenarios.lumped.half_car_rider_model import axle_links
 from scenarios.lumped.network import ROAD, Network, masses_of
 from scenarios.lumped.road_holding import exponential_density, quarter_car_model
-from scenarios.places import placed
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.engines.linear.system import Slide
 
@@ -70,25 +69,15 @@ class FourSlopes:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Compared:
-    """Three dampers of `NAMES` on the same roads; leading axis the damper.
+    """Three dampers of `NAMES` on the same roads; leading axis the damper."""
 
-    Attributes:
-        velocity: RMS of the damper with one coefficient [m/s]; the knee of the second damper.
-        slow_share: share of its square below 3 Hz, where the body moves [-].
-        curves: velocity [m/s], (m,), and force of each damper [N], (3, m).
-        tyre_load: RMS tyre force over static load [-], (3, seeds).
-        height: mean height of the body over its static one [m], (3, seeds).
-        time: of the first road [s], (n,).
-        body: height of the body on it [m], (3, n).
-    """
-
-    velocity: float
-    slow_share: float
-    curves: tuple[Array, Array]
-    tyre_load: Array
-    height: Array
-    time: Array
-    body: Array
+    velocity: float  # RMS of the damper with one coefficient [m/s]; the knee of the second damper
+    slow_share: float  # share of its square below 3 Hz, where the body moves [-]
+    curves: tuple[Array, Array]  # velocity [m/s], (m,), and force of each damper [N], (3, m)
+    tyre_load: Array  # RMS tyre force over static load [-], (3, seeds)
+    height: Array  # mean height of the body over its static one [m], (3, seeds)
+    time: Array  # of the first road [s], (n,)
+    body: Array  # height of the body on it [m], (3, n)
 
 
 def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compared:
@@ -97,10 +86,6 @@ def compare_curves(parameters: DamperChoiceParameters, duration: float) -> Compa
     The damper with two slopes does the same work as the one with one coefficient c at a Gaussian velocity v of the
     same RMS: E[F v] = E[v^2] E[dF/dv], so that c = ch + (cl - ch) P(|v| < knee), 68 % at a knee of one RMS. The damper
     with the larger coefficient in rebound has the mean c, and so also does the same work.
-
-    Args:
-        parameters: quarter car, highway and bands.
-        duration: duration of each road [s].
     """
     car, wheel = parameters.quarter_car, parameters.quarter_car.wheel
     c = wheel.suspension_damping

@@ -35,13 +35,7 @@ def rear_experiment(parameters: DamperChoiceParameters) -> str:
 
 
 def wheel_experiments(parameters: DamperChoiceParameters, lines: Array, end: int) -> tuple[str, str]:
-    """Return the texts of the experiments for the two rows on a wheel of the half car.
-
-    Args:
-        parameters: parameters of the half car.
-        lines: frequencies [Hz], (m,).
-        end: 0 for front, 1 for rear.
-    """
+    """Return the texts of the experiments for the two rows on the front (0) or rear (1) wheel of the half car."""
     ratios = (FRONT_RATIOS, REAR_RATIOS)[end]
     scale = np.mean([c / ratio for c, ratio in ratios.items()])
     damped = half_responses(parameters, lines, [float(scale * ratio) for ratio in QUARTER_RATIOS.values()])

@@ -27,24 +27,18 @@ SEARCHED = (500.0, 12000.0)
 class Optimum:
     """Least value of a measure over one damper coefficient."""
 
-    damping: float
-    """[N s/m]."""
-    value: float
-    """The measure there [-]."""
+    damping: float  # [N s/m]
+    value: float  # The measure there [-]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
     """One step of the front/rear iteration."""
 
-    changed: str
-    """"front" or "rear": end of the optimised damper, whose tyre load is minimised."""
-    front: float
-    """Front damper coefficient after the step [N s/m]."""
-    rear: float
-    """Rear damper coefficient after the step [N s/m]."""
-    fluctuation: tuple[float, float]
-    """Measure of the front and the rear tyre after the step [-]."""
+    changed: str  # "front" or "rear": end of the optimised damper, whose tyre load is minimised
+    front: float  # Front damper coefficient after the step [N s/m]
+    rear: float  # Rear damper coefficient after the step [N s/m]
+    fluctuation: tuple[float, float]  # Measure of the front and the rear tyre after the step [-]
 
     @property
     def damping(self) -> float:

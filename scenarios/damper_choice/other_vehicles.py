@@ -37,18 +37,13 @@ SCALE = 0.02
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Refit:
-    """Vehicle fitted to the rows on the wheels as well.
+    """Vehicle fitted to the rows on the wheels as well."""
 
-    Attributes:
-        holds: (end, row of `region_verdicts`) to the verdict with this vehicle.
-        before, after: sum of squared residuals of the remaining printed numbers, shipped and fitted vehicle [-].
-        vehicle: text on the vehicle.
-    """
-
-    holds: dict[tuple[int, int], bool]
+    holds: dict[tuple[int, int], bool]  # (end, row of `region_verdicts`) to the verdict with this vehicle
+    # before, after: sum of squared residuals of the remaining printed numbers, shipped and fitted vehicle [-]
     before: float
     after: float
-    vehicle: str
+    vehicle: str  # text on the vehicle
 
     def text(self, end: int, row: int) -> str:
         """Return the text of the experiment for a row."""
@@ -65,12 +60,9 @@ class Refit:
 
 
 def region_verdicts(lines: Array, curves: Array, low_edge: float) -> tuple[bool, bool]:
-    """Return whether the curves of a wheel show no effect of damping at first, and change their order at 6 Hz.
+    """Return whether the curves of a wheel show no effect of damping below an edge [Hz], and change order at 6 Hz.
 
-    Args:
-        lines: [Hz], (m,).
-        curves: magnitudes over rising damping, (n, m).
-        low_edge: no effect below this frequency [Hz].
+    Curves are magnitudes over rising damping, (n, m), at lines [Hz], (m,).
     """
     softest, firmest = curves[0], curves[-1]
     middle, high = (lines > 3.0) & (lines < 5.0), lines > 8.0
@@ -81,11 +73,7 @@ def region_verdicts(lines: Array, curves: Array, low_edge: float) -> tuple[bool,
 
 
 def fitted_to_wheels(parameters: DamperChoiceParameters) -> Refit:
-    """Repeat the fit of the half car with the rows on its wheels, from the shipped vehicle.
-
-    Args:
-        parameters: shipped vehicle, road and bands.
-    """
+    """Repeat the fit of the half car with the rows on its wheels, from the shipped vehicle."""
     road, bands, start = parameters.highway, parameters.bands, half_car_values(parameters.half_car)
 
     def others(values: Array) -> Array:

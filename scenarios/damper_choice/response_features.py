@@ -16,10 +16,7 @@ def spread_of(curves: Array) -> Array:
 def crossing(lines: Array, softest: Array, firmest: Array) -> float:
     """Return the highest line up to 12 Hz at which the firmest damper moves the wheel more than the softest [Hz].
 
-    Args:
-        lines: [Hz], (m,).
-        softest: magnitude with the lowest damping, (m,).
-        firmest: magnitude with the highest damping, (m,).
+    Both are magnitudes, (m,), at lines [Hz], (m,).
     """
     return float(lines[np.flatnonzero((firmest > softest) & (lines < 12.0))[-1]])
 
@@ -30,11 +27,6 @@ def last_peak(lines: Array, curve: Array) -> float:
 
 
 def local_peaks(lines: Array, curve: Array) -> list[float]:
-    """Return the frequencies of all local maxima [Hz].
-
-    Args:
-        lines: [Hz], (m,).
-        curve: magnitude, (m,).
-    """
+    """Return the frequencies of all local maxima of a magnitude, (m,), at lines, (m,) [Hz]."""
     inner = curve[1:-1]
     return [float(lines[i + 1]) for i in np.flatnonzero((inner > curve[:-2]) & (inner > curve[2:]))]

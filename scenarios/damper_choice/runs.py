@@ -55,18 +55,13 @@ MEASURES: dict[str, Callable[[RoadHoldingModel, ExponentialRoad, FrequencyBands]
 class RoadHolding:
     """Curves and optima of a measure on a road."""
 
-    damping: Array
-    """Abscissa of the curves [N s/m], shape (m,)."""
-    quarter: Array
-    """Quarter car over damping [-], shape (m,)."""
-    equal: Array
-    """Front and rear tyre of the half car with equal dampers [-], shape (2, m)."""
+    damping: Array  # Abscissa of the curves [N s/m], shape (m,)
+    quarter: Array  # Quarter car over damping [-], shape (m,)
+    equal: Array  # Front and rear tyre of the half car with equal dampers [-], shape (2, m)
     quarter_optimum: Optimum
     equal_optima: tuple[Optimum, Optimum]
-    read_off: list[Step]
-    """Iteration among the values of `READ_OFF`, as in the source."""
-    continuous: list[Step]
-    """Iteration over all coefficients."""
+    read_off: list[Step]  # Iteration among the values of `READ_OFF`, as in the source
+    continuous: list[Step]  # Iteration over all coefficients
     joint: tuple[float, float, Array]
     """Front and rear coefficient of the least sum of both tyres [N s/m], measures there."""
 
@@ -79,16 +74,7 @@ def quarter_responses(parameters: DamperChoiceParameters, lines: Array) -> dict[
 def half_responses(
     parameters: DamperChoiceParameters, lines: Array, dampings: Sequence[float] = HALF_DAMPING
 ) -> dict[float, Array]:
-    """Return |response| of front wheel, rear wheel, heave, pitch with equal dampers.
-
-    Args:
-        parameters: the half car.
-        lines: [Hz], (m,).
-        dampings: [N s/m]; those of figures 5 to 8 by default.
-
-    Returns:
-        Damping -> (4, m).
-    """
+    """Return damping [N s/m] to |response| of front wheel, rear wheel, heave, pitch with equal dampers, (4, m)."""
     return {c: np.abs(half_car_model(parameters.half_car, c, c).response(lines)) for c in dampings}
 
 
@@ -102,14 +88,7 @@ def half_car_measure(parameters: DamperChoiceParameters, measure: str, road: Exp
 def road_holding(
     parameters: DamperChoiceParameters, measure: str, road: ExponentialRoad, damping: Sequence[float]
 ) -> RoadHolding:
-    """Compute the curves and optima of a measure on a road.
-
-    Args:
-        parameters: parameters of the vehicles, and bands.
-        measure: "printed" or "physical".
-        road: displacement PSD of the road.
-        damping: damping coefficients of the curves [N s/m].
-    """
+    """Compute the curves and optima of a measure on a road."""
     rate = MEASURES[measure]
     both = half_car_measure(parameters, measure, road)
 
@@ -142,12 +121,6 @@ def complete_car_quarter(vehicle: Vehicle) -> RoadHoldingQuarterCar:
     The sprung mass is the share of body and engine on one front wheel between front wheels and rear supports; spring
     and damper act along the strut, at the wheel with the square of the cosine of its angle. Neglected: the flexible
     body, the engine on its mounts, the friction of the damper, the suspension mount and the stabilizer.
-
-    Args:
-        vehicle: the complete car.
-
-    Returns:
-        The quarter car.
     """
     points, parts = vehicle.points, {part.name: part for part in vehicle.composition.parts}
     rear, engine = points["rear_support_right"][0], parts["engine"]
@@ -182,12 +155,9 @@ EDGES = np.geomspace(0.1, 50.0, 801)
 class TradeOff:
     """Measures of one car over damping for every road class."""
 
-    damping: Array
-    """[N s/m], shape (m,)."""
-    measures: dict[str, list[RideMeasures]]
-    """Road class -> one for each damping."""
-    own: float
-    """Damping of the car itself [N s/m]."""
+    damping: Array  # [N s/m], shape (m,)
+    measures: dict[str, list[RideMeasures]]  # Road class -> one for each damping
+    own: float  # Damping of the car itself [N s/m]
 
     def best(self, name: str) -> float:
         """Return the damping of the minimum of a measure, equal for all classes, as their PSDs are proportional."""
@@ -195,12 +165,7 @@ class TradeOff:
 
 
 def trade_off(car: RoadHoldingQuarterCar, damping: npt.ArrayLike) -> TradeOff:
-    """Return the measures of a quarter car over damping on all classes of ISO 8608.
-
-    Args:
-        car: quarter car.
-        damping: damper coefficients [N s/m].
-    """
+    """Return the measures of a quarter car over damping on all classes of ISO 8608."""
     lines = np.asarray(np.sqrt(EDGES[1:] * EDGES[:-1]), dtype=np.float64)
     width = np.diff(EDGES)
     coefficients = np.asarray(damping, dtype=np.float64)

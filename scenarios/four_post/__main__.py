@@ -48,22 +48,14 @@ TOO_SHORT = f"{QUICK_DURATION:g} s of signal do not resolve the peaks of a car w
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Found:
-    """Results of one car on the rig.
+    """Results of one car on the rig."""
 
-    Attributes:
-        car: the car.
-        runs: runs of all motions and levels.
-        exact: FRFs from the matrices.
-        modes: state of the dampers to modes.
-        peaks: peaks of the lowest level, matched with the matrices with stuck dampers.
-        distances: (motion, level, state) to the distance of the FRFs of run and matrices [dB].
-    """
-
-    car: Car
-    runs: Sequence[OneRun]
-    exact: Exact
-    modes: dict[str, list[Mode]]
-    peaks: Sequence[Matched]
+    car: Car  # the car
+    runs: Sequence[OneRun]  # runs of all motions and levels
+    exact: Exact  # FRFs from the matrices
+    modes: dict[str, list[Mode]]  # state of the dampers to modes
+    peaks: Sequence[Matched]  # peaks of the lowest level, matched with the matrices with stuck dampers
+    # (motion, level, state) to the distance of the FRFs of run and matrices [dB]
     distances: dict[tuple[str, float, str], float]
 
 

@@ -27,15 +27,7 @@ def level_words(level: float) -> str:
 
 
 def response_figure(path: Path, car: Car, runs: Sequence[OneRun], exact: Exact, caption: str) -> None:
-    """Draw the transmissibility of body and wheel carriers to each motion of the plates, from runs and matrices.
-
-    Args:
-        path: PNG file.
-        car: the car.
-        runs: runs of the lowest and highest level of each motion, with FRFs.
-        exact: FRFs of `matrix_response` by motion and state of the dampers.
-        caption: conditions of the curves.
-    """
+    """Draw the transmissibility of body and wheel carriers to each motion of the plates, from runs and matrices."""
     title = f"{car.vehicle.name} on four posts: displacement over that of the plates"
     with figure_file(path, (15.0, 9.0), title, caption) as figure:
         rows = max(len(channels_of(car, motion)) for motion in MOTIONS)
@@ -65,14 +57,7 @@ def response_figure(path: Path, car: Car, runs: Sequence[OneRun], exact: Exact, 
 
 
 def slip_figure(path: Path, car: Car, runs: Sequence[OneRun], caption: str) -> None:
-    """Draw slip shares of the dampers and comfort value over the level, a line for each motion.
-
-    Args:
-        path: PNG file.
-        car: the car.
-        runs: runs of all levels.
-        caption: definitions of slip and level.
-    """
+    """Draw slip shares of the dampers and comfort value over the level, a line for each motion."""
     with figure_file(path, (12.5, 4.6), f"{car.vehicle.name} on four posts: does it slide?", caption) as figure:
         front, rear, comfort = figure.subplots(1, 3)
         for motion, colour, mark in zip(MOTIONS, COLOURS, "os^D", strict=False):

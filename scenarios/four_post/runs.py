@@ -49,44 +49,26 @@ PROMINENCE_DB = 6.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OneRun:
-    """Values of a run on the rig.
+    """Values of a run on the rig."""
 
-    Attributes:
-        motion: name of the motion of the plates.
-        level: displacements over those of a road of class A.
-        engine: engine of the run.
-        slip: wheel to share of the time with |v| of its damper above the slip velocity.
-        comfort: unfiltered RMS of the seat rail, 2 to 50 Hz, all axes [m/s2].
-        response: FRFs of `channels_of` to the common motion [m/s2 per m]; None if not estimated.
-    """
-
-    motion: str
-    level: float
-    engine: str
-    slip: dict[str, float]
-    comfort: float
-    response: FrequencyResponse | None
+    motion: str  # name of the motion of the plates
+    level: float  # displacements over those of a road of class A
+    engine: str  # engine of the run
+    slip: dict[str, float]  # wheel to share of the time with |v| of its damper above the slip velocity
+    comfort: float  # unfiltered RMS of the seat rail, 2 to 50 Hz, all axes [m/s2]
+    response: FrequencyResponse | None  # FRFs of `channels_of` to the common motion [m/s2 per m]; None if not estimated
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Matched:
-    """Peak of the FRF from the matrices with the matching mode and the matching peak of a run.
+    """Peak of the FRF from the matrices with the matching mode and the matching peak of a run."""
 
-    Attributes:
-        motion: name of the motion.
-        channel: acceleration channel of the FRF.
-        state: of the dampers in the matrices.
-        peak: of the matrices.
-        mode: mode nearest in frequency; None if no mode is within `NEAR`.
-        found: peak of the run; None if no peak is within `NEAR`.
-    """
-
-    motion: str
-    channel: str
-    state: str
-    peak: Peak
-    mode: Mode | None
-    found: Peak | None
+    motion: str  # name of the motion
+    channel: str  # acceleration channel of the FRF
+    state: str  # of the dampers in the matrices
+    peak: Peak  # of the matrices
+    mode: Mode | None  # mode nearest in frequency; None if no mode is within `NEAR`
+    found: Peak | None  # peak of the run; None if no peak is within `NEAR`
 
     @property
     def deviation(self) -> float | None:
@@ -111,16 +93,7 @@ def channels_of(car: Car, motion: str) -> tuple[str, ...]:
 
 
 def run_motion(car: Car, motion: str, level: float, *, duration: float, engine: str, response: bool = True) -> OneRun:
-    """Run a car on the rig.
-
-    Args:
-        car: car with wheels at four corners.
-        motion: name in `MOTIONS`.
-        level: displacements over those of a road of class A.
-        duration: duration of the run [s].
-        engine: engine, see `Car.run`.
-        response: True to estimate FRFs.
-    """
+    """Run a car on the rig for a duration [s], with an engine of `Car.run`; FRFs only on demand."""
     asked = channels_of(car, motion)
     dampers = [
         damper_wheel for damper_wheel in MOTIONS[motion] if f"damper_{damper_wheel}_velocity" in car.vehicle.channels
@@ -164,15 +137,7 @@ def distance_db(response: FrequencyResponse, exact: npt.NDArray[np.complex128]) 
 def matched_peaks(
     car: Car, one: OneRun, state: str, exact: npt.NDArray[np.complex128], modes: Sequence[Mode]
 ) -> list[Matched]:
-    """Match the peaks of the transmissibility from the matrices with peaks of a run and with modes, by channel.
-
-    Args:
-        car: the car.
-        one: run with FRFs.
-        state: of the dampers in the matrices.
-        exact: FRFs of `matrix_response`.
-        modes: modes of the car in that state.
-    """
+    """Match the peaks of the transmissibility from the matrices with peaks of a run and with modes, by channel."""
     response = one.response
     assert response is not None
     size = (2.0 * np.pi * response.frequency) ** 2

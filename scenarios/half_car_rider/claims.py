@@ -83,9 +83,7 @@ def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Clai
                 f"upper {upper:.3g} {unit}, lower {lower:.3g} {unit}",
                 upper > lower,
                 _why_upper(car, quantity),
-                place=f"figure {figure}",
-                picture=f"figure_{figure:02d}.png",
-            )
+            ).at(f"figure {figure}", f"figure_{figure:02d}.png")
         )
     (seat, body), stiffer, slower = (
         [peak(simulated.acceleration(n)) for n in ("seat", "body")]
@@ -100,9 +98,7 @@ def base_case_claims(car: HalfCarRiderParameters, history: History) -> list[Clai
             "the seat is not printed; the assumed one isolates from the pulse of the bump. With a seat of "
             f"{STIFF_SEAT:.0f} N/m it would be {stiffer[0]:.3g} against {stiffer[1]:.3g} m/s2, with the assumed one at "
             f"{SLOWER[0]:.0f} km/h {slower[0]:.3g} against {slower[1]:.3g} m/s2",
-            place="figure 10",
-            picture="figure_10.png",
-        )
+        ).at("figure 10", "figure_10.png")
     )
     return rows + settling_claims(car, history)
 
@@ -142,9 +138,7 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
             factors,
             reasons[parameter],
             LITTLE * np.abs(change["sprung_mass", limb]),
-            place=f"figure {_first_figure(parameter) + column}",
-            picture=_picture(parameter),
-        )
+        ).at(f"figure {_first_figure(parameter) + column}", _picture(parameter))
         for parameter, direction in DIRECTIONS.items()
         for column, limb in enumerate(("upper", "lower"))
     ]
@@ -156,9 +150,7 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
             factors,
             reasons[parameter] if row_maker is PREDICTED else "the text on the figures agrees",
             row_maker=row_maker,
-            place="section 4",
-            picture=_picture(parameter),
-        )
+        ).at("section 4", _picture(parameter))
         for parameter, (direction, row_maker) in CONCLUSIONS.items()
         for limb in ("upper", "lower")
     ]
@@ -173,9 +165,7 @@ def dose_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence[f
                 f"mean change {mass:.1%}, {stiffness:.1%} against {unsprung:.1%}",
                 bool(min(mass, stiffness) > unsprung),
                 "mean over the five speeds of the magnitude of the change from 80 to 120 %",
-                place="abstract, section 3.2",
-                picture=_picture("unsprung_mass"),
-            )
+            ).at("abstract, section 3.2", _picture("unsprung_mass"))
         )
     return rows
 
@@ -199,9 +189,7 @@ def travel_claims(car: HalfCarRiderParameters, studied: Study, factors: Sequence
             _changes(studied[parameter], "travel"),
             factors,
             _why_travel(car, parameter, factors),
-            place=f"figure {23 + index}",
-            picture="figure_23_24_25_travel.png",
-        )
+        ).at(f"figure {23 + index}", "figure_23_24_25_travel.png")
         for index, (parameter, direction) in enumerate(TRAVEL_DIRECTIONS.items())
     ]
 
@@ -215,8 +203,6 @@ def _direction(
     little: Array | float = 0.0,
     *,
     row_maker: Kind = PREDICTED,
-    place: str,
-    picture: str,
 ) -> Claim:
     """Return the row on the effect of a parameter at every speed; "little" is below given effects."""
     agrees = {"little": np.abs(change) < little, "rises": change > 0.0, "falls": change < 0.0}[direction]
@@ -224,7 +210,7 @@ def _direction(
     speeds = ", ".join(f"{speed:.0f}" for speed in SPEEDS)
     ours = f"{_percent(change)} % from {factors[0]:.0%} to {factors[-1]:.0%}, at {speeds} km/h"
     why = f"rule: {rule} at every speed; {why}"
-    return row_maker.statement(name, direction, ours, bool(np.all(agrees)), why, place=place, picture=picture)
+    return row_maker.statement(name, direction, ours, bool(np.all(agrees)), why)
 
 
 def _percent(change: Array) -> str:
@@ -314,18 +300,14 @@ def speed_claims(
             "the impulse h0 wb 2 / (pi v) k that reaches the body falls as 1 / v. The dose value is largest at "
             f"{scan['speed'][peak]:.0f} km/h ({scan['upper'][peak]:.2f}, {at_peak:.0f} ms on the bump) and falls from "
             "there on, with linear and with one-sided tyres",
-            place="figures 11 to 22, section 4",
-            picture="speed.png",
-        ),
+        ).at("figures 11 to 22, section 4", "speed.png"),
         COMPARED.statement(
             "VDV of 15 m/s^1.75 is severe discomfort",
             "limit of BS 6841",
             f"largest of the study {max(upper):.2f} m/s^1.75",
             max(upper) < 15.0,
             "one bump stays far below the limit; unweighted acceleration, as in the source",
-            place="section 3.2",
-            picture="speed.png",
-        ),
+        ).at("section 3.2", "speed.png"),
     ]
 
 
@@ -339,16 +321,11 @@ def matrix_claim(car: HalfCarRiderParameters) -> Claim:
         printed < 0.0,
         "typing errors: neither is symmetric and the pitch damping is negative, so the printed equations grow for "
         "ever; the figures of the source cannot come from them as they stand",
-        place="equation 16",
-    )
+    ).at("equation 16")
 
 
 def law_claim(doses: Mapping[str, Sequence[float]]) -> Claim:
-    """Return the row on the control law of the title, which is not printed.
-
-    Args:
-        doses: law to the dose value of the upper body at `SPEEDS` [m/s^1.75].
-    """
+    """Return the row on the control law of the title, which is not printed."""
     return NOT_TESTABLE.statement(
         "semi-active suspension: control forces uf and ur",
         "a magneto-rheological damper, no law",
@@ -356,8 +333,7 @@ def law_claim(doses: Mapping[str, Sequence[float]]) -> Claim:
         None,
         "the title and equations 4 to 7 have control forces, but no law and no number of a damper is printed; VDV of "
         f"the upper body with usual laws at {_list(SPEEDS)} km/h, all numbers assumed",
-        place="section 2",
-    )
+    ).at("section 2")
 
 
 def _list(values: Sequence[float]) -> str:

@@ -54,16 +54,12 @@ DURATION = 5.0
 class Outcome:
     """Dose values, travel and lift-off of a passage over the bump."""
 
-    upper_vdv: float
-    """Vibration dose value of the upper limb [m/s^1.75]."""
-    lower_vdv: float
-    """The same of the lower limb."""
-    travel: float
-    """Largest magnitude of the suspension travel, front or rear [m]."""
+    upper_vdv: float  # Vibration dose value of the upper limb [m/s^1.75]
+    lower_vdv: float  # The same of the lower limb
+    travel: float  # Largest magnitude of the suspension travel, front or rear [m]
     lift_off: tuple[tuple[tuple[float, float], ...], tuple[tuple[float, float], ...]]
     """Intervals in which the front and the rear wheel leave the road [s]."""
-    least_load: tuple[float, float]
-    """Least load of a tyre glued to the road, front and rear [N]."""
+    least_load: tuple[float, float]  # Least load of a tyre glued to the road, front and rear [N]
 
 
 def passive(car: HalfCarRiderParameters, speed: float) -> History:
@@ -77,10 +73,7 @@ def outcome(
 ) -> Outcome:
     """Return dose values, travel and lift-off of a passage over the bump.
 
-    Args:
-        car: the car.
-        history: its motion.
-        measure: function of time step [s] and acceleration [m/s2] in place of the dose value.
+    The measure, a function of time step [s] and acceleration [m/s2], may replace the dose value.
     """
     step = float(history.time[1] - history.time[0])
     loads = linear_tyre_load(car, history)
@@ -114,16 +107,10 @@ def parameter_study(
     law: str = PASSIVE,
     measure: Callable[[float, Array], float] = vibration_dose_value,
 ) -> Mapping[str, list[list[Outcome]]]:
-    """Return the outcomes over every varied parameter, speed and factor.
+    """Return the outcomes over every varied parameter, speed and factor: parameter -> speed -> factor -> outcome.
 
-    Args:
-        car: base case.
-        factors: of the varied parameter [-].
-        law: "passive" for the exact response, else a law of `semi_active`.
-        measure: in place of the dose value, passive cars only; see `outcome`.
-
-    Returns:
-        Parameter -> speed -> factor -> outcome.
+    With a law of `semi_active`, or "passive" for the exact response; a measure in place of the dose value is for
+    passive cars only.
     """
     cases = [(name, speed, factor) for name in VARIED for speed in SPEEDS for factor in factors]
     cars = [varied(car, name, factor) for name, _, factor in cases]
@@ -186,15 +173,7 @@ def settling_time(time: npt.ArrayLike, signal: npt.ArrayLike, band: float) -> fl
 
 
 def base_case_table(car: HalfCarRiderParameters, history: History) -> dict[str, dict[str, Any]]:
-    """Return peaks and settling times of every output point.
-
-    Args:
-        car: base case.
-        history: motion of the car.
-
-    Returns:
-        Place -> quantity -> peak magnitude [m, m/s2; rad, rad/s2 for pitch] and settling time [s] for each band.
-    """
+    """Return peaks [m, m/s2; rad, rad/s2] and settling times [s] for each band: output point -> quantity -> values."""
     quantities: tuple[Motion, ...] = ("displacement", "acceleration")
 
     def row(signal: Array) -> dict[str, Any]:

@@ -50,13 +50,7 @@ def seats(car: HalfCarRiderParameters) -> list[HalfCarRiderParameters]:
 
 
 def with_experiment(rows: Sequence[Claim], car: HalfCarRiderParameters, rows_of: Rows) -> list[Claim]:
-    """Return the rows; the reason of a disagreement contains the seats and measures for which the row holds.
-
-    Args:
-        rows: rows of the study.
-        car: car of the source with the assumed seat.
-        rows_of: function of a car, and of a measure in place of the dose value, that returns the rows again.
-    """
+    """Return the rows; the reason of a disagreement contains the seats and measures for which the row holds."""
     tried = [{row.name: row for row in rows_of(seated_car)} for seated_car in seats(car)]
     measured = {name: {row.name: row for row in rows_of(car, measure=measure)} for name, measure in MEASURES.items()}
     return [

@@ -37,12 +37,7 @@ ORDER: tuple[tuple[str, str, Motion, int], ...] = (
 
 
 def settling_claims(car: HalfCarRiderParameters, history: History) -> list[Claim]:
-    """Return the rows on the settling times of the base case, and on the later of two settling times.
-
-    Args:
-        car: car of the base case.
-        history: passive motion of the car.
-    """
+    """Return the rows on the settling times of the base case, and on the later of two settling times."""
     delay = (car.body.front_arm + car.body.rear_arm) / (SPEEDS[0] * KMH)
     return [*(_time(history, *row) for row in SETTLING), *(_order(history, delay, *row) for row in ORDER)]
 
@@ -62,8 +57,8 @@ def _time(history: History, point: str, quantity: Motion, printed: float, limit:
     if limit:
         holds = ours >= printed - READING
         text = f"longer than {printed}"
-        return CHOSEN.statement(name, text, f"{ours:.2f}", holds, why, place=where, picture=picture)
-    return CHOSEN.number(name, printed, ours, READING, why, place=where, picture=picture)
+        return CHOSEN.statement(name, text, f"{ours:.2f}", holds, why).at(where, picture)
+    return CHOSEN.number(name, printed, ours, READING, why).at(where, picture)
 
 
 def _needed(time: Array, motion: Array, printed: float) -> str:
@@ -89,8 +84,12 @@ def _order(history: History, delay: float, late: str, early: str, quantity: Moti
         )
     name = f"settling of {late} {quantity} against {early}"
     return PREDICTED.statement(
-        name, "later", pairs, holds, why, place=f"figure {figure}", picture=f"figure_{figure:02d}.png"
-    )
+        name,
+        "later",
+        pairs,
+        holds,
+        why,
+    ).at(f"figure {figure}", f"figure_{figure:02d}.png")
 
 
 def _later(late: float | None, early: float | None) -> bool:

@@ -77,12 +77,7 @@ def block_heights(length: float, seed: int) -> NDArray[np.float64]:
 
 
 def write_block(path: Path, length: float, seed: int) -> None:
-    """Write the surface.
-
-    Args:
-        path: OpenCRG file.
-        length, seed: see `block_heights`.
-    """
+    """Write the surface as an OpenCRG file; see `block_heights`."""
     surface = BASE + block_heights(length, seed)
     head = HEADER.format(
         end=STEP * (len(surface) - 1),

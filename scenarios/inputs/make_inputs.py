@@ -45,13 +45,7 @@ QUICK_DURATION = 5.0
 
 
 def level_signal(level: str, wheel: str, *, quick: bool) -> Signal:
-    """Return the shipped input of a level, or a short input of the same spectrum and level.
-
-    Args:
-        level: of `LEVELS`.
-        wheel: that it drives.
-        quick: whether the short one is wanted.
-    """
+    """Return the shipped input of a level, or a short input of the same spectrum and level."""
     if not quick:
         return read_signal(find_input(f"{level}.csv"), wheel=wheel)
     return random_road(

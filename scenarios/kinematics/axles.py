@@ -28,25 +28,16 @@ POINT = "front.hardpoints.tie_inner.z"
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Axle:
-    """Kinematics and compliance of an axle of a car, as measured on the rig.
+    """Kinematics and compliance of an axle of a car, as measured on the rig."""
 
-    Attributes:
-        label: name of the car and of the axle.
-        template: template of the axle.
-        equal, opposite: poses of the right wheel over equal and opposite travel of both wheels.
-        slopes, rolling: slopes in the design position over equal and opposite travel.
-        from_spring: wheel rate of the spring with ideal joints, k i^2 + F di/dz [N/m]; nan for a spring on a slide.
-        across, along: pose under a force to the right and to the rear on both wheels.
-    """
-
-    label: str
-    template: str
-    equal: list[WheelPose]
+    label: str  # name of the car and of the axle
+    template: str  # template of the axle
+    equal: list[WheelPose]  # equal, opposite: poses of the right wheel over equal and opposite travel of both wheels
     opposite: list[WheelPose]
-    slopes: dict[str, float | None]
+    slopes: dict[str, float | None]  # slopes, rolling: slopes in the design position over equal and opposite travel
     rolling: dict[str, float | None]
-    from_spring: float
-    across: WheelPose
+    from_spring: float  # wheel rate of the spring with ideal joints, k i^2 + F di/dz [N/m]; nan for a spring on a slide
+    across: WheelPose  # across, along: pose under a force to the right and to the rear on both wheels
     along: WheelPose
 
 
@@ -87,21 +78,13 @@ def axles_of(cars: Sequence[Car], travels: Sequence[float]) -> list[Axle]:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Moved:
-    """An axle with one coordinate of a point moved.
+    """An axle with one coordinate of a point moved."""
 
-    Attributes:
-        label: car.
-        shifts: of the coordinate [m], ascending, 0 in the middle.
-        curves: poses over equal travel for each.
-        toe_slopes: dtoe/dz in the design position for each [deg/m].
-        closed_form: d(toe slope)/d(shift) [deg/m2]; nan where the point is not the height of a tie rod's inner end.
-    """
-
-    label: str
-    shifts: tuple[float, ...]
-    curves: list[list[WheelPose]]
-    toe_slopes: tuple[float, ...]
-    closed_form: float
+    label: str  # car
+    shifts: tuple[float, ...]  # of the coordinate [m], ascending, 0 in the middle
+    curves: list[list[WheelPose]]  # poses over equal travel for each
+    toe_slopes: tuple[float, ...]  # dtoe/dz in the design position for each [deg/m]
+    closed_form: float  # d(toe slope)/d(shift) [deg/m2]; nan where the point is not the height of a tie rod's inner end
 
     @property
     def gain(self) -> float:

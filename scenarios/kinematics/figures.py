@@ -34,12 +34,7 @@ def values(poses: Sequence[WheelPose], name: str) -> npt.NDArray[np.float64]:
 
 
 def travel_figure(path: Path, axles: Sequence[Axle]) -> None:
-    """Write the curves of all axles over equal and over opposite travel.
-
-    Args:
-        path: PNG file.
-        axles: of all cars.
-    """
+    """Write the curves of all axles over equal and over opposite travel."""
     note = (
         "Wheel on the right against its design position, body held, bushings as they are; solid: both wheels lifted "
         "alike, dashed: the left wheel goes down where the right one goes up"
@@ -59,7 +54,7 @@ def travel_figure(path: Path, axles: Sequence[Axle]) -> None:
 
 
 def compliance_figure(path: Path, axles: Sequence[Axle]) -> None:
-    """Draw the compliances of all axles as bars; arguments as in `travel_figure`."""
+    """Draw the compliances of all axles as bars."""
     note = (
         "1 kN to the right (lateral) or to the rear (braking) on both wheels at the ground, design height; right wheel"
     )
@@ -73,13 +68,7 @@ def compliance_figure(path: Path, axles: Sequence[Axle]) -> None:
 
 
 def moved_figure(path: Path, moved: Sequence[Moved], point: str) -> None:
-    """Write toe and camber of axles with a point lower, as it is and higher.
-
-    Args:
-        path: PNG file.
-        moved: of each car that has the point.
-        point: path of its coordinate.
-    """
+    """Write toe and camber of axles with a point lower, as it is and higher."""
     note = f"{point} of each car changed as in the legend; equal travel, wheel on the right, bushings as they are"
     with figure_file(path, (11.0, 4.2 * len(moved)), f"One point moved: {point}", note) as figure:
         for row, moved_point in zip(figure.subplots(len(moved), 2, sharey=True, squeeze=False), moved, strict=True):

@@ -26,12 +26,9 @@ from vehicle.errors import ConfigurationError
 class BumpPassage:
     """Road height z_i = h0 sin(omega (t - t_i)) while wheel i is on the bump, otherwise 0."""
 
-    height: float
-    """h0 [m]."""
-    omega: float
-    """Angular frequency pi v / wb [rad/s]."""
-    arrivals: tuple[float, ...]
-    """Time t_i at which each wheel reaches the bump [s]."""
+    height: float  # h0 [m]
+    omega: float  # Angular frequency pi v / wb [rad/s]
+    arrivals: tuple[float, ...]  # Time t_i at which each wheel reaches the bump [s]
 
     @property
     def contact(self) -> float:

@@ -68,13 +68,7 @@ class DamperChoiceParameters:
 
 
 def damper_choice_parameters(path: Path = FITTED) -> DamperChoiceParameters:
-    """Read the parameters of the damper study.
-
-    Args:
-        path: TOML file; the set fitted to the published results by default.
-
-    Returns:
-        The validated parameters.
+    """Read the parameters of the damper study; by default the set fitted to the published results.
 
     Raises:
         ConfigurationError: the file, a name or a value is wrong.

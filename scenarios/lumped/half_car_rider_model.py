@@ -33,9 +33,6 @@ ROADS = tuple(f"{end}_road" for end in ENDS)
 def output_points(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[str, float]]:
     """Return the displacements of the output points as linear forms of the coordinates [m per m, m per rad].
 
-    Args:
-        parameters: parameters of the car.
-
     Returns:
         Name of the output point -> coordinate -> coefficient. A travel is positive in rebound (wheel below the body).
     """
@@ -62,9 +59,6 @@ def output_points(parameters: HalfCarRiderParameters) -> Mapping[str, Mapping[st
 
 def half_car_rider(parameters: HalfCarRiderParameters) -> LinearSystem:
     """Return the linear model of the half car with rider; its outputs are the coordinates and `output_points`.
-
-    Args:
-        parameters: parameters of the car.
 
     Returns:
         The model with the coordinates upper_limb, lower_limb, seat, heave, front_wheel, rear_wheel [m], pitch [rad].
@@ -94,9 +88,6 @@ def static_tyre_load(parameters: HalfCarRiderParameters) -> Array:
     """Return the load of the front and rear tyre at rest [N], shape (2,).
 
     K x = -M g e with e = 1 for every displacement and 0 for pitch; the load is the force of the compressed tyre.
-
-    Args:
-        parameters: parameters of the car.
     """
     model = half_car_rider(parameters)
     vertical = np.array([0.0 if name == "pitch" else 1.0 for name in model.coordinates])
@@ -108,10 +99,6 @@ def static_tyre_load(parameters: HalfCarRiderParameters) -> Array:
 
 def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Array:
     """Return the load of a linear tyre that cannot lift off [N]: static load + k (z - x) + c (z' - x').
-
-    Args:
-        parameters: parameters of the car.
-        history: motion of the car.
 
     Returns:
         Front and rear load, shape (2, m); negative where the linear tyre pulls on the road.
@@ -126,15 +113,7 @@ def linear_tyre_load(parameters: HalfCarRiderParameters, history: History) -> Ar
 
 
 def lift_off(time: npt.ArrayLike, load: npt.ArrayLike) -> list[tuple[float, float]]:
-    """Return the intervals in which a tyre load is not positive.
-
-    Args:
-        time: sample times [s], shape (m,).
-        load: tyre load [N], shape (m,).
-
-    Returns:
-        Start and end of each interval [s]: its first and last sample.
-    """
+    """Return the intervals in which a tyre load, (m,), is not positive: times of first and last sample, (m,) [s]."""
     instants, lifted = np.asarray(time, dtype=float), np.asarray(load, dtype=float) <= 0.0
     edges = np.diff(np.concatenate(([False], lifted, [False])).astype(int))
     starts, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1

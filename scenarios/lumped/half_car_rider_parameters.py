@@ -56,13 +56,7 @@ class HalfCarRiderParameters:
 
 
 def half_car_rider_parameters(path: Path = PUBLISHED) -> HalfCarRiderParameters:
-    """Read the parameters of a half car with rider.
-
-    Args:
-        path: TOML file; the published set by default.
-
-    Returns:
-        The validated parameters.
+    """Read the parameters of a half car with rider; by default the published set.
 
     Raises:
         ConfigurationError: the file, a name or a value is wrong.

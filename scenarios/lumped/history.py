@@ -16,26 +16,18 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class History:
-    """Sampled solution of x' = A x + b0 z + b1 z' + bF F - N phi, for T samples and a stack "..." of models.
+    """Sampled solution of x' = A x + b0 z + b1 z' + bF F - N phi, for T samples and a stack "..." of models."""
 
-    Attributes:
-        model: the first-order form.
-        time: sample times [s], (T,).
-        state: states x, (T, ..., s).
-        inputs, input_rates: z [m] and z' [m/s], (T, ..., w); axes of length one for inputs common to all models.
-        sliding_force: phi of each sliding pair [N], (T, ..., p).
-        force: applied force F [N], (T,); 0 without a force.
-        state_rate: x', (T, ..., s), if the solver provides it; with z' constant over a step, x' of the solver differs
-            from the equations at the samples.
-    """
-
-    model: FirstOrder
-    time: Array
-    state: Array
+    model: FirstOrder  # the first-order form
+    time: Array  # sample times [s], (T,)
+    state: Array  # states x, (T, ..., s)
+    # inputs, input_rates: z [m] and z' [m/s], (T, ..., w); axes of length one for inputs common to all models
     inputs: Array
     input_rates: Array
-    sliding_force: Array
-    force: Array | float = 0.0
+    sliding_force: Array  # phi of each sliding pair [N], (T, ..., p)
+    force: Array | float = 0.0  # applied force F [N], (T,); 0 without a force
+    # x', (T, ..., s), if the solver provides it; with z' constant over a step, x' of the solver differs from the
+    # equations at the samples
     state_rate: Array | None = None
 
     def during(self, start: float, end: float = np.inf) -> History:

@@ -55,8 +55,7 @@ class Network:
     outputs: Mapping[str, Row] = field(default_factory=dict)
     slides: tuple[Slide, ...] = ()
     inputs: tuple[str, ...] = (ROAD,)
-    force: Row = field(default_factory=dict)
-    """Direction of an applied force F: the generalised force is row times F."""
+    force: Row = field(default_factory=dict)  # Direction of an applied force F: the generalised force is row times F
 
     def system(self) -> LinearSystem:
         """Assemble the matrices of the model.

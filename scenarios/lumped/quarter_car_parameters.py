@@ -148,13 +148,7 @@ class QuarterCar:
 
 
 def load_quarter_car(path: Path = PUBLISHED) -> QuarterCar:
-    """Read the quarter car of a parameter file.
-
-    Args:
-        path: TOML file; the published quarter car by default.
-
-    Returns:
-        The validated parameters.
+    """Read the quarter car of a parameter file; by default the published one.
 
     Raises:
         ConfigurationError: a missing file, an unknown or missing name, a value out of range.

@@ -33,12 +33,9 @@ LINES_PER_HERTZ = 20
 class Tyre:
     """Tyre of an axle, with its share of the sprung mass."""
 
-    wheel: str
-    """Coordinate of the unsprung mass."""
-    axle: Axle
-    """Axle with tyre stiffness kt and tyre damping ct."""
-    sprung_share: float
-    """Share of the sprung mass on the tyre [kg]."""
+    wheel: str  # Coordinate of the unsprung mass
+    axle: Axle  # Axle with tyre stiffness kt and tyre damping ct
+    sprung_share: float  # Share of the sprung mass on the tyre [kg]
 
     @property
     def static_load(self) -> float:
@@ -67,12 +64,7 @@ class RoadHoldingModel:
 
 
 def quarter_car_model(car: RoadHoldingQuarterCar, damping: float | None = None) -> RoadHoldingModel:
-    """Return a quarter car with the coordinates wheel and body.
-
-    Args:
-        car: parameters of the car.
-        damping: damper coefficient that replaces the value of the car [N s/m].
-    """
+    """Return a quarter car with the coordinates wheel and body, with its damper or another one [N s/m]."""
     network = Network(
         coordinates=("wheel", "body"),
         masses=masses_of({"wheel": car.wheel.unsprung_mass, "body": car.sprung_mass}),
@@ -85,12 +77,9 @@ def quarter_car_model(car: RoadHoldingQuarterCar, damping: float | None = None) 
 def half_car_model(
     car: RoadHoldingHalfCar, front_damping: float | None = None, rear_damping: float | None = None
 ) -> RoadHoldingModel:
-    """Return a half car with the coordinates front_wheel, rear_wheel, heave [m] and pitch [rad] (front down positive).
+    """Return a half car with its dampers or others [N s/m].
 
-    Args:
-        car: parameters of the car.
-        front_damping: front damper coefficient that replaces the value of the car [N s/m].
-        rear_damping: rear damper coefficient that replaces the value of the car [N s/m].
+    Coordinates are front_wheel, rear_wheel, heave [m] and pitch [rad] (front down positive).
     """
     axles = dict(zip(ENDS, (car.front, car.rear), strict=True))
     masses = {f"{end}_wheel": axle.unsprung_mass for end, axle in axles.items()}
@@ -126,16 +115,7 @@ def exponential_density(road: ExponentialRoad, frequency: npt.ArrayLike) -> npt.
 
 
 def band_amplitudes(road: ExponentialRoad, edges: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Return the root mean square displacement in bands, in closed form.
-
-    x_r = sqrt(int_f1^f2 a exp(-b f) df) = sqrt(a / b (exp(-b f1) - exp(-b f2)))
-
-    Args:
-        road: displacement density of the road.
-        edges: band edges, rising [Hz], shape (m + 1,).
-
-    Returns:
-        Amplitudes [m], shape (m,).
+    """Return the root mean square displacement in bands between rising edges [Hz], (m + 1,), in closed form [m], (m,).
 
     Source: "Dynamic Modeling of Vehicles and Damper" (2014), equation 8.
     """
@@ -176,14 +156,7 @@ def printed_load_fluctuation(
 
 
 def tyre_load_ratio(car: RoadHoldingModel, road: ExponentialRoad, bands: FrequencyBands) -> Array:
-    """Return the physical measure: RMS of the dynamic tyre force over the static load.
-
-    sqrt(int |kt + j w ct|^2 |1 - H_u|^2 G df) / (m g)
-
-    Args:
-        car: model with tyres.
-        road: displacement density.
-        bands: frequency bands; the integral ends at the highest frequency.
+    """Return the physical measure: RMS of the dynamic tyre force over the static load, up to the end of the bands.
 
     Returns:
         Ratio [-] of each tyre. Above about 1/3 the tyre leaves the road (three standard deviations).
@@ -218,12 +191,9 @@ def tyre_load_ratio_of_density(car: RoadHoldingModel, lines: Array, density: Arr
 class RideMeasures:
     """Ride measures of a damper on a road, as root mean squares."""
 
-    tyre_load: float
-    """Dynamic tyre force over static load [-]."""
-    acceleration: float
-    """Weighted vertical acceleration of the body [m/s2]."""
-    travel: float
-    """Suspension travel [m]."""
+    tyre_load: float  # Dynamic tyre force over static load [-]
+    acceleration: float  # Weighted vertical acceleration of the body [m/s2]
+    travel: float  # Suspension travel [m]
 
 
 def ride_measures(

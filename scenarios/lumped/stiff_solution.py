@@ -29,12 +29,10 @@ class Tolerances:
     """Tolerances of the solver: relative for every state, absolute by type of state."""
 
     relative: float = 1e-6
-    displacement: float = 1e-9
-    """Absolute tolerance of displacements [m]: a millionth of a road of 1 mm."""
+    displacement: float = 1e-9  # Absolute tolerance of displacements [m]: a millionth of a road of 1 mm
     velocity: float = 1e-8
     """Absolute tolerance of velocities [m/s]: a hundredth of 1/eps, the knee of a friction law with eps = 1e6 s/m."""
-    force: float = 1e-5
-    """Absolute tolerance of the forces of Maxwell branches [N]."""
+    force: float = 1e-5  # Absolute tolerance of the forces of Maxwell branches [N]
 
     def __post_init__(self) -> None:
         for name in ("relative", "displacement", "velocity", "force"):

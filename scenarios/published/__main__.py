@@ -96,16 +96,7 @@ def _job(options: argparse.Namespace) -> None:
 
 
 def copy_pictures(results: Mapping[str, Mapping[str, Any]], runs: Path, folder: Path) -> list[str]:
-    """Copy the pictures of the rows at reduced size, and report missing pictures on standard error.
-
-    Args:
-        results: study to the content of its `results.json`.
-        runs: folder of the results of the studies.
-        folder: folder of the copies.
-
-    Returns:
-        Names of the copies.
-    """
+    """Copy the pictures of the rows at reduced size, report missing ones on standard error, and return the names."""
     folder.mkdir(parents=True, exist_ok=True)
     copies = []
     for study, content in results.items():

@@ -22,10 +22,6 @@ COLOURS = 256
 def write_copy(figure: Path, copy: Path) -> None:
     """Write a figure as a PNG of at most `LARGEST` bytes, as wide as that allows, or as wide as the last of `WIDTHS`.
 
-    Args:
-        figure: PNG of a study.
-        copy: file to write.
-
     Raises:
         OSError: the figure cannot be read.
         OutputError: the copy cannot be written.

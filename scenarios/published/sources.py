@@ -12,38 +12,23 @@ Number = tuple[str, ...]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Section:
-    """Section of a publication.
+    """Section of a publication."""
 
-    Attributes:
-        number: printed number.
-        title: printed title.
-        first: number of the first figure; None for a section without figures.
-    """
-
-    number: str
-    title: str
-    first: str | None = None
+    number: str  # printed number
+    title: str  # printed title
+    first: str | None = None  # number of the first figure; None for a section without figures
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Source:
-    """Publication, with the studies that compute its results.
+    """Publication, with the studies that compute its results."""
 
-    Attributes:
-        key: prefix of the anchors of the page.
-        short: name in tables.
-        title: full reference.
-        studies: names of the studies, in the order of the table.
-        sections: sections in order; empty for a publication with figures numbered consecutively.
-        tables: number of a table to number of its section.
-    """
-
-    key: str
-    short: str
-    title: str
-    studies: tuple[str, ...]
-    sections: tuple[Section, ...] = ()
-    tables: Mapping[str, str] = field(default_factory=dict)
+    key: str  # prefix of the anchors of the page
+    short: str  # name in tables
+    title: str  # full reference
+    studies: tuple[str, ...]  # names of the studies, in the order of the table
+    sections: tuple[Section, ...] = ()  # sections in order; empty for a publication with figures numbered consecutively
+    tables: Mapping[str, str] = field(default_factory=dict)  # number of a table to number of its section
 
 
 THESIS = Source(
@@ -145,17 +130,11 @@ REFERENCE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Place of a row in a publication: a figure or table if the text contains one, else a section.
+    """Place of a row in a publication: a figure or table if the text contains one, else a section."""
 
-    Attributes:
-        kind: type of the place, see `KINDS`; empty for a text without reference.
-        number: number of the first figure, table or section, or "".
-        text: text of the heading.
-    """
-
-    kind: str
-    number: str
-    text: str
+    kind: str  # type of the place, see `KINDS`; empty for a text without reference
+    number: str  # number of the first figure, table or section, or ""
+    text: str  # text of the heading
 
     @property
     def sort_key(self) -> tuple[object, ...]:
@@ -178,15 +157,7 @@ def place_of(text: str) -> Place:
 
 
 def section_of(source: Source, location: Place) -> Section | None:
-    """Return the section of a publication that contains a place.
-
-    Args:
-        source: the publication.
-        location: place of a row.
-
-    Returns:
-        The section; None if no section contains the place.
-    """
+    """Return the section of a publication that contains a place, or None."""
     if location.kind == "table":
         return _named(source, source.tables.get(location.number, location.number))
     if location.kind == "figure":

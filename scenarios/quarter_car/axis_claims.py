@@ -66,4 +66,4 @@ def _end(figure: str, name: str, values: Array, interval: Interval, why: str = "
     extreme = float(np.min(values) if interval[0] < 0.0 else np.max(values))
     reason = "labels of the axis, 3 to 5 s" + (f"; {why}" if why else "")
     picture = f"figure_{figure.replace('.', '_')}.png"
-    return interval_claim(name, interval, extreme, reason, place=f"figure {figure}", picture=picture)
+    return interval_claim(name, interval, extreme, reason).at(f"figure {figure}", picture)

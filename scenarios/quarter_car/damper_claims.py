@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenarios.claims import PREDICTED, Claim, spread_claim
-from scenarios.places import placed
+from scenarios.claims import PREDICTED, Claim, placed, spread_claim
 from scenarios.quarter_car.road_claims import FIRST, response
 from scenarios.quarter_car.runs import CONSTANT, DEGRESSIVE, HIGH, LOW, STEEP, Array, Runs, peak, rms
 from scenarios.verdict import common
@@ -72,9 +71,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             f"{1e3 * largest[1].max():.2g} mm/s",
             rms(bent) < rms(straight),
             roads,
-            place=figure,
-            picture=picture,
-        ),
+        ).at(figure, picture),
         PREDICTED.statement(
             "degressive damper, low road: share of sticking",
             "larger",
@@ -82,9 +79,7 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             common(degressive > constant for degressive, constant in share.values()),
             f"sticks: below 100 / eps = {1e3 * SLIPS:g} mm/s; the thesis does not define the count, and the definition "
             f"turns the row: {slow}; {roads}",
-            place=figure,
-            picture=picture,
-        ),
+        ).at(figure, picture),
         PREDICTED.statement(
             "low road: relative velocity of the damper stays below the knee",
             f"below {slow_share:g} m/s",
@@ -93,25 +88,19 @@ def degressive_claims(runs: Runs) -> list[Claim]:
             common(largest[1] < slow_share),
             "an assumption of the source, on every road; the level in 1 to 50 Hz depends on the band of the road, "
             f"which is not printed: velocities go with the square root of its lower edge, here 1/30 Hz; {roads}",
-            place=figure,
-            picture=picture,
-        ),
+        ).at(figure, picture),
         spread_claim(
             "low road: largest relative velocity of the damper [m/s]",
             (0.01, 0.02),
             np.maximum(*largest),
             f"axis from -0.02 to 0.02 m/s with labels 0.01 apart; larger of both dampers; {roads}",
-            place=figure,
-            picture=picture,
-        ),
+        ).at(figure, picture),
         spread_claim(
             "high road: largest relative velocity of the damper [m/s]",
             (0.5, 1.0),
             np.maximum(*high),
             f"axis to -1 m/s with labels 0.5 apart; larger of both dampers; {roads}",
-            place=figure,
-            picture=picture,
-        ),
+        ).at(figure, picture),
         PREDICTED.statement(
             "degressive damper, high road: first resonance",
             "higher and more damped",
@@ -157,7 +146,7 @@ def _influence(runs: Runs, level: float, variant: int) -> float:
 
 def strut_claims(runs: Runs) -> list[Claim]:
     """Return the rows on an inclined strut, and on the longitudinal damping of the wheel."""
-    angle, damping = ({"place": f"figure D.{n}", "picture": f"figure_d_{n}.png"} for n in (4, 5))
+    angle, damping = ((f"figure D.{n}", f"figure_d_{n}.png") for n in (4, 5))
     claims = []
     for name, level in ROADS:
         frequency, upright = runs.spectrum(DEGRESSIVE[0], level, DEGRESSIVE[1])
@@ -172,32 +161,28 @@ def strut_claims(runs: Runs) -> list[Claim]:
                 f"RMS {whole[0]:+.1f} % at 4.2 deg, {whole[1]:+.1f} % at 8.4 deg",
                 max(abs(value) for value in whole[:2]) < 100.0 * SIGNIFICANT,
                 "significant: 10 % of the RMS",
-                **angle,
-            ),
+            ).at(*angle),
             PREDICTED.statement(
                 f"angle of the strut, {name} road: near 20 Hz",
                 "slight decrease",
                 f"RMS 18 to 22 Hz {near[0]:+.1f} % at 4.2 deg, {near[1]:+.1f} % at 8.4 deg",
                 max(near[:2]) < 0.0,
                 "a decrease at both angles",
-                **angle,
-            ),
+            ).at(*angle),
             PREDICTED.statement(
                 f"longitudinal damping 0, {name} road: body acceleration near 20 Hz",
                 "not significantly present",
                 f"RMS 18 to 22 Hz {near[2]:+.1f} % against the upright strut",
                 near[2] < 100.0 * SIGNIFICANT,
                 f"the wheel alone on Kh has {_longitudinal(runs):.1f} Hz; significant: 10 % more",
-                **damping,
-            ),
+            ).at(*damping),
             PREDICTED.statement(
                 f"longitudinal damping 0, 550, 1100 N s/m, {name} road: near 20 Hz",
                 "slight difference",
                 f"RMS 18 to 22 Hz {near[2]:+.1f}, {near[0]:+.1f}, {near[3]:+.1f} % against the upright strut",
                 0.0 < max(near[2], near[0], near[3]) - min(near[2], near[0], near[3]) < 100.0 * SIGNIFICANT,
                 "slight: below 10 %, and some",
-                **damping,
-            ),
+            ).at(*damping),
         ]
     return claims
 

@@ -84,15 +84,7 @@ def _sines(
 def _roads(
     runs: Runs, path: Path, *, caption: str, compared: Mapping[str, tuple[str, int]], zoom: bool = False
 ) -> None:
-    """Draw body acceleration spectra on the low and the high road in two panels; optionally with a zoom about 20 Hz.
-
-    Args:
-        runs: runs with the spectra.
-        path: PNG file.
-        caption: caption of the comparison.
-        compared: label to family and variant.
-        zoom: draw the second row.
-    """
+    """Draw body acceleration spectra on the low and the high road in two panels; optionally with a zoom about 20 Hz."""
     caption += f" Mean over {runs.roads} random roads."
     with chart(path, caption, rows=2 if zoom else 1, columns=2, size=(9, 8 if zoom else 5)) as axes:
         for column, level in enumerate((LOW, HIGH)):

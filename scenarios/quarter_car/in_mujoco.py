@@ -35,14 +35,10 @@ DEFAULT_STEP = 5e-4
 class Motion:
     """Sampled motion at every step, by place: `body`, `wheel` and, with friction, `damper`."""
 
-    time: Array
-    """[s], shape (T,)."""
-    displacement: Mapping[str, Array]
-    """[m], shape (T,)."""
-    acceleration: Mapping[str, Array]
-    """[m/s2], shape (T,)."""
-    sliding_velocity: Array
-    """Velocity of the damper [m/s], shape (T,); zero where the damper slips or sticks for good."""
+    time: Array  # [s], shape (T,)
+    displacement: Mapping[str, Array]  # [m], shape (T,)
+    acceleration: Mapping[str, Array]  # [m/s2], shape (T,)
+    sliding_velocity: Array  # Velocity of the damper [m/s], shape (T,); zero where the damper slips or sticks for good
 
 
 def in_mujoco(
@@ -131,7 +127,6 @@ def in_mujoco_claims(runs: Runs) -> list[Claim]:
                 f"not printed, our own check at {1e3 * DEFAULT_STEP:g} ms: RMS of {', '.join(names)} within 1 %, slip "
                 "(100/eps) within 0.5 points"
                 + ("" if "damper" in names else "; the two laws differ below 1/eps, which the damper mass feels"),
-                place="section 2.3.2.4",
-            )
+            ).at("section 2.3.2.4")
         )
     return claims

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenarios.claims import INFERRED, PREDICTED, Claim
+from scenarios.claims import INFERRED, PREDICTED, Claim, placed
 from scenarios.lumped.quarter_car_network import elastomer
-from scenarios.places import placed
 from scenarios.quarter_car.runs import Runs
 from vehicle.engines.linear.natural_modes import natural_modes
 from vehicle.engines.linear.response import frequency_response
@@ -167,18 +166,16 @@ def element_claims(runs: Runs) -> list[Claim]:
     )
     mass, rubbers, picture = "section 2.3.3.1", "figure 2.20", "figure_2_20.png"
     return [
-        PREDICTED.number("engine alone [Hz]", 12.7, float(natural / (2 * np.pi)), 0.05, digits, place=mass),
-        PREDICTED.number("engine alone, damping [%]", 15.0, ratio, 0.5, digits, place=mass),
+        PREDICTED.number("engine alone [Hz]", 12.7, float(natural / (2 * np.pi)), 0.05, digits).at(mass),
+        PREDICTED.number("engine alone, damping [%]", 15.0, ratio, 0.5, digits).at(mass),
         PREDICTED.number(
             "elastomer, loss angle at 9 Hz [deg]",
             10.0,
             at_nine,
             0.5,
             f"{digits}; {largest}",
-            place=rubbers,
-            picture=picture,
-        ),
-        PREDICTED.number("elastomer, K2 / (2 pi De) [Hz]", 9.0, corner, 0.5, digits, place=rubbers, picture=picture),
+        ).at(rubbers, picture),
+        PREDICTED.number("elastomer, K2 / (2 pi De) [Hz]", 9.0, corner, 0.5, digits).at(rubbers, picture),
     ]
 
 

@@ -6,8 +6,7 @@ import itertools
 
 import numpy as np
 
-from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, spread_claim
-from scenarios.places import placed
+from scenarios.claims import NOT_TESTABLE, PREDICTED, Claim, placed, spread_claim
 from scenarios.quarter_car.linear_claims import ABOUT
 from scenarios.quarter_car.runs import HIGH, LEVELS, LOW, SEED, STEEP, Array, Runs, peak, rms, rough_road
 from vehicle.engines.linear.response import frequency_response
@@ -27,9 +26,7 @@ def swing_claim() -> Claim:
         (0.1, 0.2),
         swings,
         f"labels of the axis from 0.15 to -0.05 m: highest 0.1 to 0.15, lowest -0.05 to 0; {SWINGS} roads",
-        place="figure 2.6",
-        picture="figure_2_6.png",
-    )
+    ).at("figure 2.6", "figure_2_6.png")
 
 
 def level_claims(runs: Runs) -> list[Claim]:

@@ -59,20 +59,16 @@ class Family:
     parts: Mapping[str, Any]
     variants: tuple[Mapping[str, float], ...] = ({},)
     levels: tuple[float, ...] = (LOW, HIGH)
-    output: str = "body"
-    """Parts whose motion is stored."""
+    output: str = "body"  # Parts whose motion is stored
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Marched:
     """Motion on every road of a level with a variant, (roads, samples) each."""
 
-    displacement: Array
-    """[m]."""
-    acceleration: Array
-    """[m/s2]."""
-    sliding_velocity: Array
-    """Of the damper [m/s]."""
+    displacement: Array  # [m]
+    acceleration: Array  # [m/s2]
+    sliding_velocity: Array  # Of the damper [m/s]
 
 
 FAMILIES = {
@@ -114,8 +110,7 @@ class Runs:
 
     car: QuarterCar
     quick: bool
-    seconds: float = 0.0
-    """Time spent solving [s]."""
+    seconds: float = 0.0  # Time spent solving [s]
     _done: dict[str, Any] = field(default_factory=dict)
 
     @property

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from scenarios.claims import OWN_CHECK, PREDICTED, Claim
+from scenarios.claims import OWN_CHECK, PREDICTED, Claim, placed
 from scenarios.lumped.history import History
 from scenarios.lumped.quarter_car_parameters import QuarterCar
-from scenarios.places import placed
 from scenarios.quarter_car.runs import HIGH, LOW, NO_FRICTION, Array, Runs, rms
 from vehicle.engines.linear.response import frequency_response
 
@@ -88,9 +87,7 @@ def _low_claims(runs: Runs) -> list[Claim]:
             f"slides {100 * fast:.0f} % of the time, largest velocity {np.abs(velocity).max():.1e} m/s",
             fast < 0.5,
             f"slides: above {SLIPS:g} m/s",
-            place="figure 2.13",
-            picture="figure_2_13.png",
-        ),
+        ).at("figure 2.13", "figure_2_13.png"),
     ]
 
 
@@ -124,9 +121,7 @@ def _high_claims(runs: Runs) -> list[Claim]:
             f"slides {100 * fast:.0f} % of the time, largest velocity {np.abs(velocity).max():.2g} m/s",
             fast > 0.5,
             f"slides: above {SLIPS:g} m/s",
-            place="figure 2.13",
-            picture="figure_2_13.png",
-        ),
+        ).at("figure 2.13", "figure_2_13.png"),
     ]
 
 
@@ -157,9 +152,7 @@ def engine_sine_claims(runs: Runs) -> list[Claim]:
             f"{angle:.0f} deg apart at {_hertz(line):.1f} Hz",
             angle > 90.0,
             "rule: more than 90 deg at the largest line of the wheel, so that the engine works against the wheel",
-            place="figure 2.18",
-            picture="figure_2_18.png",
-        ),
+        ).at("figure 2.18", "figure_2_18.png"),
         PREDICTED.statement(
             "sine 50 mm: body acceleration with against without engine",
             "higher with engine",

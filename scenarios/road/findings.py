@@ -120,12 +120,7 @@ def friction_claims(
 ) -> list[Claim]:
     """Return the rows on friction: less comfort on a smooth road, less effect on a rough road, on four wheels.
 
-    Args:
-        runs: what is computed.
-        car: name of the car.
-        roads: classes from smooth to rough.
-        speed: [km/h].
-        frictions: from 0 up [N].
+    Roads from smooth to rough, speed [km/h], frictions from 0 up [N].
     """
 
     def grown(road: str, name: str) -> list[float]:

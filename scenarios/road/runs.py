@@ -37,18 +37,12 @@ class RideMeasure:
     the last two are NaN of a car without seat. `load_front` and `load_rear` are RMS of the dynamic tyre load over the
     static one, quadratic mean of the wheels of an axle; `lowest_load` that of any tyre over its static one; `pulling`
     the largest share of the time in which a tyre would pull; `slip` the mean share of slip of all dampers.
-
-    Attributes:
-        wheels: names of wheel and axle of each.
-        dampers: names.
-        seat: whether the car has the place `seat` at all.
-        timestep: longest step of the reduced engine [s].
     """
 
-    wheels: tuple[tuple[str, str], ...]
-    dampers: tuple[str, ...]
-    seat: bool
-    timestep: float = 5e-4
+    wheels: tuple[tuple[str, str], ...]  # names of wheel and axle of each
+    dampers: tuple[str, ...]  # names
+    seat: bool  # whether the car has the place `seat` at all
+    timestep: float = 5e-4  # longest step of the reduced engine [s]
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -111,23 +105,14 @@ class RideMeasure:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ride:
-    """Ride of a car on a road.
+    """Ride of a car on a road."""
 
-    Attributes:
-        car: name of the car in tables, one of `RideRuns.cars`.
-        road: class of ISO 8608.
-        speed: speed [km/h].
-        friction: friction limit of every damper [N]; None for the limits of the vehicle file.
-        engine: engine, by default that of the study.
-        one_sided: True for tyres that lift off and never pull.
-    """
-
-    car: str
-    road: str
-    speed: float
-    friction: float | None = None
-    engine: str | None = None
-    one_sided: bool = False
+    car: str  # name of the car in tables, one of `RideRuns.cars`
+    road: str  # class of ISO 8608
+    speed: float  # speed [km/h]
+    friction: float | None = None  # friction limit of every damper [N]; None for the limits of the vehicle file
+    engine: str | None = None  # engine, by default that of the study
+    one_sided: bool = False  # True for tyres that lift off and never pull
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -185,11 +170,7 @@ class RideRuns:
         return all_tyre_words([case for ride in rides for case in self.cases(ride)[:1]])
 
     def text(self, speed: float | None = None) -> str:
-        """Return a text on records, tyres and engine of the finished rides for captions.
-
-        Args:
-            speed: speed of the rides [km/h]; None for all speeds.
-        """
+        """Return a text on records, tyres and engine of the finished rides for captions; speed [km/h], None for all."""
         records = f"{self.records} records" if self.records > 1 else "1 record"
         seeds = f"seeds 1 to {self.records}" if self.records > 1 else "seed 1"
         return (

@@ -55,16 +55,11 @@ POINTS = 0.10
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Judged:
-    """Log-likelihoods of all candidates with one plan of inputs.
+    """Log-likelihoods of all candidates with one plan of inputs."""
 
-    Attributes:
-        plan: the inputs.
-        found: rig with the roof point at -y to its readings, which contain both roof points.
-        used, held: rig to log-likelihoods of the half used for the choice and of the held-out half, axes as `NUMBERS`.
-    """
-
-    plan: Plan
-    found: Mapping[Rig, Readings]
+    plan: Plan  # the inputs
+    found: Mapping[Rig, Readings]  # rig with the roof point at -y to its readings, which contain both roof points
+    # used, held: rig to log-likelihoods of the half used for the choice and of the held-out half, axes as `NUMBERS`
     used: Mapping[Rig, Vector]
     held: Mapping[Rig, Vector]
 
@@ -97,14 +92,7 @@ def bodies(rig: Rig) -> list[Rig]:
 
 
 def judged(plan: Plan, groups: Sequence[Sequence[Rig]], folder: Path, jobs: int) -> Judged:
-    """Run rigs and compute the log-likelihoods of all candidates.
-
-    Args:
-        plan: the inputs.
-        groups: groups of rigs with the plate on the same side.
-        folder: folder of the vehicle files.
-        jobs: number of worker processes.
-    """
+    """Run rigs and compute the log-likelihoods of all candidates."""
     folder.mkdir(exist_ok=True)
     pool = process_pool(min(jobs, len(groups))) if jobs > 1 and len(groups) > 1 else ThreadPoolExecutor(1)
     with pool as workers:
@@ -194,9 +182,6 @@ def study(_: None, folder: Path, options: argparse.Namespace) -> Findings:
 def chosen(ranking: Sequence[tuple[float, Candidate]]) -> Candidate:
     """Return the candidate to ship: of candidates with nearly the best likelihood the one with the fewest changes.
 
-    Args:
-        ranking: the best of every rig, the most likely first.
-
     Source: Kass and Raftery, Bayes factors, J. Am. Stat. Assoc. 90 (1995), section 3.2.
     """
     tied = [candidate for value, candidate in ranking if value > ranking[0][0] - BARE_MENTION]
@@ -268,13 +253,7 @@ COLUMNS = (
 
 
 def rank_table(judgement: Judged, ranking: Sequence[tuple[float, Candidate]], head: str) -> str:
-    """Return a table of candidates with their likelihoods.
-
-    Args:
-        found: all of them.
-        ranking: log-likelihoods and candidates of the table.
-        head: text above the table.
-    """
+    """Return a table of candidates with their likelihoods."""
     rows = []
     for _, candidate in ranking:
         used, held, *shares = judgement.numbers(candidate)
@@ -284,12 +263,7 @@ def rank_table(judgement: Judged, ranking: Sequence[tuple[float, Candidate]], he
 
 
 def velocity_table(judgement: Judged, rig: Rig) -> str:
-    """Return a table of the best band edges at every slip velocity with their log-likelihoods.
-
-    Args:
-        judgement: log-likelihoods of all candidates.
-        rig: rig of the most likely candidate.
-    """
+    """Return a table of the best band edges at every slip velocity with their log-likelihoods."""
     rows, whole = [], judgement.used[rig]
     for position, velocity in enumerate(SLIP_VELOCITIES):
         only = np.full_like(whole, -np.inf)
@@ -304,12 +278,7 @@ def velocity_table(judgement: Judged, rig: Rig) -> str:
 
 
 def margin_table(judgement: Judged, ranking: Sequence[tuple[float, Candidate]]) -> str:
-    """Return a table of the differences to the most likely rig, with standard errors over the seeds.
-
-    Args:
-        found: all of them.
-        ranking: log-likelihoods and candidates, the most likely first.
-    """
+    """Return a table of the differences to the most likely rig, with standard errors over the seeds."""
     winner = ranking[0][1]
     rows = []
     for value, candidate in ranking[1:SHOWN]:

@@ -41,23 +41,15 @@ NOISE_LEVELS = {"0.05 mm with both bumps": 1.0, "in proportion to the bump": 0.2
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Rig:
-    """Sides of unprinted positions, and parameters of the body.
+    """Sides of unprinted positions, and parameters of the body."""
 
-    Attributes:
-        plate, hydromount, roof: side, "+y" or "-y"; the seat is at -y.
-        products: sign of Ixy and Iyz.
-        ixx: moment of inertia about the origin [kg m2].
-        damping: damping ratio of the body modes [-].
-        brackets: a key of `BRACKETS`.
-    """
-
-    plate: str = "+y"
+    plate: str = "+y"  # plate, hydromount, roof: side, "+y" or "-y"; the seat is at -y
     hydromount: str = "+y"
     roof: str = "-y"
-    products: int = 1
-    ixx: float = 1000.0
-    damping: float = 0.03
-    brackets: str = "as designed"
+    products: int = 1  # sign of Ixy and Iyz
+    ixx: float = 1000.0  # moment of inertia about the origin [kg m2]
+    damping: float = 0.03  # damping ratio of the body modes [-]
+    brackets: str = "as designed"  # a key of `BRACKETS`
 
     def sides(self) -> str:
         """Return the sides as a text."""
@@ -92,13 +84,7 @@ SWAPPED = {"fr": "fl", "fl": "fr", "right": "left", "left": "right"}
 
 
 def vehicle_file(folder: Path, hydromount: str, brackets: str) -> Path:
-    """Write the car with its mounts on given sides, and both points of the roof as outputs; returns its file.
-
-    Args:
-        folder: where to; the file is not written again.
-        hydromount: its side.
-        brackets: a key of `BRACKETS`.
-    """
+    """Write the car with its mounts on given sides, and both points of the roof as outputs; returns its file."""
     name = f"mount_{'right' if hydromount == '+y' else 'left'}_{BRACKETS[brackets]:g}"
     path, sign = folder / f"{name}.toml", 1.0 if hydromount == "+y" else -1.0
     text = (shipped_file("focus").parent / "body_design.toml").read_text(encoding="utf-8")

@@ -17,13 +17,7 @@ Vector = npt.NDArray[np.float64]
 
 
 def side_figure(path: Path, used: Mapping[Rig, Vector], held: Mapping[Rig, Vector], winner: Candidate) -> None:
-    """Draw the best log-likelihood of every combination of sides, for the used and the held-out half.
-
-    Args:
-        path: PNG file.
-        used, held: rig to log-likelihoods of the used and of the held-out half.
-        winner: most likely candidate, whose body all shown rigs have.
-    """
+    """Draw the best log-likelihood of every combination of sides, for the used and the held-out half."""
     body = (winner.rig.ixx, winner.rig.damping, winner.rig.brackets)
     shown = best({rig: candidate for rig, candidate in used.items() if (rig.ixx, rig.damping, rig.brackets) == body})[
         ::-1

@@ -28,15 +28,11 @@ MODES = ("wheel_mode", "roll_mode", "rigid_modes", "engine_lowest", "engine_high
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Candidate:
-    """Candidate: a rig with inputs and slip velocity; edges are indices in the plan.
+    """Candidate: a rig with inputs and slip velocity; edges are indices in the plan."""
 
-    Attributes:
-        rig: sides and body of the rig.
-        velocity, shaker, noise, level, road: indices in `SLIP_VELOCITIES`, in the edges of the plan (shaker, noise of
-            the bump, roads) and in `NOISE_LEVELS`.
-    """
-
-    rig: Rig
+    rig: Rig  # sides and body of the rig
+    # velocity, shaker, noise, level, road: indices in `SLIP_VELOCITIES`, in the edges of the plan (shaker, noise of the
+    # bump, roads) and in `NOISE_LEVELS`
     velocity: int
     shaker: int
     noise: int
@@ -55,12 +51,7 @@ class Candidate:
 
 
 def probability(row: Evidence, values: npt.ArrayLike) -> float:
-    """Return the probability of the interval of a row, over the seeds of the input and the error of the model.
-
-    Args:
-        row: evidence with the published interval.
-        values: our values for each seed or window, (n,).
-    """
+    """Return the probability of the interval of a row, over our values, (n,), and the error of the model."""
     return interval_probability(values, row.interval, error=row.error)
 
 
@@ -162,14 +153,7 @@ NUMBERS = ("velocity", "shaker", "noise", "level", "road")
 
 
 def table(readings: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED) -> Vector:
-    """Return the log-likelihood of every candidate with a rig, axes as `NUMBERS`.
-
-    Args:
-        found: what was read off the runs of the rig.
-        rig: its sides and body.
-        plan: the inputs.
-        keys: rows that count.
-    """
+    """Return the log-likelihood of every candidate with a rig, axes as `NUMBERS`."""
     sizes = dict(
         zip(
             NUMBERS,
@@ -201,12 +185,7 @@ def table(readings: Readings, rig: Rig, plan: Plan, keys: frozenset[str] = USED)
 
 
 def best(tables: Mapping[Rig, Vector], *, own_noise: bool = False) -> list[tuple[float, Candidate]]:
-    """Return the best candidate of each rig, the most likely first.
-
-    Args:
-        tables: rig to log-likelihoods, axes as `NUMBERS`.
-        own_noise: whether the noise of the bump may have another edge than the random inputs of the same shaker.
-    """
+    """Return the best candidate of each rig, the most likely first."""
     candidates = []
     for rig, rig_table in tables.items():
         free = (
@@ -234,12 +213,6 @@ def shipped_numbers(readings: Readings, rig: Rig, plan: Plan, whole: Vector) -> 
 
     Slip velocity and edges have nearly equal likelihoods along a line. Of these candidates those with the median slip
     velocity are selected, and of these the candidate with the smallest RMS deviation of the eight slip shares.
-
-    Args:
-        found: what was read off the runs of the rig.
-        rig: its sides and body.
-        plan: the inputs.
-        whole: log-likelihoods of the rig, axes as `NUMBERS`.
     """
     tied = np.eye(whole.shape[1], dtype=bool)[None, :, :, None, None] & (
         whole > best({rig: whole})[0][0] - BARE_MENTION
@@ -272,10 +245,6 @@ def jackknife(judged: Sequence[tuple[Readings, Candidate]], plan: Plan) -> float
     """Return the standard error of the difference of two log-likelihoods over the seeds of the inputs.
 
     Both candidates have the same seeds; jackknife over the seeds: e^2 = (n - 1) / n sum over i of (d_i - mean of d)^2.
-
-    Args:
-        judged: two candidates with their readings.
-        plan: the inputs.
     """
     differences = []
     for seed in range(plan.seeds):

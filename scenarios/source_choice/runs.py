@@ -54,18 +54,13 @@ SWING_RMS = 0.05
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Plan:
-    """Plan of the inputs of all candidates.
+    """Plan of the inputs of all candidates."""
 
-    Attributes:
-        seeds: number of records of each input.
-        shaker_edges, road_edges: band edges of `candidates`, or a subset [Hz].
-        shaker_s, road_s: duration of the records [s].
-    """
-
-    seeds: int = 8
+    seeds: int = 8  # number of records of each input
+    # shaker_edges, road_edges: band edges of `candidates`, or a subset [Hz]
     shaker_edges: tuple[float, ...] = SHAKER_EDGES
     road_edges: tuple[float, ...] = ROAD_EDGES
-    shaker_s: float = 60.0
+    shaker_s: float = 60.0  # shaker_s, road_s: duration of the records [s]
     road_s: float = 60.0
 
 
@@ -95,28 +90,18 @@ PATHS = {
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Readings:
-    """Values of one rig, including both roof points.
+    """Values of one rig, including both roof points."""
 
-    Attributes:
-        shaker: slip shares, (edges, levels, seeds, [plate, other side], slip velocities).
-        extremes: lowest and highest of `POINTS` [m/s2], (edges of the noise, seeds, bumps, points, 2).
-        stick_end: end of sticking for a 7.5 mm bump that begins at 5 s [s], (edges, seeds); infinite without slip.
-        fastest: largest velocity of the damper over the plate [m/s], (edges, seeds, bumps).
-        comfort: relative comfort value of `ENDS`, (road edges, roads, seeds, ends).
-        road: slip shares of the damper over the plate, (edges, roads, seeds, slip velocities).
-        levels: largest |seat rail, vertical| over the cars of `evidence.LEVELS` in every half second [m/s2],
-            (edges, figures, seeds * windows).
-        modes: frequencies [Hz] of wheel, roll, highest rigid body mode, lowest and highest engine mode.
-    """
-
-    shaker: Vector
-    extremes: Vector
-    stick_end: Vector
-    fastest: Vector
-    comfort: Vector
-    road: Vector
+    shaker: Vector  # slip shares, (edges, levels, seeds, [plate, other side], slip velocities)
+    extremes: Vector  # lowest and highest of `POINTS` [m/s2], (edges of the noise, seeds, bumps, points, 2)
+    stick_end: Vector  # end of sticking for a 7.5 mm bump that begins at 5 s [s], (edges, seeds); infinite without slip
+    fastest: Vector  # largest velocity of the damper over the plate [m/s], (edges, seeds, bumps)
+    comfort: Vector  # relative comfort value of `ENDS`, (road edges, roads, seeds, ends)
+    road: Vector  # slip shares of the damper over the plate, (edges, roads, seeds, slip velocities)
+    # largest |seat rail, vertical| over the cars of `evidence.LEVELS` in every half second [m/s2], (edges, figures,
+    # seeds * windows)
     levels: Vector
-    modes: Vector
+    modes: Vector  # frequencies [Hz] of wheel, roll, highest rigid body mode, lowest and highest engine mode
 
     def without(self, seed: int) -> Readings:
         """Return the readings without one seed."""
@@ -135,12 +120,9 @@ class Readings:
 
 
 def readings(rigs: Sequence[Rig], plan: Plan, folder: Path) -> list[Readings]:
-    """Run rigs and return their readings; a batch of eight takes little more time than a single rig.
+    """Run rigs with the plate on the same side and return their readings.
 
-    Args:
-        rigs: rigs with the plate on the same side.
-        plan: the inputs.
-        folder: folder of the vehicle files.
+    A batch of eight takes little more time than a single rig.
     """
     wheel = PLATES[rigs[0].plate]
     every = [entry for rig in rigs for entry in _cars(folder, rig.hydromount, rig.brackets, rig.overrides())]
@@ -297,9 +279,7 @@ def _bumps(cars: Sequence[Car], signals: Sequence[Sequence[Signal]], wheel: str)
 def _roads(every: Sequence[Car], plan: Plan, edge: float, wheel: str) -> tuple[Vector, Vector, Vector]:
     """Return comfort (roads, seeds, cars, ends), slip (.., velocities) and levels (figures, cars, windows).
 
-    Args:
-        every: each car followed by those at the ends of its comfort curves.
-        plan, edge, wheel: records, their lower edge [Hz], and what they drive.
+    `every` has each car followed by those at the ends of its comfort curves; the lower edge of the records is in Hz.
     """
     count = 1 + len(ENDS)
     rail, (speed, _) = [f"seat_rail_acc_{axis}" for axis in AXES], _velocities(wheel)

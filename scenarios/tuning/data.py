@@ -107,12 +107,7 @@ def _noisy(clean: FrequencyResponse, noise: np.random.Generator) -> FrequencyRes
 
 
 def driven_channels(channels: Sequence[str], wheel: str) -> tuple[str, ...]:
-    """Return the names of channels with the wheel on the shaker.
-
-    Args:
-        channels: names with `{wheel}` in its place.
-        wheel: name of the wheel, as "fl".
-    """
+    """Return the names of channels, with the wheel on the shaker in place of `{wheel}`."""
     return tuple(name.format(wheel=wheel) for name in channels)
 
 

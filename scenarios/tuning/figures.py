@@ -15,13 +15,7 @@ from vehicle.studies.tuning.tuning_figures import short_name
 
 
 def parameter_figure(path: Path, results: Mapping[str, TuningResult], true: Mapping[str, float]) -> None:
-    """Draw fitted values with three standard errors over the hidden values.
-
-    Args:
-        path: PNG file.
-        results: name of a fit to its result; the first fit has all parameters.
-        true: path to hidden value.
-    """
+    """Draw fitted values with three standard errors over the hidden values."""
     first = next(iter(results.values()))
     paths = [
         parameter.path

@@ -52,7 +52,7 @@ def test_an_extreme_agrees_inside_its_interval():
 
 def test_a_spread_agrees_where_the_interval_is_probable_and_prints_the_probability():
     narrow = [0.45, 0.46, 0.47, 0.46, 0.45, 0.47, 0.46, 0.46]  # within one tick
-    inside = spread_claim("a", (0.4, 0.6), narrow, "w", place="figure 3.13", picture="seat_rail.png")
+    inside = spread_claim("a", (0.4, 0.6), narrow, "w").at("figure 3.13", "seat_rail.png")
     assert inside.within and inside.probability == pytest.approx(1.0, abs=1e-4)
     assert inside.ours == "0.46 +- 0.0076 (8 values)"
     assert inside.why == "probability of the interval 100 %, must be above 5 %; w"
@@ -131,7 +131,7 @@ def test_files_hold_rows_notes_and_data(tmp_path):
     rows = [
         TABLE.number("a | b", 2.0, 2.1, 0.2, "w"),
         made("fitted", False),
-        interval_claim("c", (95.0, float("inf")), 90.0, "v", place="figure 4.12"),
+        interval_claim("c", (95.0, float("inf")), 90.0, "v").at("figure 4.12"),
     ]
     Findings(title="Title", claims=rows, notes=["A note."], data={"extra": [1.0, float("inf")]}).write(tmp_path)
     text = (tmp_path / "results.md").read_text(encoding="utf-8")

@@ -34,12 +34,9 @@ class CarScene:
         server: viser server.
         car: the car.
         rig: draw plates, shakers and stands.
-
-    Attributes:
-        wire: points and lines of the car.
     """
 
-    wire: CarWireframe
+    wire: CarWireframe  # points and lines of the car
 
     def __init__(self, server: Any, car: Car, *, rig: bool) -> None:
         self.server, self.rig = server, rig

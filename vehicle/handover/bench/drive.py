@@ -28,30 +28,19 @@ RISE = 2.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BenchDrive:
-    """Input of the bench.
+    """Input of the bench."""
 
-    Attributes:
-        record: excerpt, with the time before it.
-        skip: time before the evaluated excerpt [s].
-        inputs: inputs of the FRFs, with the density of the excerpt.
-        probe: the same as a signal.
-        overrides: parameters that the input sets on its car: the speed of rolling tyres.
-        road: description of the road for files of a run; None for a signal.
-        label: description of the input.
-        speed: speed on the road [m/s]; None for a signal.
-        shown: time in the record at which the moving picture begins [s]: the evaluated part, or an obstacle in it.
-        source, drive: the road with its length, and the drive of a car over it; None for a signal.
-    """
-
-    record: Signal
-    skip: float
-    inputs: PhaseInputs
-    probe: Signal
-    overrides: tuple[str, ...]
-    road: Mapping[str, object] | None
-    label: str
-    speed: float | None = None
+    record: Signal  # excerpt, with the time before it
+    skip: float  # time before the evaluated excerpt [s]
+    inputs: PhaseInputs  # inputs of the FRFs, with the density of the excerpt
+    probe: Signal  # the same as a signal
+    overrides: tuple[str, ...]  # parameters that the input sets on its car: the speed of rolling tyres
+    road: Mapping[str, object] | None  # description of the road for files of a run; None for a signal
+    label: str  # description of the input
+    speed: float | None = None  # speed on the road [m/s]; None for a signal
+    # time in the record at which the moving picture begins [s]: the evaluated part, or an obstacle in it
     shown: float = 0.0
+    # source, drive: the road with its length, and the drive of a car over it; None for a signal
     source: Road | None = None
     drive: Drive | None = None
 

@@ -31,36 +31,23 @@ PHASES = 48
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarPose:
-    """Instant of a motion.
+    """Instant of a motion."""
 
-    Attributes:
-        coordinates: displacements u over the velocity coordinates of `Car.geometry`; (n,).
-        plates: wheel to displacement of its plate [m].
-        time: time in the record of the input [s].
-    """
-
-    coordinates: Vector
-    plates: Mapping[str, float]
-    time: float
+    coordinates: Vector  # displacements u over the velocity coordinates of `Car.geometry`; (n,)
+    plates: Mapping[str, float]  # wheel to displacement of its plate [m]
+    time: float  # time in the record of the input [s]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarMotion:
-    """Small motion about the design position.
+    """Small motion about the design position."""
 
-    Attributes:
-        coordinates: displacements u over the velocity coordinates of `Car.geometry`, at equal intervals; (n, samples).
-        plates: wheel to displacement of its plate [m]; (samples,). Empty for a mode.
-        rate: samples a second [Hz].
-        start: time of the first sample in the record of the input [s].
-        on_road: True for a run on a road.
-    """
-
+    # displacements u over the velocity coordinates of `Car.geometry`, at equal intervals; (n, samples)
     coordinates: Vector
-    plates: Mapping[str, Vector]
-    rate: float
-    start: float = 0.0
-    on_road: bool = False
+    plates: Mapping[str, Vector]  # wheel to displacement of its plate [m]; (samples,). Empty for a mode.
+    rate: float  # samples a second [Hz]
+    start: float = 0.0  # time of the first sample in the record of the input [s]
+    on_road: bool = False  # True for a run on a road
 
     def pose(self, time: float) -> CarPose:
         """Return the motion at a time [s] after its begin; it repeats."""

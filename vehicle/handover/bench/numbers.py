@@ -35,34 +35,22 @@ where the dampers slip."""
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class BenchNumbers:
-    """Values of a car on the input of a bench.
+    """Values of a car on the input of a bench."""
 
-    Attributes:
-        comfort: comfort of the excerpt, as `Run.comfort`.
-        slip: wheel to slip share of its damper, as `Run.slip_share` [-].
-        spectra: spectra of the vertical seat rail, unweighted and weighted, as `Run.psd`.
-        names: channels of `frf`.
-        frf: FRFs [m/s2 per m] to the first plate at the level of the excerpt, with standard error.
-        time: times of the evaluated excerpt [s]; (n,).
-        acceleration: vertical acceleration of the seat rail [m/s2]; (n,).
-        damper_velocity, damper_force: damper to velocity [m/s] and force [N]; (n,) each.
-        obstacle: values of the crossing of an obstacle, as in `summary.json`; None without an obstacle.
-        warnings: exceeded limits of the reduced engine.
-        seconds: processor time of this thread for all of this [s].
-    """
-
-    comfort: RunComfort
-    slip: Mapping[str, float]
-    spectra: tuple[ChannelSpectrum, ...]
-    names: tuple[str, ...]
-    frf: FrequencyResponse
-    time: Vector
-    acceleration: Vector
+    comfort: RunComfort  # comfort of the excerpt, as `Run.comfort`
+    slip: Mapping[str, float]  # wheel to slip share of its damper, as `Run.slip_share` [-]
+    spectra: tuple[ChannelSpectrum, ...]  # spectra of the vertical seat rail, unweighted and weighted, as `Run.psd`
+    names: tuple[str, ...]  # channels of `frf`
+    frf: FrequencyResponse  # FRFs [m/s2 per m] to the first plate at the level of the excerpt, with standard error
+    time: Vector  # times of the evaluated excerpt [s]; (n,)
+    acceleration: Vector  # vertical acceleration of the seat rail [m/s2]; (n,)
+    # damper_velocity, damper_force: damper to velocity [m/s] and force [N]; (n,) each
     damper_velocity: Mapping[str, Vector]
     damper_force: Mapping[str, Vector]
+    # values of the crossing of an obstacle, as in `summary.json`; None without an obstacle
     obstacle: ObstacleSummary | None
-    warnings: tuple[str, ...]
-    seconds: float
+    warnings: tuple[str, ...]  # exceeded limits of the reduced engine
+    seconds: float  # processor time of this thread for all of this [s]
 
     def table(self) -> dict[str, tuple[float, str]]:
         """Return the numbers of the table: name to value and unit."""

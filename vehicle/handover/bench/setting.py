@@ -26,22 +26,14 @@ STEPS = 400
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Setting:
-    """Number of a car that a slider changes.
+    """Number of a car that a slider changes."""
 
-    Attributes:
-        path: path for `--set`; of a component of a vector with its axis.
-        value: value of the unchanged car.
-        low, high: range of the slider.
-        unit: SI unit, "-" for none.
-        meaning: one line.
-    """
-
-    path: str
-    value: float
-    low: float
+    path: str  # path for `--set`; of a component of a vector with its axis
+    value: float  # value of the unchanged car
+    low: float  # low, high: range of the slider
     high: float
-    unit: str
-    meaning: str
+    unit: str  # SI unit, "-" for none
+    meaning: str  # one line
 
     @property
     def step(self) -> float:

@@ -52,30 +52,18 @@ COMMANDS = {"force": "N", "coefficient": "N s/m"}
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class CarNumbers:
-    """Numbers of a car for the runtime.
+    """Numbers of a car for the runtime."""
 
-    Attributes:
-        content: content of resources/car.bin.
-        token: text that ties model description and resources together.
-        step: internal time step [s].
-        rolling: True for rolling tyres.
-        plates, dampers: names of the wheels with plates and of the dampers.
-        outputs: the outputs.
-        parameters: first values of the parameters; (dampers, `PARAMETERS`).
-        extents: offset in the file and size of each array by its path in the record [byte].
-        table: the table of the car, whose sections begin at `table.rows`.
-    """
-
-    content: bytes
-    token: str
-    step: float
-    rolling: bool
-    plates: tuple[str, ...]
+    content: bytes  # content of resources/car.bin
+    token: str  # text that ties model description and resources together
+    step: float  # internal time step [s]
+    rolling: bool  # True for rolling tyres
+    plates: tuple[str, ...]  # plates, dampers: names of the wheels with plates and of the dampers
     dampers: tuple[str, ...]
-    outputs: tuple[Output, ...]
-    parameters: Vector
-    extents: dict[str, tuple[int, int]]
-    table: CarTable
+    outputs: tuple[Output, ...]  # the outputs
+    parameters: Vector  # first values of the parameters; (dampers, `PARAMETERS`)
+    extents: dict[str, tuple[int, int]]  # offset in the file and size of each array by its path in the record [byte]
+    table: CarTable  # the table of the car, whose sections begin at `table.rows`
 
 
 def car_numbers(car: Car, channels: Sequence[str], step: float) -> CarNumbers:

@@ -41,19 +41,12 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WrittenFmu:
-    """Written FMU.
+    """Written FMU."""
 
-    Attributes:
-        path: the file.
-        variables: its variables.
-        platforms: its platforms, by their names in FMI 3.0.
-        step: internal time step [s].
-    """
-
-    path: Path
-    variables: tuple[Variable, ...]
-    platforms: tuple[str, ...]
-    step: float
+    path: Path  # the file
+    variables: tuple[Variable, ...]  # its variables
+    platforms: tuple[str, ...]  # its platforms, by their names in FMI 3.0
+    step: float  # internal time step [s]
 
     def count(self, causality: str) -> int:
         """Return the number of variables of a causality."""

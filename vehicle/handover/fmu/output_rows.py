@@ -39,34 +39,23 @@ LOAD_MEANING = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Output:
-    """Output of an FMU.
+    """Output of an FMU."""
 
-    Attributes:
-        name, unit, meaning: name, unit and description.
-        kind: what it reads.
-        damper: index of its damper; 0 for a linear output.
-    """
-
-    name: str
+    name: str  # name, unit, meaning: name, unit and description
     unit: str
     meaning: str
-    kind: int = LINEAR
-    damper: int = 0
+    kind: int = LINEAR  # what it reads
+    damper: int = 0  # index of its damper; 0 for a linear output
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class OutputRows:
-    """Linear outputs with their direct terms.
+    """Linear outputs with their direct terms."""
 
-    Attributes:
-        outputs: rows over the poles and the plates.
-        fixed: static values; (k,).
-        force, slope, law: rows over damper forces, slope forces and forces of laws at the same instant; (k, d), (k, m),
-            (k, laws).
-    """
-
-    outputs: Outputs
-    fixed: Vector
+    outputs: Outputs  # rows over the poles and the plates
+    fixed: Vector  # static values; (k,)
+    # force, slope, law: rows over damper forces, slope forces and forces of laws at the same instant; (k, d), (k, m),
+    # (k, laws)
     force: Vector
     slope: Vector
     law: Vector
@@ -83,17 +72,11 @@ class OutputRows:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Watched:
-    """Quantities of a car that must stay within limits.
+    """Quantities of a car that must stay within limits."""
 
-    Attributes:
-        rows: their rows; (k, ...).
-        limits: lowest and highest value of each; (k, 2).
-        notices: what a value beyond its limits means.
-    """
-
-    rows: OutputRows
-    limits: Vector
-    notices: Sequence[str]
+    rows: OutputRows  # their rows; (k, ...)
+    limits: Vector  # lowest and highest value of each; (k, 2)
+    notices: Sequence[str]  # what a value beyond its limits means
 
     def part(self, indices: Sequence[int]) -> Watched:
         """Return the quantities with these indices, in their order."""

@@ -52,23 +52,14 @@ _MEANING = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Variable:
-    """Variable of an FMU.
+    """Variable of an FMU."""
 
-    Attributes:
-        name: its name.
-        reference: value reference.
-        causality: "independent", "input", "parameter" or "output".
-        unit: key of `UNITS`; empty for a number.
-        start: first value of an input or a parameter; None for time and outputs.
-        meaning: description.
-    """
-
-    name: str
-    reference: int
-    causality: str
-    unit: str
-    start: float | None = None
-    meaning: str = ""
+    name: str  # its name
+    reference: int  # value reference
+    causality: str  # "independent", "input", "parameter" or "output"
+    unit: str  # key of `UNITS`; empty for a number
+    start: float | None = None  # first value of an input or a parameter; None for time and outputs
+    meaning: str = ""  # description
 
     @property
     def variability(self) -> str:

@@ -39,34 +39,22 @@ SPEEDS = (0.75, 1.0, 1.25)
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RunRoad:
-    """Road of a run at constant speed.
+    """Road of a run at constant speed."""
 
-    Attributes:
-        road_class: class of ISO 8608; None for another road.
-        speed: speed V [km/h].
-        behind: distance between each wheel and the foremost wheel [m].
-    """
-
-    road_class: str | None
-    speed: float
-    behind: Mapping[str, float]
+    road_class: str | None  # class of ISO 8608; None for another road
+    speed: float  # speed V [km/h]
+    behind: Mapping[str, float]  # distance between each wheel and the foremost wheel [m]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class PageInput:
-    """Input of a car in the page.
+    """Input of a car in the page."""
 
-    Attributes:
-        signal: heights of the plates from their first samples, not rounded.
-        tracks: heights of each track at the samples of the run [m].
-        wheels: wheels, index of their track, distance b behind its begin [samples of the run].
-        road: road of the run; None for plates without a common road.
-    """
-
-    signal: Signal
-    tracks: tuple[Vector, ...]
+    signal: Signal  # heights of the plates from their first samples, not rounded
+    tracks: tuple[Vector, ...]  # heights of each track at the samples of the run [m]
+    # wheels, index of their track, distance b behind its begin [samples of the run]
     wheels: tuple[tuple[str, int, float], ...]
-    road: RunRoad | None
+    road: RunRoad | None  # road of the run; None for plates without a common road
 
     @property
     def interval(self) -> float:

@@ -20,17 +20,11 @@ from vehicle.runs.car.axle import direction_to_middle
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class RollStiffness:
-    """Roll stiffness of an axle [N m/rad].
+    """Roll stiffness of an axle [N m/rad]."""
 
-    Attributes:
-        springs: springs, bushings and preloads.
-        bars: springs on hinges between the sides: anti-roll bar, torsion of a beam.
-        tyres: tyres.
-    """
-
-    springs: float
-    bars: float
-    tyres: float
+    springs: float  # springs, bushings and preloads
+    bars: float  # springs on hinges between the sides: anti-roll bar, torsion of a beam
+    tyres: float  # tyres
 
     @property
     def suspension(self) -> float:
@@ -45,59 +39,33 @@ class RollStiffness:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AxleData:
-    """Axle of a car in its design position; values of one wheel are those of the right one. None: not defined.
+    """Axle of a car in its design position; values of one wheel are those of the right one. None: not defined."""
 
-    Attributes:
-        name: table of the vehicle file.
-        template: its template.
-        wheels: names of the wheels.
-        x_m: position of the wheel centres along the car [m].
-        front: True for an axle in front of the centre of gravity.
-        track_m: distance of the contact points [m].
-        radius_m: loaded radius [m].
-        load_n: static load by wheel [N].
-        unsprung_kg: unsprung mass of both wheels.
-        sprung_kg: mass that the axle carries above its unsprung mass.
-        wheel_rate_n_per_m: stiffness at the wheel without its tyre.
-        spring_n_per_m: stiffness of the springs of one side in their static position.
-        spring_ratio: compression of the spring per wheel travel [-].
-        spring_at_wheel_n_per_m: sum of k i^2 of the springs of one side.
-        damper_ratio: compression of the damper per wheel travel [-].
-        damper_n_s_per_m: damping constant of the modes with sliding dampers: the smallest slope of the law.
-        curved_damper: True if the law of the damper has other slopes too.
-        tyre_n_per_m: vertical stiffness of the tyre.
-        ride_rate_n_per_m: wheel rate and tyre in series.
-        ride_frequency_hz: undamped frequency of the sprung mass on the ride rate.
-        bump_steer_deg_per_m: toe-in per wheel travel in the design position, with ideal joints.
-        roll: roll stiffness.
-        geometry: roll centre, swing arms, support angles, steering axis.
-        ideal: True if geometry and ratios are those of ideal joints; False if ideal joints lock the
-            axle, so that its bushings yield.
-    """
-
-    name: str
-    template: str
-    wheels: tuple[str, ...]
-    x_m: float
-    front: bool
-    track_m: float
-    radius_m: float
-    load_n: Mapping[str, float]
-    unsprung_kg: float
-    sprung_kg: float
-    wheel_rate_n_per_m: float
-    spring_n_per_m: float | None
-    spring_ratio: float | None
-    spring_at_wheel_n_per_m: float | None
-    damper_ratio: float | None
-    damper_n_s_per_m: float | None
-    curved_damper: bool
-    tyre_n_per_m: float
-    ride_rate_n_per_m: float
-    ride_frequency_hz: float | None
-    bump_steer_deg_per_m: float
-    roll: RollStiffness
-    geometry: WheelGeometry
+    name: str  # table of the vehicle file
+    template: str  # its template
+    wheels: tuple[str, ...]  # names of the wheels
+    x_m: float  # position of the wheel centres along the car [m]
+    front: bool  # True for an axle in front of the centre of gravity
+    track_m: float  # distance of the contact points [m]
+    radius_m: float  # loaded radius [m]
+    load_n: Mapping[str, float]  # static load by wheel [N]
+    unsprung_kg: float  # unsprung mass of both wheels
+    sprung_kg: float  # mass that the axle carries above its unsprung mass
+    wheel_rate_n_per_m: float  # stiffness at the wheel without its tyre
+    spring_n_per_m: float | None  # stiffness of the springs of one side in their static position
+    spring_ratio: float | None  # compression of the spring per wheel travel [-]
+    spring_at_wheel_n_per_m: float | None  # sum of k i^2 of the springs of one side
+    damper_ratio: float | None  # compression of the damper per wheel travel [-]
+    damper_n_s_per_m: float | None  # damping constant of the modes with sliding dampers: the smallest slope of the law
+    curved_damper: bool  # True if the law of the damper has other slopes too
+    tyre_n_per_m: float  # vertical stiffness of the tyre
+    ride_rate_n_per_m: float  # wheel rate and tyre in series
+    ride_frequency_hz: float | None  # undamped frequency of the sprung mass on the ride rate
+    bump_steer_deg_per_m: float  # toe-in per wheel travel in the design position, with ideal joints
+    roll: RollStiffness  # roll stiffness
+    geometry: WheelGeometry  # roll centre, swing arms, support angles, steering axis
+    # True if geometry and ratios are those of ideal joints; False if ideal joints lock the axle, so that its bushings
+    # yield
     ideal: bool
 
     def __repr__(self) -> str:

@@ -35,15 +35,10 @@ SURVEY = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AxleGeometry:
-    """Lengths by which radii of gyration are measured [m].
+    """Lengths by which radii of gyration are measured [m]."""
 
-    Attributes:
-        track: mean track.
-        front, rear: distance of the centre of gravity from the axles.
-    """
-
-    track: float
-    front: float
+    track: float  # mean track
+    front: float  # front, rear: distance of the centre of gravity from the axles
     rear: float
 
     def inertia(self, mass: float, indices: Sequence[float]) -> tuple[float, float, float]:

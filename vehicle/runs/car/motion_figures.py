@@ -31,38 +31,23 @@ MINIMUM_SHARE = 0.2
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MotionMode:
-    """Mode of the whole car with at least `MINIMUM_SHARE` of a motion.
+    """Mode of the whole car with at least `MINIMUM_SHARE` of a motion."""
 
-    Attributes:
-        frequency_hz: natural frequency [Hz].
-        damping_ratio: damping ratio [-].
-        share: share of the motion in the kinetic energy of the mode [-].
-        description: name of the mode; of its two largest motions if none has half of the energy.
-    """
-
-    frequency_hz: float
-    damping_ratio: float
-    share: float
-    description: str
+    frequency_hz: float  # natural frequency [Hz]
+    damping_ratio: float  # damping ratio [-]
+    share: float  # share of the motion in the kinetic energy of the mode [-]
+    description: str  # name of the mode; of its two largest motions if none has half of the energy
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MotionFigure:
-    """Headline figure of a car: one motion of the sprung mass or of the wheels of an axle on its rates.
+    """Headline figure of a car: one motion of the sprung mass or of the wheels of an axle on its rates."""
 
-    Attributes:
-        motion: "heave", "pitch", "roll", or "front wheel hop" and so on by axle.
-        dampers: "sliding" or "stuck".
-        frequency_hz: undamped natural frequency [Hz]; None if it is not defined.
-        damping_ratio: damping ratio [-], dampers at 0.1 m/s; None if it is not defined.
-        modes: modes of the whole car with this motion, by frequency.
-    """
-
-    motion: str
-    dampers: DamperState
-    frequency_hz: float | None
-    damping_ratio: float | None
-    modes: tuple[MotionMode, ...]
+    motion: str  # "heave", "pitch", "roll", or "front wheel hop" and so on by axle
+    dampers: DamperState  # "sliding" or "stuck"
+    frequency_hz: float | None  # undamped natural frequency [Hz]; None if it is not defined
+    damping_ratio: float | None  # damping ratio [-], dampers at 0.1 m/s; None if it is not defined
+    modes: tuple[MotionMode, ...]  # modes of the whole car with this motion, by frequency
 
 
 @lru_cache(maxsize=4)

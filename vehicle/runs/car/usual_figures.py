@@ -29,24 +29,15 @@ DEGREES = math.pi / 180.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class UsualFigure:
-    """Figure of a car or of an axle in its printed unit.
+    """Figure of a car or of an axle in its printed unit."""
 
-    Attributes:
-        name: name with the unit.
-        axle: name of the axle; empty for a figure of the car.
-        value: value; nan if it is not defined.
-        decimals: decimals of the printed value.
-        low, high: usual range; nan without a range.
-        source: source of the range.
-    """
-
-    name: str
-    axle: str
-    value: float
-    decimals: int
-    low: float = math.nan
+    name: str  # name with the unit
+    axle: str  # name of the axle; empty for a figure of the car
+    value: float  # value; nan if it is not defined
+    decimals: int  # decimals of the printed value
+    low: float = math.nan  # low, high: usual range; nan without a range
     high: float = math.nan
-    source: str = ""
+    source: str = ""  # source of the range
 
     @property
     def unusual(self) -> bool:

@@ -23,48 +23,29 @@ BANDS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 50.0)
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FrfComparison:
-    """Comparison of one response.
+    """Comparison of one response."""
 
-    Attributes:
-        channel: output, a channel of the model.
-        plate: input, as "plate_fr"; empty if unknown.
-        frequency: lines of the measurement [Hz], (m,).
-        measured, simulated: [m/s2 per m], (m,); NaN where undefined.
-        measured_coherence, simulated_coherence: [-], (m,); NaN if unknown.
-        frac: FRAC over all lines [-].
-        scaled_frac: FRAC with the best scale of the simulated frequencies [-].
-        scale: this scale [-].
-        bands: errors of the bands.
-    """
-
-    channel: str
-    plate: str
-    frequency: Vector
-    measured: Complex
+    channel: str  # output, a channel of the model
+    plate: str  # input, as "plate_fr"; empty if unknown
+    frequency: Vector  # lines of the measurement [Hz], (m,)
+    measured: Complex  # measured, simulated: [m/s2 per m], (m,); NaN where undefined
     simulated: Complex
-    measured_coherence: Vector
+    measured_coherence: Vector  # measured_coherence, simulated_coherence: [-], (m,); NaN if unknown
     simulated_coherence: Vector
-    frac: float
-    scaled_frac: float
-    scale: float
-    bands: tuple[BandError, ...]
+    frac: float  # FRAC over all lines [-]
+    scaled_frac: float  # FRAC with the best scale of the simulated frequencies [-]
+    scale: float  # this scale [-]
+    bands: tuple[BandError, ...]  # errors of the bands
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Signatures:
-    """Agreement of all responses together, line by line.
+    """Agreement of all responses together, line by line."""
 
-    Attributes:
-        frequency: [Hz], (m,).
-        csac: CSAC, agreement of the shape [-], (m,).
-        csf: CSF, agreement of shape and amplitude [-], (m,).
-        channels: number of responses, each an output to an input.
-    """
-
-    frequency: Vector
-    csac: Vector
-    csf: Vector
-    channels: int
+    frequency: Vector  # [Hz], (m,)
+    csac: Vector  # CSAC, agreement of the shape [-], (m,)
+    csf: Vector  # CSF, agreement of shape and amplitude [-], (m,)
+    channels: int  # number of responses, each an output to an input
 
 
 def edges_of(text: str) -> tuple[float, ...]:

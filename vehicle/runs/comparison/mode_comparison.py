@@ -32,21 +32,14 @@ LEAST_MAC = 0.5
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pair:
-    """Measured mode and the simulated mode with the highest MAC.
+    """Measured mode and the simulated mode with the highest MAC."""
 
-    Attributes:
-        measured, simulated: numbers of the modes, from 1.
-        mac: of their shapes [-].
-        measured_hz, simulated_hz: natural frequencies [Hz].
-        measured_damping, simulated_damping: damping ratios [-].
-    """
-
-    measured: int
+    measured: int  # measured, simulated: numbers of the modes, from 1
     simulated: int
-    mac: float
-    measured_hz: float
+    mac: float  # of their shapes [-]
+    measured_hz: float  # measured_hz, simulated_hz: natural frequencies [Hz]
     simulated_hz: float
-    measured_damping: float
+    measured_damping: float  # measured_damping, simulated_damping: damping ratios [-]
     simulated_damping: float
 
     @property
@@ -57,23 +50,16 @@ class Pair:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class ModeComparison:
-    """All modes.
+    """All modes."""
 
-    Attributes:
-        points: output point of the car to node of the file.
-        measured, simulated: the modes.
-        mac: (measured, simulated).
-        measured_auto, simulated_auto: AutoMAC; values near 1 off the diagonal: indistinguishable modes.
-        pairs: by measured frequency.
-    """
-
-    points: Mapping[str, str]
-    measured: Sequence[ModeShape]
+    points: Mapping[str, str]  # output point of the car to node of the file
+    measured: Sequence[ModeShape]  # measured, simulated: the modes
     simulated: Sequence[Mode]
-    mac: Matrix
+    mac: Matrix  # (measured, simulated)
+    # measured_auto, simulated_auto: AutoMAC; values near 1 off the diagonal: indistinguishable modes
     measured_auto: Matrix
     simulated_auto: Matrix
-    pairs: tuple[Pair, ...]
+    pairs: tuple[Pair, ...]  # by measured frequency
 
     def summary(self, file: str) -> dict[str, Any]:
         """Return plain numbers for JSON."""

@@ -24,20 +24,13 @@ from vehicle.runs.comparison.pictures import (
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class NamedPicture:
-    """Picture of a comparison.
+    """Picture of a comparison."""
 
-    Attributes:
-        write: function that writes the picture to a path.
-        draw: function that draws the picture on axes.
-        rows, columns: number of axes.
-        size: width and height of a new figure [inch].
-    """
-
-    write: Callable[[Path], None]
-    draw: Callable[[npt.NDArray[Any]], None]
-    rows: int
+    write: Callable[[Path], None]  # function that writes the picture to a path
+    draw: Callable[[npt.NDArray[Any]], None]  # function that draws the picture on axes
+    rows: int  # rows, columns: number of axes
     columns: int
-    size: tuple[float, float]
+    size: tuple[float, float]  # width and height of a new figure [inch]
 
 
 def pictures_of(comparison: Comparison) -> dict[str, NamedPicture]:

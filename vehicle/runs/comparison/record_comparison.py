@@ -24,30 +24,18 @@ LEAST_SAMPLES = 20
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class RecordComparison:
-    """One time history.
+    """One time history."""
 
-    Attributes:
-        channel: name in the model.
-        unit: of both.
-        time: of the run [s], (n,).
-        measured, simulated: (n,).
-        rms: of the measured one, in its unit.
-        rms_ratio: simulated over measured [-].
-        correlation: coefficient at equal times [-].
-        rating: after ISO/TS 18571, of windows at the full rate.
-        clock: time shift and drift of the simulated record; None if the records do not correlate.
-    """
-
-    channel: str
-    unit: str
-    time: Vector
-    measured: Vector
+    channel: str  # name in the model
+    unit: str  # of both
+    time: Vector  # of the run [s], (n,)
+    measured: Vector  # measured, simulated: (n,)
     simulated: Vector
-    rms: float
-    rms_ratio: float
-    correlation: float
-    rating: RecordRating
-    clock: TimeShift | None
+    rms: float  # of the measured one, in its unit
+    rms_ratio: float  # simulated over measured [-]
+    correlation: float  # coefficient at equal times [-]
+    rating: RecordRating  # after ISO/TS 18571, of windows at the full rate
+    clock: TimeShift | None  # time shift and drift of the simulated record; None if the records do not correlate
 
     @property
     def lag(self) -> float:

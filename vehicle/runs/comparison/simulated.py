@@ -20,20 +20,14 @@ Responses = Callable[[Sequence[str], float | None], FrfData | None]
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Simulated:
-    """Simulated data of a comparison.
+    """Simulated data of a comparison."""
 
-    Attributes:
-        name: name of the input.
-        record: all time histories; the first sample is at time 0.
-        responses: function of names of accelerations and of the length of Hann windows [s] or None; returns the
-            responses to each independent motion of the plates, or None.
-        tyres: state of the tyres, "standing" or "rolling at ..."; empty if unknown.
-    """
-
-    name: str
-    record: Record
+    name: str  # name of the input
+    record: Record  # all time histories; the first sample is at time 0
+    # function of names of accelerations and of the length of Hann windows [s] or None; returns the responses to each
+    # independent motion of the plates, or None
     responses: Responses
-    tyres: str = ""
+    tyres: str = ""  # state of the tyres, "standing" or "rolling at ..."; empty if unknown
 
 
 def of_run(run: Run) -> Simulated:

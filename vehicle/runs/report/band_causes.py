@@ -49,15 +49,10 @@ OTHER_SIDE = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    """Plates of a run at the spectral lines of a band.
+    """Plates of a run at the spectral lines of a band."""
 
-    Attributes:
-        frequency: [Hz]; (m,).
-        plates: complex amplitudes of the plate displacements [m]; (w, m).
-    """
-
-    frequency: npt.NDArray[np.float64]
-    plates: npt.NDArray[np.complex128]
+    frequency: npt.NDArray[np.float64]  # [Hz]; (m,)
+    plates: npt.NDArray[np.complex128]  # complex amplitudes of the plate displacements [m]; (w, m)
 
 
 def lines_of(run: FinishedRun, band: MainBand) -> Lines | None:

@@ -25,15 +25,10 @@ from vehicle.signals.records.run_summary import ComfortSummary, FrfSummary, Peak
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlateSignal:
-    """Excitation of a finished run, from its summary.
+    """Excitation of a finished run, from its summary."""
 
-    Attributes:
-        source: name of the file or of the road.
-        plate_rms: RMS displacement of each plate [m].
-    """
-
-    source: str
-    plate_rms: dict[str, float]
+    source: str  # name of the file or of the road
+    plate_rms: dict[str, float]  # RMS displacement of each plate [m]
 
     def rms(self, wheel: str) -> float:
         """RMS of the displacement of a plate [m]."""
@@ -42,24 +37,15 @@ class PlateSignal:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FinishedRun:
-    """Content of the folder of a run.
+    """Content of the folder of a run."""
 
-    Attributes:
-        name: short name in headings and legends.
-        folder: where its files are read.
-        place: final path of the folder, as in commands.
-        summary: content of `summary.json`.
-        car: the car with the parameters as used.
-        recording: time histories; no poses.
-        responses: FRFs of all acceleration channels to each independent motion of the plates; may be empty.
-    """
-
-    name: str
-    folder: Path
-    place: Path
-    summary: RunSummary
-    car: Car
-    recording: Recording
+    name: str  # short name in headings and legends
+    folder: Path  # where its files are read
+    place: Path  # final path of the folder, as in commands
+    summary: RunSummary  # content of `summary.json`
+    car: Car  # the car with the parameters as used
+    recording: Recording  # time histories; no poses
+    # FRFs of all acceleration channels to each independent motion of the plates; may be empty
     responses: tuple[MotionResponse, ...]
 
     @property

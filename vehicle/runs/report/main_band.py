@@ -22,20 +22,14 @@ HALF = 0.5
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MainBand:
-    """Band of third octaves of an axis with at least half of the mean square of this axis.
+    """Band of third octaves of an axis with at least half of the mean square of this axis."""
 
-    Attributes:
-        axis: "x", "y" or "z".
-        low, high: edges [Hz].
-        peak: midband frequency of the highest third octave [Hz].
-        share: mean square in the band over that of all axes; of a difference, over its total. May exceed 1 if other
-            bands change in the other direction [-].
-    """
-
-    axis: str
-    low: float
+    axis: str  # "x", "y" or "z"
+    low: float  # low, high: edges [Hz]
     high: float
-    peak: float
+    peak: float  # midband frequency of the highest third octave [Hz]
+    # mean square in the band over that of all axes; of a difference, over its total. May exceed 1 if other bands change
+    # in the other direction [-].
     share: float
 
 

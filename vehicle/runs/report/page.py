@@ -39,19 +39,12 @@ Part = tuple[str, str, Markup]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Trial:
-    """Section in which the reader changes the car, which then runs in the page; a higher package makes it.
+    """Section in which the reader changes the car, which then runs in the page; a higher package makes it."""
 
-    Attributes:
-        content: content of the section.
-        numbers: numbers of its scripts as JSON; empty if the page cannot run this car on these plates.
-        script: script of the page.
-        worker: script that computes, in a thread of its own.
-    """
-
-    content: Markup
-    numbers: str = ""
-    script: str = ""
-    worker: str = ""
+    content: Markup  # content of the section
+    numbers: str = ""  # numbers of its scripts as JSON; empty if the page cannot run this car on these plates
+    script: str = ""  # script of the page
+    worker: str = ""  # script that computes, in a thread of its own
 
 
 def report_page(
