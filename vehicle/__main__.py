@@ -59,7 +59,8 @@ def _print(typed: Sequence[str]) -> None:
     print("usage: python -m vehicle COMMAND [options]; `COMMAND --help` lists the options of a command\n")
     for name in COMMANDS:
         print(f"  {name:<11} {import_module(module_of(name)).parser().description}")
-    print("\n--version prints the version; --print-completion bash|zsh a script that completes commands and options")
+    print("\nfirst run: python -m vehicle shaker --input low.csv --report, then open runs/low/report.html")
+    print("--version prints the version; --print-completion bash|zsh a script that completes commands and options")
     print("--schema prints the JSON Schema of a vehicle file, --schema template that of a template")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
+from vehicle.digits import number
 from vehicle.names import side_of
 
 if TYPE_CHECKING:
@@ -19,9 +20,7 @@ def _each(wheels: Collection[str], say: Callable[[str, str], str], last: str = "
 
 def summary_text(summary: RunSummary) -> str:
     """Return the printed numbers and notes of a run from the content of its `summary.json`."""
-    share, first = summary["slip_share"], summary["first_slip_s"]
     load = summary["static"]["tyre_load_n"]
-    saturated, ended = summary["friction_saturated_share"], summary["first_friction_saturated_s"]
     plates = summary["input"]["plate_rms_m"]
     moved = [f"{1e3 * rms:.4g} mm ({side_of(wheel, plates)})" for wheel, rms in plates.items() if rms > 0.0]
     begin, end = summary["evaluated_s"]
@@ -32,15 +31,7 @@ def summary_text(summary: RunSummary) -> str:
         f"{summary['tyre']}",
     ]
     lines += _forces(summary)
-    if first:
-        lines += [
-            f"damper      slip (|v| > {1e3 * share['slip_velocity']:g} mm/s) for "
-            f"{_each(first, lambda w, side: f'{100 * share[w]:.2f} % ({side})', ' and ')} of the time; first "
-            f"{_each(first, lambda w, side: f'{_time(first[w])} ({side})')}",
-            f"            friction saturated (|v| > {1e3 * summary['saturated_velocity']:g} mm/s) for "
-            f"{_each(first, lambda w, _: f'{100 * saturated[w]:.2f} %', ' and ')}; first "
-            f"{_each(first, lambda w, side: f'{_time(ended[w])} ({side})')}",
-        ]
+    lines += _dampers(summary)
     for wheel, plate, peaks in _peaks(summary) if summary["frf"] is not None else ():
         for channel in (f"knuckle_{wheel}_acc_z", "seat_rail_acc_z", "engine_acc_z"):
             if channel not in peaks:
@@ -58,6 +49,32 @@ def summary_text(summary: RunSummary) -> str:
     lines += [f"warning     {text}" for text in summary["solver"]["warnings"]]
     lines += [f"note        {text}" for text in summary["notices"]]
     return "\n".join(lines)
+
+
+def _dampers(summary: RunSummary) -> list[str]:
+    """Return the line of sticking and slipping dampers, and that of fully developed friction; none without a damper."""
+    share, first = summary["slip_share"], summary["first_slip_s"]
+    full = {wheel: summary["friction_saturated_share"][wheel] for wheel in first}
+    limit, fast = 1e3 * share["slip_velocity"] if first else 0.0, 1e3 * summary["saturated_velocity"]
+    started = {wheel: time for wheel, time in first.items() if time is not None}
+    if not first:
+        return []
+    if not started:
+        every = (
+            "both dampers stick" if len(first) == 2 else "the damper sticks" if len(first) == 1 else "all dampers stick"
+        )
+        lines = [f"damper      {every} all the time (|v| < {limit:g} mm/s)"]
+    else:
+        shares = _each(first, lambda w, side: f"{number(100 * share[w])} % ({side})", " and ")
+        earliest = min(started, key=lambda wheel: started[wheel])
+        lines = [
+            f"damper      slip (|v| > {limit:g} mm/s) for {shares} of the time, first at {started[earliest]:.3g} s "
+            f"({side_of(earliest, first)})"
+        ]
+    if any(full.values()):
+        shares = _each(first, lambda w, side: f"{number(100 * full[w])} % ({side})", " and ")
+        lines.append(f"            full friction (|v| > {fast:g} mm/s) for {shares}")
+    return lines
 
 
 def _forces(summary: RunSummary) -> list[str]:
@@ -125,7 +142,3 @@ def _peaks(summary: RunSummary) -> list[tuple[str, str, Peaks]]:
     if len(inputs) < 2:
         return [(summary["input"]["wheel"], "", summary["peaks"])]
     return [(next(iter(each["plates"])), f"/{each['input']}", each["peaks"]) for each in inputs]
-
-
-def _time(value: float | None) -> str:
-    return "never" if value is None else f"at {value:.3f} s"
