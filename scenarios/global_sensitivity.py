@@ -22,7 +22,7 @@ from scenarios.signals.exact_road import LEAD_S, ROAD_EDGE_HZ, ROAD_RMS
 from scenarios.study import study_parser
 from vehicle.commands.command_line import ProgressLine, parse_and_run
 from vehicle.commands.destination import study_folder_of
-from vehicle.commands.options import VEHICLE_HELP, engine_option, resume_options
+from vehicle.commands.options import VEHICLE_HELP, resume_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.drawing.rendering.figure import COLOURS
 from vehicle.errors import ConfigurationError, SimulationError
@@ -38,6 +38,7 @@ from vehicle.studies.sweeps.executors import executor_factory
 from vehicle.studies.sweeps.indices import latin_hypercube, morris_effects, morris_sample, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.store import ROWS
 from vehicle.studies.sweeps.sweep import sweep
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Matrix = npt.NDArray[np.float64]
@@ -93,7 +94,7 @@ def parser() -> Parser:
     study_options.add_argument("--road", choices=sorted(ROAD_RMS), default="smooth", help="smooth by default")
     study_options.add_argument("--vehicle", type=vehicle_file, metavar="FILE.toml", help=VEHICLE_HELP)
     study_options.add_argument("--seed", type=int, default=2006, help="seed of the sample; 2006 by default")
-    engine_option(study_options, "auto")
+    setting_options(study_options, SweepSettings, "engine")
     study_options.add_argument("--executor", metavar="WHERE", help="dask://host:port, or module:factory")
     resume_options(study_options)
     return study_options

@@ -16,11 +16,12 @@ from scenarios.car_runs import CarRuns
 from scenarios.claims import Findings
 from vehicle.commands.command_line import parse_and_run
 from vehicle.commands.destination import study_folder_of
-from vehicle.commands.options import engine_option, jobs_option, message_options, output_options, vehicle_options
+from vehicle.commands.options import message_options, output_options, setting_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.runs.car import Run
 from vehicle.runs.output.folder import study_folder
 from vehicle.signals.analysis.frf import FrequencyResponse
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.threads import one_blas_thread
 
 STUDIES = {
@@ -70,7 +71,7 @@ def study_parser(name: str, *, quick: str, jobs: str = "") -> Parser:
     parser = Parser(prog=f"python -m scenarios.{name}", description=STUDIES.get(name))
     output_options(parser, Path("runs") / name)
     parser.add_argument("--quick", action="store_true", help=quick)
-    jobs_option(parser, note=jobs)
+    setting_options(parser, SweepSettings, "jobs", note=jobs)
     message_options(parser)
     return parser
 
@@ -133,7 +134,7 @@ def car_study(
     """Return a study of the complete car; arguments as in `Study`, and functions for options."""
     parser = study_parser(name, quick="short signals; what they cannot judge is left open")
     vehicle_options(parser)
-    engine_option(parser, "mujoco")
+    setting_options(parser, SweepSettings, "engine", default="mujoco")
     for add in options:
         add(parser)
     return Study(parser=parser, load=_car_runs, study=study)

@@ -16,7 +16,7 @@ from vehicle.commands import OLDER
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "vehicle"
 
-EVERYWHERE = {"digits", "errors", "names"}
+EVERYWHERE = {"digits", "errors", "names", "settings"}
 """May be used by every room."""
 
 WINGS = {
@@ -45,6 +45,7 @@ ROOMS: dict[str, set[str]] = {
     "names": set(),
     "machine": set(),
     "replacement": set(),
+    "settings": set(),
     "threads": set(),
     "version": set(),
     "core": set(),

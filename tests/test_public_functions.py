@@ -25,6 +25,7 @@ from vehicle import (
 from vehicle.signals.formats.text_format import write_table
 from vehicle.studies.sweeps.plan import changes_of, plan_sweep
 from vehicle.studies.sweeps.sweep_inputs import file_of, inputs_of
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.tuning.car_fit import ranges_of
 
 VISCOUS = "damper.viscous"
@@ -76,7 +77,9 @@ def test_inputs_of_many_runs(sedan):
 
 def test_a_sweep_runs_the_car_that_it_is_given(sedan):
     stiff = Car.load("sedan", {"body.mass": 1100.0})
-    plan = plan_sweep(stiff, {"rear.damper.viscous": [1500, 2500]}, Road("A", speed=72, duration=3), skip=1.0)
+    plan = plan_sweep(
+        stiff, {"rear.damper.viscous": [1500, 2500]}, Road("A", speed=72, duration=3), SweepSettings(skip=1.0)
+    )
     assert [case.overrides for case in plan.cases] == [
         ("body.mass=1100.0", "driving.speed=20.0", f"rear.damper.viscous={value}") for value in (1500, 2500)
     ]

@@ -31,11 +31,12 @@ from scenarios.four_post.runs import (
 )
 from scenarios.signals.four_post import DURATION_S, MOTIONS
 from scenarios.study import QUICK_NOTE, Study, study_parser
-from vehicle.commands.options import engine_option, vehicle_options
+from vehicle.commands.options import setting_options, vehicle_options
 from vehicle.commands.parser import Parser
 from vehicle.engines.linear.car_modes import Mode
 from vehicle.model.parameters.driving import tyre_words
 from vehicle.runs.car import Car
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 CARS = ("focus_road", "sedan")
 """Shipped cars on four wheels."""
@@ -317,7 +318,7 @@ def _parser() -> Parser:
     jobs = "; this study runs in one process, so that it changes nothing"
     parser = study_parser("four_post", quick="short signals at two levels; peaks are left open", jobs=jobs)
     vehicle_options(parser)
-    engine_option(parser, "auto")
+    setting_options(parser, SweepSettings, "engine")
     return parser
 
 

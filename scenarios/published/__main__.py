@@ -21,10 +21,11 @@ from scenarios.published.table import collect
 from scenarios.study import main_of
 from vehicle.commands.command_line import parse_and_run
 from vehicle.commands.destination import study_folder_of
-from vehicle.commands.options import jobs_option, message_options, output_options
+from vehicle.commands.options import message_options, output_options, setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import DataError, SimulationError
 from vehicle.runs.output.folder import study_folder, write_text
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 HOME = Path("renders/published")
 """The table and the pictures of the full studies are kept under version control."""
@@ -52,7 +53,7 @@ def parser() -> Parser:
     )
     result.add_argument("--reuse", action="store_true", help="read studies that are finished there, run the others")
     result.add_argument("--quick", action="store_true", help="short signals; what they cannot judge is left open")
-    jobs_option(result)
+    setting_options(result, SweepSettings, "jobs")
     message_options(result)
     return result
 

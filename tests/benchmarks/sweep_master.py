@@ -26,6 +26,7 @@ from vehicle.signals.analysis.ride_comfort import WAVE_NAMES
 from vehicle.studies.sweeps.case_result import Block, Result, row_text
 from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 VARIED = ("damper.viscous", "damper.coulomb_friction", "bushings.suspension_mount.stiffness.z")
 """Parameters of the cases: three columns."""
@@ -77,7 +78,7 @@ def measured(cases: int) -> dict[str, float]:
     with TemporaryDirectory() as folder:
         executor = Instant()
         began = time.process_time()
-        plan = plan_sweep(car, vary, "low.csv", engine="reduced")
+        plan = plan_sweep(car, vary, "low.csv", SweepSettings(engine="reduced"))
         table = plan.run(executor=executor, folder=Path(folder))
         seconds = time.process_time() - began - executor.seconds
         size = sum(path.stat().st_size for path in Path(folder).iterdir())

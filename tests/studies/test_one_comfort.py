@@ -17,6 +17,7 @@ from vehicle.signals.analysis.ride_comfort import ERROR, comfort_columns, comfor
 from vehicle.studies.optimisation.ride import QUANTITIES, ride_measure
 from vehicle.studies.sweeps.measure import ComfortMeasure
 from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 VISCOUS = "front.damper.viscous"
 NAMES = (
@@ -43,7 +44,7 @@ def car():
 
 def swept(car, source, engine):
     """Return the values of the car in a sweep and in a search, without a start of the evaluation that is asked for."""
-    plan = plan_sweep(car, {VISCOUS: [1500.0, 2000.0]}, source, engine=engine)
+    plan = plan_sweep(car, {VISCOUS: [1500.0, 2000.0]}, source, SweepSettings(engine=engine))
     assert plan.skip == 0.0  # as in `Car.run`
     assert isinstance(plan.measure, ComfortMeasure)
     from vehicle.studies.sweeps.case_evaluation import evaluate

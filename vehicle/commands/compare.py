@@ -14,15 +14,16 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_options
 from vehicle.commands.options import (
     command_parser,
-    engine_option,
     figures_option,
     message_options,
     output_options,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser, refuse_idle
 from vehicle.commands.several_files import each_file, expanded, raise_worst, table_of
 from vehicle.errors import ConfigurationError
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car, Run
@@ -78,8 +79,10 @@ def parser() -> Parser:
     vehicle_options(
         parser.scoped_group(CAR, needs="a car that is made here; the folder of a run has its own", active=None)
     )
-    engine_option(
-        parser.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None), "auto"
+    setting_options(
+        parser.scoped_group(RUN, needs="a run that is made here, of an input as low.csv", active=None),
+        SweepSettings,
+        "engine",
     )
     output_options(parser, OUTPUT)
     figures_option(parser)

@@ -14,15 +14,16 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.input_options import record_choice, record_options
 from vehicle.commands.options import (
     command_parser,
-    engine_option,
     figures_option,
     message_options,
     output_options,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
@@ -78,7 +79,7 @@ def parser() -> Parser:
     parser.former(
         "--tolerance", "--tolerance: the error at which the iteration ends is given by --target-error PERCENT"
     )
-    engine_option(iteration, "auto")
+    setting_options(iteration, SweepSettings, "engine")
     output_options(parser, None, default="runs/drive_<name of the target>")
     figures_option(parser)
     message_options(parser, quiet=True)

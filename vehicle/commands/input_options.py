@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from vehicle.commands.options import setting_options
 from vehicle.commands.parser import Condition, Parser
 from vehicle.errors import ConfigurationError
 from vehicle.names import CORNERS
-from vehicle.signals.excitation.road_settings import SETTINGS
+from vehicle.signals.excitation.road_settings import RoadSettings
 
 if TYPE_CHECKING:
     from vehicle.signals.records.choice import Choice
@@ -71,7 +72,7 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
 
     note = "" if several else "; with --input: in place of the times of the file"
     road = road_options(parser, lambda options: bool(options.road), is_class, several=several, rate_note=note)
-    road_setting(road, "tyre", note="; with --input tyres are standing unless --set driving.speed=M/S")
+    setting_options(road, RoadSettings, "tyre", note="; with --input tyres are standing unless --set driving.speed=M/S")
     return group
 
 
@@ -115,28 +116,15 @@ def road_options(
         help="speed of the car [km/h]; channel:NAME for a road that was recorded over time together with this speed"
         + ("; once for all roads, or once for each" if several else ""),
     )
-    road_setting(group, "duration")
-    road_setting(parser if rate_note else group, "rate", note=rate_note)
+    setting_options(group, RoadSettings, "duration")
+    setting_options(parser if rate_note else group, RoadSettings, "rate", note=rate_note)
     random = parser.scoped_group("a road of a class", needs=CLASS_NEEDS, active=is_class)
     each = "; repeated: each road with each seed, so that their scatter is known" if several else ""
-    road_setting(random, "seed", note=each, action="append" if several else "store")
-    road_setting(random, "coherence")
-    road_setting(group, "patch")
-    road_setting(group, "contact")
+    setting_options(random, RoadSettings, "seed", note=each, action="append" if several else "store")
+    setting_options(random, RoadSettings, "coherence")
+    setting_options(group, RoadSettings, "patch")
+    setting_options(group, RoadSettings, "contact")
     return group
-
-
-def road_setting(parser: argparse._ActionsContainer, name: str, *, note: str = "", **more: Any) -> None:
-    """Add the option of a setting of a road.
-
-    Args:
-        parser: of the command, or a group of options.
-        name: name of a field of `RoadSettings`.
-        note: addition to the help.
-        more: further arguments of `add_argument`.
-    """
-    declared = SETTINGS[name]
-    parser.add_argument(f"--{name}", help=declared["meaning"] + note, **declared["option"], **more)
 
 
 def _listed(value: str | list[str] | None) -> list[str]:

@@ -12,15 +12,13 @@ from vehicle.commands.destination import study_folder_of
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
-    engine_option,
-    executor_option,
-    jobs_option,
     message_options,
     output_options,
-    skip_option,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 
 def parser() -> Parser:
@@ -94,10 +92,10 @@ def parser() -> Parser:
         "quantile Q needs 1/(1 - Q) cars; with it, 64 new cars around each named one show what share reaches its "
         "numbers",
     )
-    engine_option(parser, "reduced")
-    skip_option(parser)
-    jobs_option(parser)
-    executor_option(parser)
+    setting_options(parser, SweepSettings, "engine", default="reduced")
+    setting_options(parser, SweepSettings, "skip")
+    setting_options(parser, SweepSettings, "jobs")
+    setting_options(parser, SweepSettings, "executor")
     parser.add_argument(
         "--check", action="store_true", help="run the named cars with MuJoCo too and report the difference"
     )

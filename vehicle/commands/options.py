@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import CARS, vehicle_file
-from vehicle.names import ENGINES
+from vehicle.settings import Settings
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 EXIT_CODES = (
     "Exit codes: 0 done, 2 usage, 3 bad data, 4 simulation failed, 5 library missing, 6 cannot write, 130 interrupted."
@@ -31,6 +33,33 @@ def command_parser(name: str, description: str) -> Parser:
 
 CAR_HELP = f"folder or file of a car, or the name of a shipped car: {', '.join(CARS)}"
 VEHICLE_HELP = f"{CAR_HELP}; the car of Bommer 2006 by default"
+
+
+def setting_options(
+    parser: argparse._ActionsContainer, settings: type[Settings], *names: str, note: str = "", **more: Any
+) -> None:
+    """Add the options of declared settings.
+
+    Args:
+        parser: of the command, or a group of options.
+        settings: class of the settings.
+        names: settings; by default all that have an option.
+        note: addition to the help.
+        more: further arguments of `add_argument`.
+    """
+    all_declared = settings.declared()
+    for name in names or [name for name, each in all_declared.items() if each["option"]]:
+        declared = all_declared[name]
+        default, factor = declared["default"], declared["factor"]
+        arguments: dict[str, Any] = {
+            "dest": name,
+            "default": default if default is None or factor == 1.0 else default / factor,
+            "help": declared["meaning"],
+            **declared["option"],
+            **more,
+        }
+        arguments["help"] += note
+        parser.add_argument(declared["flag"], **arguments)
 
 
 def vehicle_options(parser: argparse._ActionsContainer) -> argparse._ActionsContainer:
@@ -147,74 +176,11 @@ def film_name(value: str, default: str) -> Path:
     return name
 
 
-def engine_option(parser: argparse._ActionsContainer, default: str) -> None:
-    """Add --engine, the solver of a run.
-
-    Args:
-        parser: parser of the command.
-        default: mujoco for a single run, auto for many.
-    """
-    parser.add_argument(
-        "--engine",
-        choices=ENGINES,
-        default=default,
-        help="mujoco: complete nonlinear model; reduced: hundreds of times faster, all laws but linear geometry, no "
-        "film; auto: reduced inside its valid range, otherwise mujoco; %(default)s by default",
-    )
-
-
-def skip_option(parser: argparse.ArgumentParser) -> None:
-    """Add --skip, the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
-    text = (
-        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
-        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input"
-    )
-    parser.add_argument("--skip", type=float, metavar="S", help=text)
-
-
 def resume_options(parser: Parser) -> None:
     """Add --resume and --retry-failed, which continue a table of runs."""
     parser.add_argument("--resume", action="store_true", help="continue in that folder; finished rows are kept")
     group = parser.scoped_group("going on", needs="--resume", active=lambda options: options.resume)
-    group.add_argument("--retry-failed", action="store_true", help="run failed rows again")
-
-
-def jobs_option(parser: argparse.ArgumentParser, *, note: str = "") -> None:
-    """Add --jobs, the number of processes; the results do not depend on it.
-
-    Args:
-        parser: parser of the command.
-        note: addition to the help.
-    """
-    text = "processes for independent runs; %(default)s by default" + note
-    parser.add_argument("--jobs", type=_jobs, default=1, metavar="N", help=text)
-
-
-def executor_option(parser: argparse.ArgumentParser) -> None:
-    """Add --executor, a cluster or a custom executor for independent runs."""
-    text = "dask://host:port, or module:factory for an executor of your own"
-    parser.add_argument("--executor", metavar="WHERE", help=text)
-
-
-def time_limit_option(parser: argparse.ArgumentParser) -> None:
-    """Add --time-limit, the maximum computing time of a run."""
-    text = "maximum computing time of a run [s]; a run that takes longer is a failed row"
-    parser.add_argument("--time-limit", type=float, metavar="S", help=text)
-
-
-def _jobs(text: str) -> int:
-    """Return the number of processes.
-
-    Raises:
-        ConfigurationError: no whole number of at least 1.
-    """
-    try:
-        number = int(text)
-    except ValueError:
-        raise ConfigurationError(f"--jobs {text!r}: must be a whole number") from None
-    if number < 1:
-        raise ConfigurationError(f"--jobs {number}: must be at least 1")
-    return number
+    setting_options(group, SweepSettings, "retry_failed")
 
 
 def message_options(parser: argparse.ArgumentParser, *, quiet: bool = False) -> None:

@@ -24,13 +24,12 @@ from vehicle.commands.input_options import (
 from vehicle.commands.loads import recorded_channels
 from vehicle.commands.options import (
     command_parser,
-    engine_option,
     figures_option,
     film_name,
     message_options,
     output_options,
     report_option,
-    skip_option,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
@@ -40,6 +39,7 @@ from vehicle.model.parameters.quantity import PATH_PATTERN
 from vehicle.model.parameters.semi_active_damper import FMU
 from vehicle.names import CORNERS
 from vehicle.signals.formats.formats import TABLES, WRITTEN
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 if TYPE_CHECKING:
     from vehicle.signals.excitation.signal import Signal
@@ -75,8 +75,8 @@ def parser() -> Parser:
         help="run the native code of the controller, or of those in the vehicle file; its SHA-256 goes into the "
         "vehicle file of the run, where it replaces the option",
     )
-    engine_option(parser, "mujoco")
-    skip_option(parser)
+    setting_options(parser, SweepSettings, "engine", default="mujoco")
+    setting_options(parser, SweepSettings, "skip")
     parser.add_argument(
         "--timestep", type=float, metavar="S", help="step of the integration [s]; that of the vehicle file by default"
     )

@@ -15,18 +15,15 @@ from vehicle.commands.destination import report_path, study_folder_of
 from vehicle.commands.input_options import signal_options
 from vehicle.commands.options import (
     command_parser,
-    engine_option,
-    executor_option,
-    jobs_option,
     message_options,
     output_options,
     report_option,
     resume_options,
-    skip_option,
-    time_limit_option,
+    setting_options,
     vehicle_options,
 )
 from vehicle.commands.parser import Parser
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.ranges import Range
@@ -60,11 +57,7 @@ def parser() -> Parser:
         "bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
     vehicle_options(parser)
-    engine_option(parser, "auto")
-    skip_option(parser)
-    jobs_option(parser)
-    executor_option(parser)
-    time_limit_option(parser)
+    setting_options(parser, SweepSettings, "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
     resume_options(parser)
     parser.add_argument("--allow-failed", action="store_true", help="exit with 0, not 4, although runs failed")
@@ -102,8 +95,8 @@ def _job(options: argparse.Namespace) -> None:
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
     car = Car.load(options.vehicle, options.overrides)
-    plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), engine=options.engine, skip=options.skip)
-    make = executor_factory(options.executor, options.jobs)
+    settings = SweepSettings.of_options(options, executor=executor_factory(options.executor, options.jobs))
+    plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), settings)
     output = study_folder_of(options, options.output, rows=(ROWS,))
     report = None if options.report is None else report_path(options, output)
     notes = (*plan.notes, *plan.engine_notes())
@@ -111,10 +104,7 @@ def _job(options: argparse.Namespace) -> None:
         print(f"note        {text}")
     with study_folder(output, force=options.force, resume=options.resume, rows=(ROWS,)) as folder:
         table = plan.run(
-            executor=make,
             folder=folder,
-            retry_failed=options.retry_failed,
-            time_limit=options.time_limit,
             progress=ProgressLine("sweep     ", enabled=not options.quiet, runs=len(plan.cases)),
             notice=lambda text: print(f"note: {text}", file=sys.stderr, flush=True),
         )

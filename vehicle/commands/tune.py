@@ -16,16 +16,17 @@ from vehicle.commands.destination import output_folder_of
 from vehicle.commands.options import (
     CAR_HELP,
     command_parser,
-    engine_option,
     head_options,
     message_options,
     output_options,
     set_option,
+    setting_options,
 )
 from vehicle.commands.parser import Parser
 from vehicle.commands.tune_measurements import has_files, measured_targets, measurement_options
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.shipped import vehicle_file
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 if TYPE_CHECKING:
     from vehicle.model.parameters.ranges import Range
@@ -119,7 +120,7 @@ def parser() -> Parser:
         help="another law with its evidence against the fitted one: settings, as damper.viscous_law=degressive, and "
         "further parameters with bounds, as damper.degressive_viscous=2e3:1e4",
     )
-    engine_option(parser, "mujoco")
+    setting_options(parser, SweepSettings, "engine", default="mujoco")
     output_options(parser, OUTPUT)
     head_options(parser)
     parser.add_argument("--json", action="store_true", help="print the content of tune.json")

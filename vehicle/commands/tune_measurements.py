@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 from vehicle.commands.clock_options import clock_of, delay_option
 from vehicle.commands.compare import mapping_options, measured_choice
 from vehicle.commands.input_options import record_options, speed_value
+from vehicle.commands.options import setting_options
 from vehicle.commands.parser import Parser
 from vehicle.errors import ConfigurationError
-from vehicle.signals.excitation.road_settings import SETTINGS
+from vehicle.signals.excitation.road_settings import RoadSettings
 
 if TYPE_CHECKING:
     from vehicle.runs.car import Car
@@ -108,12 +109,8 @@ def measurement_options(parser: Parser) -> None:
         metavar="KM/H|channel:NAME",
         help="speed on the road of the preceding --road [km/h]; channel:NAME for a road over time",
     )
-    files.add_argument(
-        "--contact",
-        action=_OfMeasurement,
-        help="contact with the road of the preceding --road; patch by default, cams on an obstacle",
-        **SETTINGS["contact"]["option"],
-    )
+    words = "contact with the road of the preceding --road; patch by default, cams on an obstacle"
+    setting_options(files, RoadSettings, "contact", action=_OfMeasurement, help=words)
     files.add_argument(
         "--levels",
         type=int,

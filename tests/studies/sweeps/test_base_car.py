@@ -12,6 +12,7 @@ from vehicle.studies.sweeps.plan import changes_of, plan_sweep, sweep
 from vehicle.studies.sweeps.sweep_page import best_sentences
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn
 from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 SINGLE = [{"damper.viscous": 1500.0}, {"tyre.stiffness.z": 2e5}]
 
@@ -64,5 +65,7 @@ def test_a_sweep_without_any_effect_is_refused():
     with pytest.raises(ConfigurationError, match=r"every run would be the same car: front\.damper\.viscous=1500\.0"):
         sweep(Car.load("sedan"), {"front.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], engine="reduced")
     # On all axles they have an effect at the rear.
-    plan = plan_sweep(Car.load("sedan"), {"*.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], engine="reduced")
+    plan = plan_sweep(
+        Car.load("sedan"), {"*.damper.viscous": [1500.0, 2000.0]}, [ShortRoad()], SweepSettings(engine="reduced")
+    )
     assert len(plan.cases) == 2 and "without effect" in plan.notes[0]

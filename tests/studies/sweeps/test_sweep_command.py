@@ -9,6 +9,7 @@ import pytest
 from vehicle import Car, Road
 from vehicle.commands.sweep import every_combination, main
 from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import read_variations
 
 HEAD = ("--author", "A. Engineer", "--project", "Ride")
@@ -140,10 +141,10 @@ def test_the_engine_and_its_reason_are_told_before_the_runs():
     assert note.startswith("engine mujoco on road_C_50 (1 of 2 inputs), at least for the first car: ")
     assert "is valid up to 0.05 rad; --engine reduced is many times faster (on class C comfort within 0.4 %" in note
     assert plan_sweep(car, change, roads[:1]).engine_notes() == ()
-    assert plan_sweep(car, change, roads, engine="reduced").engine_notes() == ()
+    assert plan_sweep(car, change, roads, SweepSettings(engine="reduced")).engine_notes() == ()
     # The stated difference, and the engine that the note names.
     (chosen,), (reduced,) = (
-        plan_sweep(car, change, roads[1], engine=engine).run().results for engine in ("auto", "reduced")
+        plan_sweep(car, change, roads[1], SweepSettings(engine=engine)).run().results for engine in ("auto", "reduced")
     )
     assert chosen.engine == "mujoco" and reduced.engine == "reduced"
     assert reduced.values["unweighted"] == pytest.approx(chosen.values["unweighted"], rel=0.004)

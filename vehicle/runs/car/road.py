@@ -10,18 +10,19 @@ from pathlib import Path
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.force_elements import Tyre
 from vehicle.model.parameters.vehicle import Vehicle
+from vehicle.settings import documented
 from vehicle.signals.excitation.iso_road import Side
 from vehicle.signals.excitation.obstacle import is_obstacle
 from vehicle.signals.excitation.recorded_road import PREFIX, RecordedDrive
 from vehicle.signals.excitation.road_drive import LEVEL, RoadDrive
-from vehicle.signals.excitation.road_settings import RoadSettings, with_settings
+from vehicle.signals.excitation.road_settings import RoadSettings
 from vehicle.signals.records.choice import Choice
 
 Drive = RoadDrive | RecordedDrive
 """A road under the wheels of one car."""
 
 
-@with_settings
+@documented
 @dataclass(frozen=True, slots=True, repr=False)
 class Road(RoadSettings):
     """Road for the wheels of any car, as road("C", 80); `Car.run` and `sweep` take it.

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +15,14 @@ from vehicle.model.parameters.paths import assignments, meant
 from vehicle.model.parameters.shipped import FOCUS_FILE, vehicle_file
 from vehicle.model.parameters.vehicle import load_vehicle, overridden
 from vehicle.runs.car import Car
+from vehicle.settings import with_settings
 from vehicle.studies.sweeps.case import all_tyre_words
 from vehicle.studies.sweeps.case_evaluation import reason_for_mujoco
 from vehicle.studies.sweeps.case_table import Cases, Combinations, RowChanges
-from vehicle.studies.sweeps.dispatcher import Notice
 from vehicle.studies.sweeps.measure import BatchMeasure, Measure, comfort_measure
-from vehicle.studies.sweeps.sweep import Progress
-from vehicle.studies.sweeps.sweep import sweep as run_cases
+from vehicle.studies.sweeps.sweep import sweep_cases
 from vehicle.studies.sweeps.sweep_inputs import Source, common_start, file_of, inputs_of
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 
 Variations = Mapping[str, Sequence[Any]] | Combinations | RowChanges | Sequence[Iterable[str] | Mapping[str, Any]]
@@ -42,12 +41,14 @@ class SweepPlan:
         cases: the runs.
         measure: measure of each run.
         skip: start of the evaluation [s].
+        settings: settings of the runs.
         notes: messages on side effects of the varied parameters.
     """
 
     cases: Cases
     measure: Measure
     skip: float
+    settings: SweepSettings
     notes: tuple[str, ...]
 
     @property
@@ -77,72 +78,36 @@ class SweepPlan:
             f"car: {reason}; --engine reduced is many times faster (on class C {ERROR_ON_CLASS_C})",
         )
 
-    def run(
-        self,
-        *,
-        executor: Executor | Callable[[], Executor] | None = None,
-        jobs: int = 1,
-        folder: Path | None = None,
-        retry_failed: bool = False,
-        time_limit: float | None = None,
-        progress: Progress | None = None,
-        notice: Notice | None = None,
-    ) -> SweepTable:
-        """Run the sweep; arguments, result and errors as in `vehicle.studies.sweeps.sweep.sweep`."""
-        return run_cases(
-            self.cases,
-            self.measure,
-            executor=executor,
-            jobs=jobs,
-            folder=folder,
-            retry_failed=retry_failed,
-            time_limit=time_limit,
-            progress=progress,
-            notice=notice,
-        )
+    def run(self, **changed: Any) -> SweepTable:
+        """Run the sweep, see `vehicle.studies.sweeps.sweep.sweep_cases`; `changed` replaces settings."""
+        return sweep_cases(self.cases, self.measure, replace(self.settings, **changed))
 
 
 def plan_sweep(
-    car: Car,
-    vary: Variations,
-    inputs: Source | Sequence[Source],
-    *,
-    engine: str = "auto",
-    skip: float | None = None,
-    measure: Measure | None = None,
+    car: Car, vary: Variations, inputs: Source | Sequence[Source], settings: SweepSettings | None = None
 ) -> SweepPlan:
     """Check the arguments of a sweep and return the sweep; arguments and errors as in `sweep`."""
-    changes = changes_of(vary)
+    settings, changes = settings or SweepSettings(), changes_of(vary)
     vehicle = file_of(car)
-    require_paths(vehicle, car.overrides, _one_of_each_path(changes))
+    each = _one_of_each_path(changes)
+    require_paths(vehicle, car.overrides, each)
     sources = inputs_of(car, inputs)
-    start = common_start(sources, skip)
-    cases = Cases(changes, sources, engine=engine, vehicle=vehicle, fixed=car.overrides)
-    paths = [text.partition("=")[0] for text in _one_of_each_path(changes)]
+    start = common_start(sources, settings.skip)
+    cases = Cases(changes, sources, engine=settings.engine, vehicle=vehicle, fixed=car.overrides)
     idle = _idle_notes(vehicle, car.overrides, changes)
-    if idle and _all_idle(vehicle, car.overrides, _one_of_each_path(changes)):
+    if idle and _all_idle(vehicle, car.overrides, each):
         raise ConfigurationError(f"vary: every run would be the same car: {'; '.join(idle)}")
     return SweepPlan(
         cases=cases,
-        measure=comfort_measure(car.vehicle, start) if measure is None else measure,
+        measure=settings.measure or comfort_measure(car.vehicle, start),
         skip=start,
-        notes=(*body_rules(car.vehicle, paths), *idle),
+        settings=settings,
+        notes=(*body_rules(car.vehicle, [text.partition("=")[0] for text in each]), *idle),
     )
 
 
-def sweep(
-    car: Car,
-    vary: Variations,
-    inputs: Source | Sequence[Source],
-    *,
-    engine: str = "auto",
-    skip: float | None = None,
-    measure: Measure | None = None,
-    jobs: int = 1,
-    folder: Path | None = None,
-    time_limit: float | None = None,
-    progress: Progress | None = None,
-) -> SweepTable:
+@with_settings(SweepSettings)
+def sweep(car: Car, vary: Variations, inputs: Source | Sequence[Source], settings: SweepSettings) -> SweepTable:
     """Run a car with varied parameters on one or several inputs, and tabulate comfort and slip.
 
     The runs are distributed to processes, so a script must call this function below `if __name__ == "__main__":`.
@@ -153,24 +118,16 @@ def sweep(
             variations, each path to value, in which {} is the car itself. If the variations of a list change different
             parameters, the car itself is the first row without being named, so that each is compared with it.
         inputs: files or names of shipped ones, roads, signals; one or several.
-        engine: as in `Car.run`.
-        skip: start of the evaluation [s]; by default as in `Car.run`, on several inputs the latest of them.
-        measure: measure of each run; by default comfort and slip shares.
-        jobs: number of processes; the table does not depend on it.
-        folder: existing folder in which finished rows are stored, for the next call to reuse; None stores no rows.
-        time_limit: maximum computing time of a run [s]; a run that takes longer is a failed row.
-        progress: called with the finished fraction.
 
     Returns:
         A row for each run with its engine, the inputs varying slowest; a failed run is a row with an error message.
 
     Raises:
-        ConfigurationError: a path does not exist, no varied parameter has an effect, an input is missing, or
-            `skip` is out of range.
+        ConfigurationError: a path does not exist, no varied parameter has an effect, an input is missing, or a setting
+            is out of range.
         DataError: an input cannot be read, or was sampled below 125 Hz.
     """
-    plan = plan_sweep(car, vary, inputs, engine=engine, skip=skip, measure=measure)
-    return plan.run(jobs=jobs, folder=folder, time_limit=time_limit, progress=progress)
+    return plan_sweep(car, vary, inputs, settings).run()
 
 
 def changes_of(vary: Variations) -> Sequence[tuple[str, ...]]:

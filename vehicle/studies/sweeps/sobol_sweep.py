@@ -9,13 +9,14 @@ from pathlib import Path
 from vehicle.errors import DataError
 from vehicle.model.parameters.ranges import Range
 from vehicle.runs.car import Car
+from vehicle.settings import with_settings
 from vehicle.signals.analysis.ride_comfort import SEAT_PREFIX, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case_table import RowChanges
 from vehicle.studies.sweeps.indices import SobolIndices, sobol_indices, sobol_sample
 from vehicle.studies.sweeps.plan import plan_sweep
-from vehicle.studies.sweeps.sweep import Progress
 from vehicle.studies.sweeps.sweep_inputs import Source
 from vehicle.studies.sweeps.sweep_ranking import SweptCases
+from vehicle.studies.sweeps.sweep_settings import SobolSettings
 
 SOBOL = "sobol.csv"
 """Name of the file in the folder of a sweep."""
@@ -24,17 +25,9 @@ QUANTITIES = (f"{SEAT_PREFIX}{WEIGHTED}", f"{SEAT_PREFIX}{UNWEIGHTED}", WEIGHTED
 """Columns of comfort that may have indices; those on the cushion of a seat first."""
 
 
+@with_settings(SobolSettings)
 def sobol(
-    car: Car,
-    vary: Mapping[str, tuple[float, float]],
-    inputs: Source | Sequence[Source],
-    *,
-    base: int = 256,
-    engine: str = "auto",
-    skip: float | None = None,
-    jobs: int = 1,
-    folder: Path | None = None,
-    progress: Progress | None = None,
+    car: Car, vary: Mapping[str, tuple[float, float]], inputs: Source | Sequence[Source], settings: SobolSettings
 ) -> dict[str, SobolIndices]:
     """Return the Sobol indices of comfort, the mean over all inputs, for parameters uniform between bounds.
 
@@ -46,12 +39,6 @@ def sobol(
         car: car loaded by `Car.load`; its overrides apply to every run.
         vary: path to lower and upper bound, in the unit of the parameter.
         inputs: files or names of shipped ones, roads, signals; one or several.
-        base: number of base points, a power of two.
-        engine: as in `Car.run`.
-        skip: start of the evaluation [s], as in `sweep`.
-        jobs: number of processes; the indices do not depend on it.
-        folder: existing folder in which finished rows are stored, for the next call to reuse; None stores no rows.
-        progress: called with the finished fraction.
 
     Returns:
         Name of the comfort value, as "weighted", to its indices (`first`, `total`) and the half widths of their 95 %
@@ -64,8 +51,7 @@ def sobol(
     Source: Saltelli et al., Comput. Phys. Commun. 181 (2010).
     """
     ranges = [Range(path=path, low=low, high=high) for path, (low, high) in vary.items()]
-    plan = plan_sweep(car, sobol_changes(ranges, base), inputs, engine=engine, skip=skip)
-    return comfort_indices(plan.run(jobs=jobs, folder=folder, progress=progress), ranges)
+    return comfort_indices(plan_sweep(car, sobol_changes(ranges, settings.base), inputs, settings).run(), ranges)
 
 
 def sobol_changes(ranges: Sequence[Range], base: int) -> RowChanges:

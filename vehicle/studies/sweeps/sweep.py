@@ -3,43 +3,30 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Collection, Sequence
-from concurrent.futures import Executor
+from collections.abc import Collection, Sequence
 from contextlib import ExitStack
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from vehicle.model.parameters.driving import tyre_words
 from vehicle.runs.output.locks import folder_lock
+from vehicle.settings import with_settings
 from vehicle.studies.sweeps.case import Case, drivings
 from vehicle.studies.sweeps.case_keys import CaseKeys
 from vehicle.studies.sweeps.case_result import Block
-from vehicle.studies.sweeps.dispatcher import Dispatcher, Notice
+from vehicle.studies.sweeps.dispatcher import Dispatcher
 from vehicle.studies.sweeps.executors import process_pool
-from vehicle.studies.sweeps.measure import ComfortMeasure, Measure
+from vehicle.studies.sweeps.measure import Measure
 from vehicle.studies.sweeps.program import libraries, program_digest
 from vehicle.studies.sweeps.store import ROWS, Indices, StoredRows
+from vehicle.studies.sweeps.sweep_settings import RunSettings
 from vehicle.studies.sweeps.sweep_table import SweepTable
 from vehicle.studies.sweeps.table_files import write_table
 
-Progress = Callable[[float], None]
 
-
-def sweep(
-    cases: Sequence[Case],
-    measure: Measure | None = None,
-    *,
-    executor: Executor | Callable[[], Executor] | None = None,
-    jobs: int = 1,
-    folder: Path | None = None,
-    retry_failed: bool = False,
-    time_limit: float | None = None,
-    progress: Progress | None = None,
-    notice: Notice | None = None,
-) -> SweepTable:
+def sweep_cases(cases: Sequence[Case], measure: Measure, settings: RunSettings) -> SweepTable:
     """Run cases and tabulate their measured values.
 
     A failed run is a row with an error message. Workers get tasks of many runs, about a second of work. If a worker
@@ -48,19 +35,12 @@ def sweep(
     row. With a folder, rows are stored as their tasks finish, and stored rows are not computed again if car, input,
     measure and program are equal. The table is bitwise independent of the number of workers and the sizes of the tasks.
 
+    The time limit of a run includes its car and, for the first run of a worker, imports and compilation; the worker of
+    a run that takes longer is ended.
+
     Args:
         cases: the runs.
-        measure: measure of each run; by default comfort and slip shares.
-        executor: function that returns an executor, see `executor_factory`; or an executor, which stays open and is not
-            replaced if it breaks; by default processes on this machine.
-        jobs: number of processes without `executor`.
-        folder: existing folder for the rows; None stores no rows.
-        retry_failed: compute failed rows again.
-        time_limit: maximum computing time of a run [s], including its car and, for the first run of a worker, imports
-            and compilation; the worker of a run that takes longer is ended, and the run is a failed row. None for no
-            limit.
-        progress: called with the finished fraction of all runs, stored rows among them.
-        notice: called with messages while the sweep is running, as that a cluster has no workers.
+        measure: measure of each run.
 
     Returns:
         The table, in the order of the cases.
@@ -70,8 +50,8 @@ def sweep(
         OutputError: a row cannot be written.
         SimulationError: the executor broke and cannot be created again; finished rows are stored.
     """
-    chosen = ComfortMeasure() if measure is None else measure
-    key_of, each = CaseKeys(chosen), _one_of_each(cases)
+    folder, progress = settings.folder, settings.progress
+    key_of, each = CaseKeys(measure), _one_of_each(cases)
     for case in each:
         key_of(case)  # raises the error of an input or a vehicle file before the first run
     with ExitStack() as held:
@@ -79,7 +59,7 @@ def sweep(
             held.enter_context(folder_lock(folder.resolve()))
         rows = StoredRows(folder / ROWS if folder is not None else None, len(cases))
         rows.use_stored(cases, key_of)
-        todo = np.flatnonzero(~rows.stored | rows.failed if retry_failed else ~rows.stored)
+        todo = np.flatnonzero(~rows.stored | rows.failed if settings.retry_failed else ~rows.stored)
         began, done = clock.perf_counter(), len(cases) - len(todo)
 
         def keep(numbers: Indices, block: Block) -> None:
@@ -92,14 +72,22 @@ def sweep(
 
         if len(todo):
             dispatcher = Dispatcher(
-                executor or partial(process_pool, jobs), chosen, key_of=key_of, time_limit=time_limit, notice=notice
+                settings.executor or partial(process_pool, settings.jobs),
+                measure,
+                key_of=key_of,
+                time_limit=settings.time_limit,
+                notice=settings.notice,
             )
             dispatcher.work(cases, keep, todo)
             rows.synchronise()
-        table = SweepTable(cases=cases, results=rows, units=chosen.units, made=_made(cases, each, chosen))
+        table = SweepTable(cases=cases, results=rows, units=measure.units, made=_made(cases, each, measure))
         if folder is not None:
             write_table(table, folder, f"{len(todo)} runs computed in {clock.perf_counter() - began:.2f} s")
         return table
+
+
+sweep = with_settings(RunSettings)(sweep_cases)
+"""`sweep_cases` with its settings as arguments."""
 
 
 def _one_of_each(cases: Sequence[Case]) -> Collection[Case]:

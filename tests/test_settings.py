@@ -1,0 +1,65 @@
+"""Settings of functions and commands: one declaration for Python, its documentation, the checks and the options."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from importlib import import_module
+
+import pytest
+
+import vehicle
+from vehicle.errors import ConfigurationError
+from vehicle.settings import Settings, require_within
+from vehicle.studies.sweeps.sweep_settings import SobolSettings, SweepSettings
+
+DECLARED = {"sweep": (SweepSettings, "sweep"), "sobol": (SobolSettings, "sweep")}
+"""Public function to its settings and the command that has their options."""
+
+OF_PYTHON_ALONE = {"executor", "progress", "notice", "measure", "folder", "base"}
+"""Settings that a command gives another value than that of an option of the same meaning."""
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_a_function_has_the_declared_settings_with_their_defaults(name):
+    settings, command = DECLARED[name]
+    function, made = getattr(vehicle, name), settings()
+    arguments, parser = inspect.signature(function).parameters, import_module(f"vehicle.commands.{command}").parser()
+    text, document = " ".join(parser.format_help().split()), inspect.getdoc(function) or ""
+    for setting, declared in settings.declared().items():
+        assert arguments[setting].default == getattr(made, setting)
+        assert re.search(rf"^    {setting}: \w", document, re.MULTILINE), setting
+        if declared["option"] and setting not in OF_PYTHON_ALONE:
+            assert declared["flag"] in text
+
+
+@pytest.mark.parametrize("name", DECLARED)
+def test_the_options_left_out_are_the_defaults_of_python(name):
+    settings, command = DECLARED[name]
+    options = import_module(f"vehicle.commands.{command}").parser().parse_args([])
+    assert settings.of_options(options) == settings()
+
+
+@pytest.mark.parametrize(
+    ("within", "inside", "outside", "words"),
+    [
+        ("[8, inf)", 8, 7, "at least 8"),
+        ("[1, 1000]", 1000, 1001, "1 to 1000"),
+        ("(0, 1]", 1, 0, "above 0 and up to 1"),
+        ("(0, 100)", 99.9, 100, "above 0 and below 100"),
+        ("[1, 1000)", 1, 1000, "at least 1, and below 1000"),
+    ],
+)
+def test_a_number_is_held_to_its_interval(within, inside, outside, words):
+    require_within("--number", inside, within)
+    for wrong in (outside, float("nan")):
+        with pytest.raises(ConfigurationError, match=rf"^--number {wrong:g}: must be {words}$"):
+            require_within("--number", wrong, within)
+
+
+def test_settings_are_checked_when_they_are_made():
+    with pytest.raises(ConfigurationError, match=r"^--jobs 0: must be at least 1$"):
+        SweepSettings(jobs=0)
+    with pytest.raises(TypeError, match="jbos"):
+        vehicle.sweep(vehicle.Car.load(), {}, "low.csv", jbos=2)  # type: ignore[call-arg]
+    assert issubclass(vehicle.Road, Settings)

@@ -1,0 +1,193 @@
+"""Settings of a function and of its command, each declared once: a field of a dataclass with unit, limits and option.
+
+From the declarations come the options of the command (`vehicle.commands.options.setting_options`), the checks of the
+values, and the arguments of the function in Python with their documentation (`with_settings`).
+"""
+
+from __future__ import annotations
+
+import inspect
+from argparse import Namespace
+from collections.abc import Callable, Mapping
+from dataclasses import field, fields
+from functools import update_wrapper
+from typing import Any, Concatenate, ParamSpec, Protocol, Self, TypeVar, overload
+
+from vehicle.errors import ConfigurationError
+from vehicle.names import ENGINES
+
+Class = TypeVar("Class", bound=type)
+A = TypeVar("A")
+B = TypeVar("B")
+C = TypeVar("C")
+P = ParamSpec("P")
+R = TypeVar("R")
+S = TypeVar("S", bound="Settings")
+S_co = TypeVar("S_co", covariant=True)
+
+
+def setting(
+    meaning: str,
+    default: Any = None,
+    *,
+    flag: str = "",
+    within: str = "",
+    factor: float = 1.0,
+    **option: Any,
+) -> Any:
+    """Declare a field of a class of `Settings`.
+
+    Args:
+        meaning: meaning with unit, for the documentation and the help; "%(default)s" stands for the default.
+        default: value in Python of a setting that is left out.
+        flag: option of the command, for messages too; by default that of the name of the field.
+        within: interval of the values of the option, as "(0, 1]" or "[8, inf)"; empty without limits.
+        factor: value in Python over that of the option: 0.01 for a percentage.
+        option: arguments of `add_argument`, as metavar, and help if the option has another unit than Python; none for a
+            setting without an option.
+    """
+    declared = {"meaning": meaning, "flag": flag, "within": within, "factor": factor, "option": option}
+    return field(default=default, metadata=declared | {"default": default})
+
+
+class Settings:
+    """Base of a dataclass of settings, whose values are checked when it is made."""
+
+    __slots__ = ()
+
+    @classmethod
+    def declared(cls) -> dict[str, Mapping[str, Any]]:
+        """Return the declaration of each setting by name, see `setting`."""
+        return {
+            each.name: {**each.metadata, "flag": each.metadata["flag"] or f"--{each.name.replace('_', '-')}"}
+            for each in fields(cls)  # type: ignore[arg-type]
+            if "meaning" in each.metadata
+        }
+
+    @classmethod
+    def of_options(cls, options: Namespace, **more: Any) -> Self:
+        """Return the settings of parsed options.
+
+        Args:
+            options: of the command; a setting without an option has its default.
+            more: values of further settings.
+        """
+        for name, declared in cls.declared().items():
+            if name not in more and declared["option"] and (value := getattr(options, name, None)) is not None:
+                more[name] = value if declared["factor"] == 1.0 else declared["factor"] * value
+        return cls(**more)
+
+    def __post_init__(self) -> None:
+        """Check the values.
+
+        Raises:
+            ConfigurationError: a value is out of its interval.
+        """
+        for name, declared in self.declared().items():
+            value = getattr(self, name)
+            if declared["within"] and value is not None:
+                require_within(declared["flag"], value / declared["factor"], declared["within"], declared["factor"])
+
+    def given(self, *, without: tuple[str, ...] = ()) -> dict[str, Any]:
+        """Return the settings that are not left at their default, by name.
+
+        Args:
+            without: names that are left out.
+        """
+        return {
+            name: value
+            for name, declared in self.declared().items()
+            if name not in without and (value := getattr(self, name)) != declared["default"]
+        }
+
+
+def require_within(flag: str, number: float, within: str, factor: float = 1.0) -> None:
+    """Check a number of an option.
+
+    Args:
+        flag: name of the option.
+        number: value of the option.
+        within: interval, see `setting`.
+        factor: 0.01 for a percentage.
+
+    Raises:
+        ConfigurationError: the number is outside.
+    """
+    low, high = (end.strip() for end in within[1:-1].split(","))
+    opened, closed = within[0] == "(", within[-1] == "]"
+    above = number > float(low) if opened else number >= float(low)
+    if above and (number <= float(high) if closed else number < float(high)):
+        return
+    if closed and not opened:
+        allowed = f"{low} to {high}"
+    else:
+        allowed = f"above {low}" if opened else f"at least {low}"
+        if high != "inf":
+            allowed += f"{'' if opened else ','} and {'up to' if closed else 'below'} {high}"
+    raise ConfigurationError(f"{flag} {number:g}{'' if factor == 1.0 else ' %'}: must be {allowed}")
+
+
+def meanings(settings: type[Settings]) -> str:
+    """Return a line for each setting with its meaning, for a docstring."""
+    return "".join(
+        f"\n        {name}: {each['meaning'] % {'default': each['default']}}."
+        for name, each in settings.declared().items()
+    )
+
+
+def documented(decorated: Class) -> Class:
+    """Add the settings to the attributes at the end of the docstring of a class of `Settings`."""
+    decorated.__doc__ = f"{(decorated.__doc__ or '').rstrip()}{meanings(decorated)}\n    "
+    return decorated
+
+
+class _WithSettings(Protocol[P, S_co]):
+    """Decorator of a function of one to three arguments and its settings: they become its keyword arguments."""
+
+    @overload
+    def __call__(self, function: Callable[[A, S_co], R]) -> Callable[Concatenate[A, P], R]: ...
+    @overload
+    def __call__(self, function: Callable[[A, B, S_co], R]) -> Callable[Concatenate[A, B, P], R]: ...
+    @overload
+    def __call__(self, function: Callable[[A, B, C, S_co], R]) -> Callable[Concatenate[A, B, C, P], R]: ...
+
+
+def with_settings(made: Callable[P, S]) -> _WithSettings[P, S]:
+    """Return the decorator that turns the settings of a function, its last argument, into keyword arguments.
+
+    The settings are added to the arguments in the docstring of the function.
+
+    Args:
+        made: class of `Settings`.
+    """
+
+    def decorate(function: Callable[..., R]) -> Callable[..., R]:
+        *first, _ = inspect.signature(function).parameters.values()
+        further = inspect.signature(made).parameters.values()
+        names = [each.name for each in first]
+
+        def with_keywords(*arguments: Any, **keywords: Any) -> R:
+            own = {name: keywords.pop(name) for name in names[len(arguments) :] if name in keywords}
+            return function(*arguments[: len(first)], **own, settings=made(*arguments[len(first) :], **keywords))
+
+        update_wrapper(with_keywords, function)
+        with_keywords.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+            [*first, *further], return_annotation=inspect.signature(function).return_annotation
+        )
+        head, arguments, rest = (function.__doc__ or "").partition("    Args:\n")
+        own_lines, blank, after = rest.partition("\n\n")
+        assert arguments and isinstance(made, type) and issubclass(made, Settings)
+        with_keywords.__doc__ = f"{head}{arguments}{own_lines}{meanings(made)}{blank}{after}"
+        return with_keywords
+
+    return decorate
+
+
+def engine_setting(default: str) -> Any:
+    """Declare the engine of the runs of a function or a command; the default is "auto" for many runs."""
+    return setting(
+        "mujoco: complete nonlinear model; reduced: hundreds of times faster, all laws but linear geometry, no film; "
+        "auto: reduced inside its valid range, otherwise mujoco; %(default)s by default",
+        default,
+        choices=ENGINES,
+    )

@@ -1,0 +1,86 @@
+"""Settings of a sweep, each declared once: for Python, its documentation and the options of `sweep` and `optimise`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from vehicle.errors import ConfigurationError
+from vehicle.settings import Settings, engine_setting, require_within, setting
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from concurrent.futures import Executor
+    from pathlib import Path
+
+    from vehicle.studies.sweeps.measure import Measure
+
+
+def _jobs(text: str) -> int:
+    """Return the number of processes of the option.
+
+    Raises:
+        ConfigurationError: no whole number of at least 1.
+    """
+    try:
+        number = int(text)
+    except ValueError:
+        raise ConfigurationError(f"--jobs {text!r}: must be a whole number") from None
+    require_within("--jobs", number, "[1, inf)")
+    return number
+
+
+def skip_setting() -> Any:
+    """Declare the start of the evaluation, see `vehicle.signals.excitation.evaluation_start`."""
+    return setting(
+        "begin the evaluation (comfort, SEAT, slip shares, densities) S seconds after the start; on a road 2 by "
+        "default, more below 19 km/h, since a road rises from rest during the first second; 0 with --input",
+        type=float,
+        metavar="S",
+    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PoolSettings(Settings):
+    """Settings of many runs on processes or a cluster; the results do not depend on them."""
+
+    jobs: int = setting(
+        "processes for independent runs; %(default)s by default", 1, within="[1, inf)", type=_jobs, metavar="N"
+    )
+    executor: Callable[[], Executor] | Executor | None = setting(
+        "function that returns an executor, in place of `jobs`; or an executor, which stays open and is not replaced "
+        "if it breaks",
+        metavar="WHERE",
+        help="dask://host:port, or module:factory for an executor of your own",
+    )
+    folder: Path | None = setting(
+        "existing folder in which finished runs are stored, for the next call to reuse; None stores none"
+    )
+    progress: Callable[[float], None] | None = setting("called with the finished fraction, stored runs among them")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RunSettings(PoolSettings):
+    """Settings of the runs of a sweep."""
+
+    time_limit: float | None = setting(
+        "maximum computing time of a run [s]; a run that takes longer is a failed row", type=float, metavar="S"
+    )
+    retry_failed: bool = setting("run failed rows again", False, action="store_true")
+    notice: Callable[[str], None] | None = setting("called with messages, as that a cluster has no workers")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SweepSettings(RunSettings):
+    """Settings of a sweep of a car."""
+
+    engine: str = engine_setting("auto")
+    skip: float | None = skip_setting()
+    measure: Measure | None = setting("measure of each run; by default comfort and slip shares")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SobolSettings(SweepSettings):
+    """Settings of Sobol indices."""
+
+    base: int = setting("number of base points, a power of two; %(default)s by default", 256)
