@@ -127,6 +127,20 @@ def test_closed_and_full_streams(redirection, tmp_path):
     assert done.stderr.count("\n") == (0 if "2>&-" in redirection else 1)
 
 
+def test_a_file_name_that_standard_output_cannot_write(tmp_path):
+    """A pipe of Windows has the encoding cp1252."""
+    (tmp_path / "Größe Ω.csv").write_text(csv_text(GOOD))
+    done = subprocess.run(
+        [sys.executable, "-m", "vehicle", "inspect", "Größe Ω.csv"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "cp1252"},
+        capture_output=True,
+        timeout=HANG,
+    )
+    assert done.returncode == 0
+    assert "Größe \\u03a9.csv" in done.stdout.decode("cp1252")
+
+
 def test_an_unforeseen_error_is_one_line_too(capsys):
     def job():
         raise LookupError("nobody thought of this")

@@ -31,7 +31,8 @@ def here(arguments: Sequence[str], folder: Path) -> Ended:
 class Windows:
     """CPython for Windows in a folder of `tools/windows_folder.py`, under wine."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, more: dict[str, str] | None = None) -> None:
+        self.folder = folder
         self.python = folder / "python" / "python.exe"
         if not self.python.is_file():
             sys.exit(f"{self.python} is missing; make it with: python tools/windows_folder.py {folder} --for-wine")
@@ -42,15 +43,28 @@ class Windows:
             "WINEDEBUG": "-all",
             "WINEDLLOVERRIDES": "mscoree=d;mshtml=d;ucrtbase=n,b",
             "PYTHONUTF8": "1",
+            **(more or {}),
         }
+        if not Path(self.environment["WINEPREFIX"]).is_dir():
+            # As Windows 7, which wine 8 is by default, CPython takes an empty message of a pipe for one that is still
+            # there: a pool of processes waits for ever.
+            _run(["wine", "winecfg", "-v", "win10"], folder, self.environment)
 
     def start(self, arguments: Sequence[str], folder: Path) -> subprocess.Popen[str]:
         """Start python.exe with arguments; input and output are pipes, since wine has no console here."""
         return _start(["wine", str(self.python), *arguments], folder, self.environment)
 
+    def start_script(self, name: str, arguments: Sequence[str], folder: Path) -> subprocess.Popen[str]:
+        """Start a script of the folder, as vehicle.cmd."""
+        return _start(["wine", "cmd", "/c", f"Z:{self.folder / name}", *arguments], folder, self.environment)
+
     def run(self, arguments: Sequence[str], folder: Path) -> Ended:
         """Run python.exe to its end."""
-        return _ended(self.start(arguments, folder))
+        return ended(self.start(arguments, folder))
+
+    def end(self) -> None:
+        """End all processes under this wine."""
+        subprocess.run(["wineserver", "--kill"], env=self.environment)
 
 
 def _start(command: Sequence[str], folder: Path, environment: dict[str, str]) -> subprocess.Popen[str]:
@@ -60,7 +74,8 @@ def _start(command: Sequence[str], folder: Path, environment: dict[str, str]) ->
     )  # fmt: skip
 
 
-def _ended(process: subprocess.Popen[str]) -> Ended:
+def ended(process: subprocess.Popen[str]) -> Ended:
+    """Wait for the end of a process, and kill one that hangs."""
     try:
         text, _ = process.communicate("", LONGEST)
     except subprocess.TimeoutExpired:
@@ -71,4 +86,4 @@ def _ended(process: subprocess.Popen[str]) -> Ended:
 
 
 def _run(command: Sequence[str], folder: Path, environment: dict[str, str]) -> Ended:
-    return _ended(_start(command, folder, environment))
+    return ended(_start(command, folder, environment))

@@ -101,6 +101,9 @@ def begin_process() -> None:
     # Without this MuJoCo loads the GLFW library at its import. Films select a backend themselves.
     os.environ.setdefault("MUJOCO_GL", "disable")
     prefer_one_thread()
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
+        # A pipe of Windows takes cp1252, which lacks most characters that a file name may have.
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _collect_more_often(phase: str, information: dict[str, int]) -> None:
