@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from vehicle.signals.analysis.order_cut import OrderCut
 from vehicle.signals.analysis.order_lines import OrderLines
 
 
@@ -54,3 +55,47 @@ def named_orders(lines: OrderLines, names: tuple[str, ...], units: tuple[str, ..
     """Return order lines with the names [-] and units of their channels."""
     numbers = {field.name: getattr(lines, field.name) for field in fields(OrderLines)}
     return RunOrders(**numbers, names=names, units=units, angle=angle)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class RunOrderCut(OrderCut):
+    """Amplitudes of channels at orders of the crankshaft over its speed.
+
+    Attributes:
+        names, units: channels of the rows, and their units.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Return the peak of each order of the first channel."""
+        texts = []
+        for row, order in enumerate(self.orders):
+            top = int(np.argmax(np.abs(self.amplitude[0, row])))
+            texts.append(
+                f"{np.abs(self.amplitude[0, row, top]):.3g} in order {order:g} at {60.0 * self.turns[top]:.4g}/min"
+            )
+        return f"Order cut of {self.names[0]} [{self.units[0]}]: {', '.join(texts)}"
+
+    def to_dataframe(self) -> Any:
+        """Return a pandas table: a row for each channel, order and speed, with amplitude and phase [deg]."""
+        from pandas import DataFrame
+
+        shape = self.amplitude.shape
+        return DataFrame(
+            {
+                "channel": np.repeat(self.names, shape[1] * shape[2]),
+                "unit": np.repeat(self.units, shape[1] * shape[2]),
+                "order": np.tile(np.repeat(self.orders, shape[2]), shape[0]),
+                "rpm": np.tile(60.0 * self.turns, shape[0] * shape[1]),
+                "amplitude": np.abs(self.amplitude).ravel(),
+                "phase_deg": np.degrees(np.angle(self.amplitude)).ravel(),
+            }
+        )
+
+
+def named_cut(cut: OrderCut, names: tuple[str, ...], units: tuple[str, ...]) -> RunOrderCut:
+    """Return an order cut with the names [-] and units of its channels."""
+    numbers = {field.name: getattr(cut, field.name) for field in fields(OrderCut)}
+    return RunOrderCut(**numbers, names=names, units=units)

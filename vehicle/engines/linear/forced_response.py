@@ -24,7 +24,7 @@ from vehicle.model.parameters.force_elements import Damper
 def forced_response(
     matrices: CarMatrices, channels: Sequence[str], dampers: Sequence[Damper], *, stuck: bool
 ) -> npt.NDArray[np.complex128]:
-    """Return the complex amplitudes of acceleration channels at the frequencies of the applied forces.
+    """Return the complex amplitudes of acceleration channels at the constant frequencies of the applied forces.
 
     Args:
         matrices: matrices of the car.
@@ -45,7 +45,8 @@ def forced_response(
     strains, effects = system.branch_rows @ basis, system.effects @ basis
     drifts = np.zeros_like(strains) if system.branch_drifts is None else system.branch_drifts @ basis
     rows = np.array([system.output(name)[0] for name in channels]).reshape(-1, system.size) @ basis
-    amplitudes = matrices.coefficients[:, ::2] - 1j * matrices.coefficients[:, 1::2]
+    constant = matrices.coefficients[:, : 2 * len(matrices.lines.frequencies)]
+    amplitudes = constant[:, ::2] - 1j * constant[:, 1::2]
     result = np.zeros((len(rows), len(matrices.lines.frequencies)), dtype=complex)
     for column, (frequency, force) in enumerate(zip(matrices.lines.frequencies, amplitudes.T, strict=True)):
         s = 1j * frequency

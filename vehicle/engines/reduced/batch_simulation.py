@@ -206,8 +206,8 @@ def _loaded(stops: LoadRows) -> bool:
 
 
 def _nonlinear_elements(model: PoleModel) -> tuple[object, ...]:
-    """Return what is equal in a group: dampers with Jenkins elements or side forces, laws, frequencies of forces."""
+    """Return what is equal in a group: dampers with Jenkins elements or side forces, laws, histories of forces."""
     sliders, sides = model.matrices.sliders, model.matrices.sides
     laws = tuple((law.element, law.one_sided, law.friction) for law in model.laws)
     elements = tuple(sliders.dampers.tolist()), sliders.stiffness.shape, tuple(sides.dampers.tolist()), laws
-    return *elements, model.matrices.lines.frequencies
+    return *elements, model.matrices.lines

@@ -136,6 +136,7 @@ class GroupRun:
         steps = int(np.floor(signal.duration / interval + 1e-6)) * every
         self.plates = plate_samples(signal, self.timestep, steps, AHEAD * every)
         lines = models[0].matrices.lines
+        lines.require_length(signal.duration)
         self.inputs = InputSamples(self.plates, lines, self.timestep) if len(lines) else self.plates
         start = self.inputs[0:1].reshape(-1, 3).T[:2]
         self.start, loads_of_tyres = start, tyre_load if present_load else [None] * len(models)

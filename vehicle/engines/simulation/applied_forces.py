@@ -14,7 +14,8 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.assembly.element_numbers import FORCE, TORQUE
 from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.placed_force import PlacedForce
-from vehicle.signals.excitation.force_lines import ForceLines
+from vehicle.signals.excitation.force_lines import ForceLines, History, SweptLine
+from vehicle.signals.excitation.force_record import ForceRecord
 
 Vector = npt.NDArray[np.float64]
 
@@ -54,10 +55,25 @@ def force_rows(model: mujoco.MjModel, data: mujoco.MjData, layout: Layout) -> Ve
 
 
 def force_lines(forces: Sequence[PlacedForce]) -> tuple[ForceLines, Vector]:
-    """Return the frequencies of some forces, and the coefficients of each force on their histories; (f, lines)."""
-    lines = ForceLines(tuple(sorted({frequency for force in forces for frequency in force.harmonics})))
-    coefficients = [lines.coefficients(force.harmonics) for force in forces]
-    return lines, np.array(coefficients).reshape(len(forces), len(lines))
+    """Return the histories of some forces, and the coefficients of each force on them; (f, lines)."""
+    histories = [_histories(force) for force in forces]
+    lines = ForceLines.of(histories)
+    return lines, np.array([lines.coefficients(each) for each in histories]).reshape(len(forces), len(lines))
+
+
+def _histories(force: PlacedForce) -> dict[History, complex]:
+    """Return the amplitude of each history of a force."""
+    law, amplitudes = force.law, force.harmonics
+    if law.file and law.enabled:
+        record = ForceRecord(force.path, law.file, law.channel or "", law.unit or "", force.unit, law.ends_at_zero)
+        return {record: law.factor}
+    if force.run_up is None:
+        return dict(amplitudes.items())
+    power = 0.0 if law.reference_frequency is None else 2.0
+    return {
+        SweptLine(*force.run_up, order=frequency / force.speed, power=power): amplitude
+        for frequency, amplitude in amplitudes.items()
+    }
 
 
 def averaged_forces(forces: Sequence[PlacedForce], step: float, rows: slice) -> Vector:
@@ -81,7 +97,8 @@ def highest_frequency(forces: Sequence[PlacedForce]) -> float:
         sizes = {frequency: abs(amplitude) for frequency, amplitude in force.harmonics.items()}
         threshold = MINOR * max(sizes.values(), default=0.0)
         highest = max([highest, *(frequency for frequency, size in sizes.items() if size > threshold)])
-    return highest / (2.0 * np.pi)
+    lines, _ = force_lines(forces)
+    return max([highest / (2.0 * np.pi), *(record.read().highest for record in lines.records)])
 
 
 def step_for(forces: Sequence[PlacedForce], step: float, error: float = STEP_ERROR) -> float:
@@ -103,6 +120,11 @@ def require_step_of_forces(forces: Sequence[PlacedForce], step: float) -> None:
             f"solver.timestep: found {step:g} s, too long for a force of {highest_frequency(forces):.4g} Hz; leave it "
             f"out, or set at most {needed:g} s"
         )
+
+
+def force_notices(forces: Sequence[PlacedForce]) -> tuple[str, ...]:
+    """Return the messages on the files of some forces."""
+    return tuple(notice for record in force_lines(forces)[0].records for notice in record.read().notices)
 
 
 def require_resolved(forces: Sequence[PlacedForce], record_rate: float) -> None:

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from vehicle.engines.simulation.applied_forces import averaged_forces
+from vehicle.engines.simulation.applied_forces import averaged_forces, force_lines
 from vehicle.engines.simulation.callbacks import installed
 from vehicle.engines.simulation.car_model import CarModel
 from vehicle.engines.simulation.compiled import CompiledRows, SteppingLoop
@@ -64,6 +64,7 @@ def simulate(
             message contains time and joint.
     """
     require_friction_laws()
+    force_lines(car.vehicle.composition.forces)[0].require_length(signal.duration)
     every = record_every(car)
     model, space = run_model(car)
     data = mujoco.MjData(model)

@@ -18,10 +18,11 @@ HIGHEST_ORDER = 100.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class AppliedForce:
-    """History of a force or a moment: F(t) = mean + factor g sum of A cos(order angle + phase).
+    """History of a force or a moment: F(t) = mean + factor g sum of A cos(order angle + phase), or of a file.
 
     g is 1, or the square of the frequency of the angle over `reference_frequency`. Harmonics rise from rest within the
-    first second, like a road; the mean acts always, also in the equilibrium from which the car starts.
+    first second, like a road; the mean acts always, also in the equilibrium from which the car starts. A file of a
+    measured history takes the place of the harmonics: F(t) = mean + factor times its channel.
     """
 
     harmonics: tuple[tuple[float, ...], ...] = ()
@@ -40,12 +41,28 @@ class AppliedForce:
     mean: float = quantity(
         "N", "constant part [N or N m], in equilibrium from the start", at_least=-1e5, at_most=1e5, default=0.0
     )
-    factor: float = quantity("-", "factor of all harmonics", at_least=-1e3, at_most=1e3, default=1.0)
+    factor: float = quantity("-", "factor of all harmonics, or of the file", at_least=-1e3, at_most=1e3, default=1.0)
+    file: str | None = quantity("-", "file with a measured history, in place of harmonics", is_file=True, default=None)
+    channel: str | None = quantity(
+        "-",
+        "channel of the file by number, name or pattern; by default the only one with a unit of the force",
+        is_file=True,
+        default=None,
+    )
+    unit: str | None = quantity(
+        "-", "unit of the channel in place of that of the file, as lbf", is_file=True, default=None
+    )
+    ends_at_zero: bool = False
+    """true for a file that is shorter than the run: the force is zero after its end"""
     enabled: bool = True
     """false leaves the force out"""
 
     def __post_init__(self) -> None:
         validate(self)
+        if self.file is None and (self.channel, self.unit, self.ends_at_zero) != (None, None, False):
+            raise ConfigurationError("AppliedForce.file: missing; channel, unit and ends_at_zero belong to a file")
+        if self.file is not None and self.harmonics:
+            raise ConfigurationError("AppliedForce.file: a force has harmonics or a file; apply two forces for both")
         orders = []
         for harmonic in self.harmonics:
             message = f"AppliedForce.harmonics: found {list(harmonic)}"

@@ -11,7 +11,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.additions import further_connection, further_output, law_kind, placed_load, point_of
 from vehicle.model.parameters.applied_force import AppliedForce
 from vehicle.model.parameters.composition import Composition
-from vehicle.model.parameters.driving import Crank, crank_rpm
+from vehicle.model.parameters.driving import Crank, crank_of
 from vehicle.model.parameters.further_forces import engine_forces, force_targets, further_force, wheel_forces
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance, instances
@@ -71,7 +71,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
     carriers = {"body", *(part.name for part in parts if part.seat is None)}
     loads = [placed_load(name, entry, carriers, points) for name, entry in tables["load"].items()]
     body_cog: Point = convert(Point, table["body"]["cog"], "body.cog")
-    targets = force_targets(parts, points, wheels, connections, crank_rpm(table), body_cog)
+    targets = force_targets(parts, points, wheels, connections, crank_of(table), body_cog)
     forces = [*wheel_forces(car, wheels, targets), *engine_forces(car, targets)]
     forces += [further_force(name, entry, targets) for name, entry in tables["force"].items()]
     composition = Composition(
@@ -84,6 +84,7 @@ def compose(table: Mapping[str, Any], folders: tuple[Path, ...]) -> Composition:
         wheels=tuple(wheels),
         forces=tuple(forces),
         speeds=targets.speeds,
+        crank_run_up=targets.run_up,
         points=points,
         kinds=parameter_kinds(car, table),
         meanings={f"{i.name}.hardpoints.{n}": text for i in car.values() for n, text in i.template.hardpoints.items()},

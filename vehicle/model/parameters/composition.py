@@ -13,6 +13,7 @@ from typing import Any, Self, TypeVar
 
 from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.axes import Axes
+from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.force_elements import (
     Damper,
     Hydromount,
@@ -281,6 +282,7 @@ class Composition:
     Attributes:
         parts, connections, springs, joint_springs, dampers, outputs, wheels, forces: elements, parents before children.
         speeds: angular speed [rad/s] of "crank" and of each wheel, as "wheel_fr"; 0 at rest.
+        crank_run_up: run-up of the crankshaft, whose highest speed is in `speeds`; None at constant speed.
         points: hardpoints by name, as "strut_top_fr" [m].
         kinds: parameter class of each table of the vehicle file, by its path.
         meanings: meaning of each hardpoint, by its path.
@@ -295,6 +297,7 @@ class Composition:
     wheels: tuple[PlacedWheel, ...] = ()
     forces: tuple[PlacedForce, ...] = ()
     speeds: Mapping[str, float] = field(default_factory=dict)
+    crank_run_up: RunUp | None = None
     points: Mapping[str, Point] = field(default_factory=dict)
     kinds: Mapping[str, type] = field(default_factory=dict)
     meanings: Mapping[str, str] = field(default_factory=dict)

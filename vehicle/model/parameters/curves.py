@@ -55,7 +55,8 @@ def require_curve(where: str, key: str, positions: Sequence[float], forces: Sequ
 
 
 def with_curve_files(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a vehicle file with every `curve = FILE` replaced by the numbers of the file, and whole paths of FMUs.
+    """Return a vehicle file with every `curve = FILE` replaced by the numbers of the file, and whole paths of FMUs
+    and of the files of forces.
 
     Args:
         table: vehicle file.
@@ -91,7 +92,7 @@ def _filled(table: Mapping[str, Any], folder: Path, prefix: str, sources: dict[s
             filled[key] = _stop(value, folder, path, sources)
         elif isinstance(value, Mapping):
             filled[key] = _filled(value, folder, path, sources)
-        elif key == "fmu" and isinstance(value, str):
+        elif isinstance(value, str) and (key == "fmu" or (key == "file" and prefix.startswith("force."))):
             filled[key] = (folder / value).resolve().as_posix()
         elif key != "curve":
             filled[key] = value

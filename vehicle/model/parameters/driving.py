@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
-from vehicle.model.parameters.quantity import Validated, quantity
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.quantity import Validated, quantity, validate
 from vehicle.model.parameters.toml_file import build, convert
 from vehicle.model.parameters.topology import Template
 
@@ -58,18 +60,48 @@ class Driving(Validated):
 STANDING = Driving()
 
 
+class RunUp(NamedTuple):
+    """Speed of an angle that changes linearly from the first to the last [rad/s] within a duration [s]."""
+
+    first: float
+    last: float
+    duration: float
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Crank(Validated):
-    """Speed of the crankshaft, for the forces over its angle."""
+    """Speed of the crankshaft, for the forces over its angle: constant, or linear in time in a run-up or run-down."""
 
     rpm: float = quantity(
-        "1/min", "speed of the crankshaft", at_least=300.0, at_most=10000.0, why="engines idle at 600 to 1000"
+        "1/min",
+        "speed of the crankshaft, in a run-up at its beginning",
+        at_least=300.0,
+        at_most=10000.0,
+        why="engines idle at 600 to 1000",
+    )
+    end_rpm: float | None = quantity(
+        "1/min", "speed at the end of a run-up; by default constant", at_least=300.0, at_most=10000.0, default=None
+    )
+    run_up_time: float | None = quantity(
+        "s", "time from the beginning of the run to the end of the run-up", at_least=1.0, at_most=3600.0, default=None
     )
 
+    def __post_init__(self) -> None:
+        validate(self)
+        if (self.end_rpm is None) != (self.run_up_time is None):
+            raise ConfigurationError("Crank.end_rpm: a run-up needs end_rpm and run_up_time; set both")
 
-def crank_rpm(table: Mapping[str, Any]) -> float:
-    """Return the speed of the crankshaft of a vehicle file [1/min]; 0 if it has none. Errors: see `build`."""
-    return build(Crank, convert(dict, table["crank"], "crank"), "crank").rpm if "crank" in table else 0.0
+    @property
+    def run_up(self) -> RunUp | None:
+        """Run-up of the crankshaft; None at constant speed."""
+        if self.end_rpm is None or self.run_up_time is None or self.end_rpm == self.rpm:
+            return None
+        return RunUp(self.rpm * math.pi / 30.0, self.end_rpm * math.pi / 30.0, self.run_up_time)
+
+
+def crank_of(table: Mapping[str, Any]) -> Crank | None:
+    """Return the crankshaft of a vehicle file; None if it has none. Errors: see `build`."""
+    return build(Crank, convert(dict, table["crank"], "crank"), "crank") if "crank" in table else None
 
 
 def tyre_words(cars: Iterable[Driving]) -> str:

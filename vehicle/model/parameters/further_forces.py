@@ -13,6 +13,7 @@ from vehicle.errors import ConfigurationError
 from vehicle.model.parameters.additions import named_part, named_point, new_loads
 from vehicle.model.parameters.applied_force import CRANK, AppliedForce
 from vehicle.model.parameters.composition import PlacedConnection, PlacedPart, PlacedWheel
+from vehicle.model.parameters.driving import Crank, RunUp
 from vehicle.model.parameters.engine_orders import ENGINE, ORDERS, EngineOrders
 from vehicle.model.parameters.hardpoints import Point
 from vehicle.model.parameters.instance import Instance
@@ -38,14 +39,16 @@ class ForceTargets:
     Attributes:
         parts: parts of the car and the trimmed body, with their centres of gravity [m].
         points: hardpoints by name [m].
-        joints: names of the hinges and slides.
+        joints: kind of each hinge and slide by its name.
         speeds: angular speed [rad/s] of each angle: crank, and each wheel, as "wheel_fr"; 0 at rest.
+        run_up: run-up of the crankshaft, whose highest speed is in `speeds`; None at constant speed.
     """
 
     parts: Mapping[str, Point]
     points: Mapping[str, Point]
-    joints: tuple[str, ...]
+    joints: Mapping[str, str]
     speeds: Mapping[str, float]
+    run_up: RunUp | None = None
 
 
 def force_targets(
@@ -53,7 +56,7 @@ def force_targets(
     points: Mapping[str, Point],
     wheels: Iterable[PlacedWheel],
     connections: Iterable[PlacedConnection],
-    crank_rpm: float,
+    crank: Crank | None,
     body: Point,
 ) -> ForceTargets:
     """Return what a force can refer to.
@@ -61,21 +64,23 @@ def force_targets(
     Args:
         parts, wheels, connections: elements of the car.
         points: its hardpoints by name [m].
-        crank_rpm: speed of the crankshaft [1/min].
+        crank: speed of the crankshaft; None at rest.
         body: centre of gravity of the trimmed body [m].
     """
     listed = list(parts)
-    speeds = {CRANK: crank_rpm * math.pi / 30.0} | {f"wheel_{wheel.name}": 0.0 for wheel in wheels}
+    highest = 0.0 if crank is None else max(crank.rpm, crank.end_rpm or crank.rpm)
+    speeds = {CRANK: highest * math.pi / 30.0} | {f"wheel_{wheel.name}": 0.0 for wheel in wheels}
     for tyre in connections:
         if tyre.rolling is not None:
             radius = getattr(tyre.law, "rolling_radius", None) or tyre.rolling.arm[2]
             speeds[tyre.carrier.replace("plate_", "wheel_", 1)] = tyre.rolling.speed / radius
-    joints = (joint.name for part in listed for joint in part.joints if joint.kind in ("hinge", "slide"))
+    joints = {joint.name: joint.kind for part in listed for joint in part.joints if joint.kind in ("hinge", "slide")}
     return ForceTargets(
         parts={"body": body, **{part.name: part.cog for part in listed}},
         points=points,
-        joints=tuple(joints),
+        joints=joints,
         speeds=speeds,
+        run_up=None if crank is None else crank.run_up,
     )
 
 
@@ -132,6 +137,8 @@ def further_force(name: str, value: Any, targets: ForceTargets) -> PlacedForce:
         law=law,
         speed=speed,
         path=path,
+        unit="N" if directions == ["force"] else "N m",
+        run_up=targets.run_up if law.angle == CRANK else None,
     )
 
 
@@ -159,6 +166,8 @@ def _torque(path: str, table: Mapping[str, Any], targets: ForceTargets, law: App
         law=law,
         speed=speed,
         path=path,
+        unit="N m" if targets.joints[joint] == "hinge" else "N",
+        run_up=targets.run_up if law.angle == CRANK else None,
     )
 
 
@@ -238,6 +247,14 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
             block = block_forces(engine, speed, round(engine.highest_order))
         except ConfigurationError as error:
             raise ConfigurationError(str(error).replace("EngineOrders", path, 1)) from None
+        rising: float | None = None
+        gas = dict[float, complex]()
+        if targets.run_up is not None and speed > 0.0:
+            # All but the torque of the gas grows with the square of the speed.
+            rising = speed / (2.0 * math.pi)
+            gas = block_forces(engine, 0.0, round(engine.highest_order)).torque
+            for order, amplitude in gas.items():
+                block.torque[order] -= amplitude
         shaft, cylinders, across = engine.axes
         share, first = engine.counterweight_share, 1.0
         turned_force = {first: 1j * share * block.force[first]}
@@ -250,6 +267,7 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
             ("moment_across", block.moment, NONE, across),
             ("moment_along", turned_moment, NONE, cylinders),
             ("torque", block.torque, NONE, shaft),
+            ("torque_gas", gas, NONE, shaft),
         ):
             largest = max(map(abs, harmonics.values()), default=0.0)
             listed = tuple(
@@ -267,9 +285,13 @@ def engine_forces(car: Mapping[str, Instance], targets: ForceTargets) -> list[Pl
                         moment=moment,
                         against="",
                         joint="",
-                        law=AppliedForce(harmonics=listed, angle=CRANK),
+                        law=AppliedForce(
+                            harmonics=listed, angle=CRANK, reference_frequency=None if name == "torque_gas" else rising
+                        ),
                         speed=speed,
                         path=path,
+                        unit="N" if any(force) else "N m",
+                        run_up=targets.run_up,
                     )
                 )
     return forces

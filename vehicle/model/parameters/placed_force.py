@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vehicle.model.parameters.applied_force import AppliedForce
+from vehicle.model.parameters.driving import RunUp
 from vehicle.model.parameters.hardpoints import Point
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PlacedForce:
-    """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque on a joint.
+    """A force or a moment on a part along a fixed direction of the vehicle frame, or a torque or force in a joint.
 
     Attributes:
         name: name of the force.
@@ -20,8 +21,10 @@ class PlacedForce:
         against: part with the reaction at the same point; empty for none.
         joint: joint with the torque, on its part and against the parent; empty for a force on a part.
         law: its history.
-        speed: angular speed of its angle [rad/s].
+        speed: angular speed of its angle [rad/s]; in a run-up the highest.
         path: path of its table in the vehicle file.
+        unit: "N", or "N m" of a moment and of a torque in a hinge.
+        run_up: run-up of its angle; None for a constant speed.
     """
 
     name: str
@@ -34,6 +37,8 @@ class PlacedForce:
     law: AppliedForce
     speed: float
     path: str
+    unit: str = "N"
+    run_up: RunUp | None = None
 
     @property
     def ends(self) -> tuple[tuple[str, float], ...]:
@@ -42,8 +47,13 @@ class PlacedForce:
 
     @property
     def harmonics(self) -> dict[float, complex]:
-        """Angular frequencies [rad/s] and complex amplitudes, see `AppliedForce.amplitudes`."""
+        """Angular frequencies [rad/s] and complex amplitudes, in a run-up at its highest speed: see `AppliedForce`."""
         return self.law.amplitudes(self.speed)
+
+    @property
+    def acts(self) -> bool:
+        """True if it has harmonics at the speed of its angle, a file or a mean."""
+        return bool(self.harmonics or self.mean or (self.law.enabled and self.law.file))
 
     @property
     def mean(self) -> float:

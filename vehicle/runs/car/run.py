@@ -13,20 +13,23 @@ import numpy.typing as npt
 
 from vehicle.drawing.notebook.cards import run_card
 from vehicle.drawing.notebook.frames import recording_dataset, recording_frame
-from vehicle.drawing.notebook.run_orders import RunOrders, named_orders
+from vehicle.drawing.notebook.run_orders import RunOrderCut, RunOrders, named_cut, named_orders
 from vehicle.drawing.notebook.run_response import RunResponse, of_wheel, require_moving, responses
 from vehicle.drawing.notebook.run_spectra import RunSpectra, with_display
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress
 from vehicle.errors import ConfigurationError
 from vehicle.handed_down import HANDED
+from vehicle.model.parameters.applied_force import CRANK
 from vehicle.model.parameters.channel_words import channels_named
 from vehicle.names import AXES
 from vehicle.signals.analysis.comfort import COMFORT_BAND
 from vehicle.signals.analysis.motion_response import MotionResponse
+from vehicle.signals.analysis.order_cut import order_cut
 from vehicle.signals.analysis.order_lines import order_lines
 from vehicle.signals.analysis.ride_comfort import RunComfort, run_comfort
 from vehicle.signals.analysis.slip import first_slip, slip_share
+from vehicle.signals.excitation.force_lines import SweptLine
 from vehicle.signals.excitation.signal import Signal
 from vehicle.signals.records.record_spectra import recorded_spectra
 
@@ -226,9 +229,34 @@ class Run:
         """
         names = self._accelerations(None) if channels is None else self._named(channels)
         angle, speed = self.car.vehicle.composition.turning(angle)
+        if angle == CRANK and self.car.vehicle.composition.crank_run_up is not None:
+            raise ConfigurationError(f"orders: the speed of {angle} changes in this run; use order_cut")
         histories = np.array([self.recording[name] for name in names])
         lines = order_lines(self.time, histories, speed / (2.0 * np.pi), orders, begin=self.skip)
         return named_orders(lines, names, tuple(self.recording.units[name] for name in names), angle)
+
+    def order_cut(
+        self, channels: str | Sequence[str] | None = None, *, orders: Sequence[float] = (2.0, 4.0)
+    ) -> RunOrderCut:
+        """Return complex amplitudes at orders of the crankshaft over its speed in a run-up.
+
+        Args:
+            channels: names or words, as "seat rail z"; all acceleration channels by default.
+            orders: multiples of the speed.
+
+        Raises:
+            ConfigurationError: the speed of the crankshaft is constant.
+            DataError: the record is too short, or an order above half its rate.
+        """
+        run_up = self.car.vehicle.composition.crank_run_up
+        if run_up is None:
+            raise ConfigurationError("order_cut: belongs to a run-up; set crank.end_rpm and crank.run_up_time")
+        names = self._accelerations(None) if channels is None else self._named(channels)
+        inside = self.time <= run_up.duration
+        time, histories = self.time[inside], np.array([self.recording[name][inside] for name in names])
+        angle, speed = SweptLine(*run_up).angle(time)
+        cut = order_cut(time, histories, angle, speed, orders, begin=self.skip)
+        return named_cut(cut, names, tuple(self.recording.units[name] for name in names))
 
     def psd(self, channels: str | Sequence[str] | None = None) -> RunSpectra:
         """Return density, third octaves and cumulative RMS of accelerations, weighted too on seat and seat rail.

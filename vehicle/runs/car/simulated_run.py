@@ -7,12 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from vehicle.engines.reduced.reduced_run import simulate_reduced
-from vehicle.engines.simulation.applied_forces import require_resolved
+from vehicle.engines.simulation.applied_forces import force_notices, require_resolved
 from vehicle.engines.simulation.judgement import require_finite, require_samples
 from vehicle.engines.simulation.recording import Recording
 from vehicle.engines.simulation.stepping import Progress, simulate
 from vehicle.errors import ConfigurationError
 from vehicle.names import ENGINES
+from vehicle.runs.car.run_up_notice import run_up_notice
 from vehicle.signals.excitation.signal import Signal
 
 
@@ -49,7 +50,8 @@ def simulated_run(
         )
     car.vehicle.require_channels(channels or (), (*defaults, *car.vehicle.requested_channels))
     car.vehicle.require_wheels(signal.wheels)
-    require_resolved(car.vehicle.composition.forces, car.vehicle.solver.record_rate)
+    forces = car.vehicle.composition.forces
+    require_resolved(forces, car.vehicle.solver.record_rate)
     names = defaults if channels is None else channels
     more = [name for name in names if name not in defaults]
     loads = [name for name in more if name in car.vehicle.load_channels]
@@ -68,6 +70,7 @@ def simulated_run(
             forms=car.quadratic_forms if stated else None,
         )
         require_finite(recording)
+        recording = _with_notices(recording, [*force_notices(forces), *run_up_notice(car)])
         if engine == "reduced" or recording.statistics.within_validity:
             if engine == "auto":
                 reason = "the motion stayed within the validity of the reduced engine"
@@ -77,10 +80,15 @@ def simulated_run(
     wanted_step, used_step = car.vehicle.solver.timestep, stepped.vehicle.solver.step
     recording = simulate(stepped.model, signal, progress=progress, requested=more)
     require_finite(recording)
+    recording = _with_notices(recording, [*force_notices(forces), *run_up_notice(car)])
     if wanted_step is not None and used_step < wanted_step:
         said = f"time step {used_step:g} s: that of the vehicle file, {wanted_step:g} s, is too long for this car"
-        statistics = recording.statistics
-        recording = replace(recording, statistics=replace(statistics, notices=(*statistics.notices, said)))
+        recording = _with_notices(recording, [said])
     if channels is not None:
         recording = recording.only(channels)
     return stepped, recording, reason
+
+
+def _with_notices(recording: Recording, notices: Sequence[str]) -> Recording:
+    statistics = recording.statistics
+    return replace(recording, statistics=replace(statistics, notices=(*statistics.notices, *notices)))

@@ -12,7 +12,7 @@ from vehicle.model.parameters.applied_force import CRANK
 from vehicle.names import AXES
 from vehicle.runs.car import Run
 from vehicle.signals.analysis.order_lines import order_lines
-from vehicle.signals.records.run_summary import ForceSummary, OrderSummary
+from vehicle.signals.records.run_summary import ForceSummary, OrderSummary, RunUpSummary
 
 POINTS = ("seat", "seat_rail")
 """Points of the car whose amplitudes are in the summary, and the knuckles with z alone."""
@@ -23,11 +23,12 @@ class ForceValues(TypedDict, total=False):
 
     forces: dict[str, ForceSummary]
     orders: list[OrderSummary]
+    run_up: list[RunUpSummary]
 
 
 def force_values(run: Run) -> ForceValues:
     """Return the entries of a run with applied forces; empty without them."""
-    acting = [force for force in run.car.vehicle.composition.forces if force.harmonics or force.mean]
+    acting = [force for force in run.car.vehicle.composition.forces if force.acts]
     if not acting:
         return {}
     forces: dict[str, ForceSummary] = {
@@ -51,20 +52,52 @@ def force_values(run: Run) -> ForceValues:
         }
         for force in acting
     }
-    return {"forces": forces, "orders": _orders(run)}
+    values: ForceValues = {"forces": forces}
+    if any(force.harmonics and force.run_up is None for force in acting):
+        values["orders"] = _orders(run)
+    if any(force.harmonics and force.run_up for force in acting):
+        values["run_up"] = _run_up(run)
+    return values
+
+
+def _channels(run: Run) -> list[str]:
+    """Return the accelerations whose amplitudes are in the summary."""
+    channels = [f"{point}_acc_{axis}" for point in POINTS for axis in AXES]
+    channels += [f"knuckle_{wheel}_acc_z" for wheel in run.car.vehicle.wheels]
+    return [name for name in channels if name in run.recording.channels]
+
+
+def _run_up(run: Run) -> list[RunUpSummary]:
+    """Return the largest amplitudes in each order of the crankshaft that acts in a run-up."""
+    forces, channels = [force for force in run.car.vehicle.composition.forces if force.run_up], _channels(run)
+    orders = sorted({round(frequency / force.speed, 9) for force in forces for frequency in force.harmonics})
+    try:
+        cut = run.order_cut(channels, orders=orders)
+    except DataError:  # too short
+        return []
+    tops, rpm = np.argmax(np.abs(cut.amplitude), axis=2), 60.0 * cut.turns
+    return [
+        {
+            "order": order,
+            "peak": {
+                name: float(np.abs(cut.amplitude[row, column, tops[row, column]])) for row, name in enumerate(channels)
+            },
+            "rpm": {name: float(rpm[tops[row, column]]) for row, name in enumerate(channels)},
+        }
+        for column, order in enumerate(orders)
+    ]
 
 
 def _orders(run: Run) -> list[OrderSummary]:
     """Return the amplitudes of the main accelerations at each frequency of the forces, the lowest first."""
-    channels = [f"{point}_acc_{axis}" for point in POINTS for axis in AXES]
-    channels += [f"knuckle_{wheel}_acc_z" for wheel in run.car.vehicle.wheels]
-    channels = [name for name in channels if name in run.recording.channels]
+    channels = _channels(run)
     if not channels:
         return []
     angles: dict[float, tuple[float, str]] = {}
     for force in run.car.vehicle.composition.forces:
         of = {None: "frequency", CRANK: CRANK}.get(force.law.angle, "wheels")
-        angles |= {frequency: (frequency / force.speed, of) for frequency in force.harmonics}
+        if force.run_up is None:
+            angles |= {frequency: (frequency / force.speed, of) for frequency in force.harmonics}
     dampers = [damper.law for damper in run.car.vehicle.composition.dampers]
     limits = [
         np.abs(forced_response(run.car.matrices, channels, dampers, stuck=stuck)).T.tolist() for stuck in (True, False)

@@ -1,16 +1,26 @@
-"""Histories of applied forces: cosine and sine of each of their frequencies, which rise from rest like a road.
+"""Histories of applied forces, which rise from rest like a road.
 
-A force F(t) = w(t) sum_j Re(Z_j exp(i W_j t)) is a sum over w cos(W_j t) and w sin(W_j t) with the coefficients Re Z_j
-and -Im Z_j, so that any number of forces at one frequency has two histories.
+A force F(t) = w(t) sum_j Re(Z_j exp(i theta_j)) + c r(t) is a sum over w cos(theta_j) and w sin(theta_j) with the
+coefficients Re Z_j and -Im Z_j, and over records r of files, so that any number of forces at one frequency has two
+histories. theta = W t at a constant frequency. In a run-up the speed of the angle rises linearly from W_1 to W_2 within
+T and stays there:
+
+    theta = order (W_1 t + (W_2 - W_1) t^2/(2 T)),
+
+and a force that grows with the power p of the speed has the histories (W(t)/W_h)^p w cos(theta) and sin, W_h the
+higher one of both speeds.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vehicle.signals.excitation.force_record import ForceRecord
 from vehicle.signals.excitation.iso_road import RISE_S, half_cosine_at
 
 Vector = NDArray[np.float64]
@@ -20,37 +30,102 @@ NODES, WEIGHTS = (0.5 * (1.0 + np.polynomial.legendre.leggauss(4)[0]), 0.5 * np.
 x^8/1.8e9: 1e-14 for 200 Hz at 0.2 ms."""
 
 
+class SweptLine(NamedTuple):
+    """Order of an angle in a run-up.
+
+    Attributes:
+        first, last: angular speeds at the beginning and at the end [rad/s].
+        duration: time between both [s].
+        order: multiple of the angle.
+        power: exponent p of the growth of the force with the speed.
+    """
+
+    first: float
+    last: float
+    duration: float
+    order: float = 1.0
+    power: float = 0.0
+
+    def angle(self, time: Vector) -> tuple[Vector, Vector]:
+        """Return the angle [rad] and its speed [rad/s], without the order, at some times [s]."""
+        rising, rate = np.clip(time, 0.0, self.duration), (self.last - self.first) / self.duration
+        angle = (self.first + 0.5 * rate * rising) * rising
+        after = np.maximum(time - self.duration, 0.0)
+        return angle + self.last * after + self.first * np.minimum(time, 0.0), self.first + rate * rising
+
+    @property
+    def highest(self) -> float:
+        """Highest frequency of the order [rad/s]."""
+        return self.order * max(self.first, self.last)
+
+
+History = float | SweptLine | ForceRecord
+"""What has histories: an angular frequency [rad/s], an order in a run-up, or a file."""
+
+
 @dataclass(frozen=True, slots=True)
 class ForceLines:
-    """Frequencies of applied forces.
+    """Histories of applied forces.
 
     Attributes:
         frequencies: W_j [rad/s], positive, each once; (j,).
+        swept: orders of run-ups; (s,).
+        records: files; (r,).
     """
 
     frequencies: tuple[float, ...] = ()
+    swept: tuple[SweptLine, ...] = ()
+    records: tuple[ForceRecord, ...] = ()
+
+    @classmethod
+    def of(cls, forces: Sequence[Mapping[History, complex]]) -> ForceLines:
+        """Return the histories of some forces, see `coefficients`."""
+        keys = list(dict.fromkeys(key for force in forces for key in force))
+        return cls(
+            tuple(sorted(key for key in keys if isinstance(key, float))),
+            tuple(sorted(key for key in keys if isinstance(key, SweptLine))),
+            tuple(key for key in keys if isinstance(key, ForceRecord)),
+        )
 
     def __len__(self) -> int:
-        """Return the number of histories, two for each frequency."""
-        return 2 * len(self.frequencies)
+        """Return the number of histories: two for each frequency and each order of a run-up, one for each record."""
+        return 2 * (len(self.frequencies) + len(self.swept)) + len(self.records)
 
-    def coefficients(self, harmonics: dict[float, complex]) -> Vector:
-        """Return the coefficients of the histories of one force; (2 j,).
+    def coefficients(self, force: Mapping[History, complex]) -> Vector:
+        """Return the coefficients of the histories of one force; (2 j + 2 s + r,).
 
         Args:
-            harmonics: W_j to the complex amplitude Z_j.
+            force: complex amplitude Z_j of each frequency W_j and each order of a run-up, and factor of a record.
         """
-        amplitudes = np.array([harmonics.get(frequency, 0.0) for frequency in self.frequencies], dtype=complex)
-        return np.column_stack([amplitudes.real, -amplitudes.imag]).ravel()
+        keys: list[History] = [*self.frequencies, *self.swept]
+        amplitudes = np.array([force.get(key, 0.0j) for key in keys], dtype=complex)
+        turning = np.column_stack([amplitudes.real, -amplitudes.imag]).ravel()
+        return np.concatenate([turning, [complex(force.get(record, 0.0)).real for record in self.records]])
 
     def values(self, time: Vector) -> Vector:
-        """Return the histories at some times [s], (m,): w cos(W_1 t), w sin(W_1 t), w cos(W_2 t) ...; (m, 2 j).
+        """Return the histories at some times [s], (m,): w cos(W_1 t), w sin(W_1 t), w cos(W_2 t) ...; (m, 2 j + ...).
 
         Before t = 0 they are zero, as w is.
         """
         angle = np.multiply.outer(time, np.array(self.frequencies))
-        both = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(*time.shape, len(self))
-        return np.asarray(both * half_cosine_at(time, RISE_S)[..., None])
+        growth = np.ones_like(angle)
+        if self.swept:
+            turned = [line.angle(time) for line in self.swept]
+            highest = [line.highest / line.order for line in self.swept]
+            angle = np.concatenate(
+                [angle, *((line.order * each)[..., None] for line, (each, _) in zip(self.swept, turned, strict=True))],
+                axis=-1,
+            )
+            rates = [
+                ((speed / top) ** line.power)[..., None]
+                for line, (_, speed), top in zip(self.swept, turned, highest, strict=True)
+            ]
+            growth = np.concatenate([growth, *rates], axis=-1)
+        both = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        if self.swept:
+            both *= growth[..., None]
+        both = both.reshape(*time.shape, 2 * angle.shape[-1]) * half_cosine_at(time, RISE_S)[..., None]
+        return np.concatenate([both, *(record.values(time)[..., None] for record in self.records)], axis=-1)
 
     def means(self, start: Vector, step: float) -> Vector:
         """Return the means of the histories over steps.
@@ -60,3 +135,12 @@ class ForceLines:
             step: length of the steps [s].
         """
         return np.asarray(np.einsum("g,mgk->mk", WEIGHTS, self.values(start[:, None] + step * NODES)))
+
+    def require_length(self, duration: float) -> None:
+        """Check that all records last for a run [s].
+
+        Raises:
+            DataError: one is shorter.
+        """
+        for record in self.records:
+            record.require_length(duration)

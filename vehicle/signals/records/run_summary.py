@@ -130,6 +130,14 @@ class OrderSummary(TypedDict):
     without_friction: dict[str, float]
 
 
+class RunUpSummary(TypedDict):
+    """Largest amplitude of each channel in an order of the crankshaft in a run-up, and its speed [1/min]."""
+
+    order: float
+    peak: dict[str, float]
+    rpm: dict[str, float]
+
+
 class StaticSummary(TypedDict):
     """Static loads [N], and the largest displacement that remains after the trim [m]."""
 
@@ -204,6 +212,7 @@ class RunSummary(TypedDict):
     obstacle: NotRequired[ObstacleSummary | None]
     forces: NotRequired[dict[str, ForceSummary]]
     orders: NotRequired[list[OrderSummary]]
+    run_up: NotRequired[list[RunUpSummary]]
     static: StaticSummary
     solver: SolverSummary
     frf: FrfSummary | None

@@ -1,0 +1,245 @@
+"""Histories of applied forces: files and run-ups against an own fine integration of the linear car, both engines."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+import scipy
+from scipy.signal import lfilter
+
+from tests.validation import validated
+from vehicle import Car, Run, road
+from vehicle.errors import VehicleError
+from vehicle.runs.output.run_forces import force_values
+from vehicle.signals.analysis.order_cut import order_cut
+from vehicle.signals.analysis.run_up_peak import run_up_peak
+
+FREE = {"front.damper.coulomb_friction": 0.0}
+ON_RAIL = {"force.a.on": "body", "force.a.at": "seat_rail", "force.a.force": [0.3, 0, 1]}
+CHANNELS = ("seat_rail_acc_z", "knuckle_fr_acc_z", "engine_acc_z")
+FINE = 20000.0
+"""Rate of the own integration [Hz]: a force of 60 Hz that is linear between its samples is (w h)^2/12 = 3e-5 low."""
+
+ENGINE: dict[str, object] = {"cylinders": 4, "bore": 0.0765, "stroke": 0.0869, "rod": 0.137, "reciprocating_mass": 0.45}
+ENGINE |= {"spacing": 0.086, "firing": [1, 3, 4, 2], "torque": 30, "highest_order": 4}
+ORDERS = {f"engine.orders.{key}": value for key, value in ENGINE.items()}
+
+
+def integrated(car: Car, history: np.ndarray) -> np.ndarray:
+    """Accelerations of the linear car by a force at the seat rail, linear between samples at `FINE`, at 1 kHz.
+
+    The joints are eliminated by a basis of the null space of their rows, and each eigenvector of x' = A x + b F is
+    integrated exactly over each interval.
+    """
+    system, (force,), model = car.matrices.system, car.vehicle.composition.forces, car.model.model
+    data = mujoco.MjData(model)
+    mujoco.mj_fwdPosition(model, data)
+    linear = np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, linear, None, np.array(force.at), model.body("body").id)
+    gap = np.linalg.norm(car.model.superelement.positions - np.array(force.at), axis=1)
+    node = car.model.superelement.nodes[int(np.argmin(gap))]
+    linear[:, car.matrices.modal] += car.model.superelement.shape_at(node)
+    basis = scipy.linalg.null_space(system.constraints)
+    mass, damping, stiffness = (basis.T @ part @ basis for part in (system.mass, system.damping, system.stiffness))
+    rows, n, b = system.branch_rows @ basis, basis.shape[1], len(system.branch_rows)
+    effect = np.linalg.solve(mass, basis.T @ (np.array(force.force) @ linear))
+    state = np.block(
+        [
+            [np.zeros((n, n)), np.eye(n), np.zeros((n, b))],
+            [*np.split(-np.linalg.solve(mass, np.hstack([stiffness, damping])), 2, axis=1),
+             -np.linalg.solve(mass, (system.effects @ basis).T)],
+            [np.zeros((b, n)), system.branch_stiffness[:, None] * rows, -np.diag(1.0 / system.branch_time)],
+        ]
+    )  # fmt: skip
+    poles, vectors = np.linalg.eig(state)
+    inputs = np.linalg.solve(vectors, np.concatenate([np.zeros(n), effect, np.zeros(b)]).astype(complex))
+    outputs = np.array([system.outputs[name][: system.size] for name in CHANNELS]) @ basis
+    result = np.outer(outputs @ effect, history[::20]).astype(complex)
+    step = 1.0 / FINE
+    for pole, vector, weight in zip(poles, vectors.T, inputs, strict=True):
+        x = pole * step
+        # phi_1 and phi_2 of the exponential integrator; their series where x is small.
+        one, two = (
+            (np.expm1(x) / x, (np.expm1(x) - x) / x**2) if abs(x) > 1e-3 else (1 + x / 2 + x * x / 6, 0.5 + x / 6)
+        )
+        motion = lfilter([two * step, (one - two) * step], [1.0, -np.exp(x)], history.astype(complex))
+        rate = vector[n : 2 * n] * pole * weight
+        result += np.outer(outputs @ rate, motion[::20])
+    accelerations: np.ndarray = result.real
+    return accelerations
+
+
+def rise(time: np.ndarray) -> np.ndarray:
+    return 0.5 * (1.0 - np.cos(np.pi * np.minimum(time, 1.0)))
+
+
+def histories(run: Run) -> np.ndarray:
+    return np.array([run[name] for name in CHANNELS])
+
+
+def pulse(time: np.ndarray) -> np.ndarray:
+    """Pulse of 300 N and 0.12 s, and a decaying oscillation of 22 Hz: at rest at both ends."""
+    one = np.where((time > 0.5) & (time < 0.62), np.sin(np.pi * (time - 0.5) / 0.12) ** 2, 0.0)
+    after = np.maximum(time - 1.0, 0.0)
+    return 300.0 * one + 80.0 * np.sin(2.0 * np.pi * 22.0 * after) * np.exp(-2.0 * after) * after
+
+
+# MuJoCo has the second order of the motion too, 0.2 % of 600 N: it gets a tenth of it.
+@pytest.mark.parametrize(("kind", "factor", "limit"), [("reduced", 2.0, 1e-4), ("mujoco", 0.2, 1e-3)])
+def test_a_force_of_a_file_moves_the_linear_car(tmp_path, kind, factor, limit):
+    # The file is in kN at 2 kHz and begins at 3 s; the car of the reduced engine is linear without friction.
+    time = np.arange(16001) / 2000.0
+    table = np.column_stack([time + 3.0, np.sin(time), pulse(time) / 1000.0])
+    heads = "time [s],torque [Nm],push [kN]"
+    np.savetxt(tmp_path / "push.csv", table, delimiter=",", header=heads, comments="", fmt="%.9f")
+    car = Car.load("focus", {**FREE, **ON_RAIL, "force.a.file": str(tmp_path / "push.csv"), "force.a.factor": factor})
+    run = car.run(road("level", 0, duration=4), engine=kind, channels=CHANNELS)
+    assert "begins at 3 s and was shifted to 0" in " ".join(run.recording.statistics.notices)
+    validated(
+        "Applied forces",
+        f"{kind} engine, force of a file on the seat rail: accelerations of seat rail, knuckle and engine",
+        histories(run),
+        integrated(car, factor * pulse(np.arange(0.0, 4.0 + 0.5 / FINE, 1.0 / FINE))),
+        source="second derivation: exact integration of each eigenvector at 20 kHz",
+        peak=limit,
+    )
+
+
+@pytest.mark.parametrize("growth", ["constant", "squared"])
+def test_a_run_up_moves_the_linear_car(growth):
+    # 600 to 1200 rpm in 8 s: order 2 from 20 to 40 Hz, then constant.
+    law: dict[str, object] = {"force.a.angle": "crank", "force.a.harmonics": [[1, 15, 20], [2, 30, -50]]}
+    law |= {"force.a.reference_frequency": 15.0} if growth == "squared" else {}
+    run_up = {"crank.rpm": 600, "crank.end_rpm": 1200, "crank.run_up_time": 8}
+    car = Car.load("focus", {**FREE, **ON_RAIL, **law, **run_up})
+    run = car.run(road("level", 0, duration=10), engine="reduced", channels=CHANNELS)
+    time = np.arange(0.0, 10.0 + 0.5 / FINE, 1.0 / FINE)
+    turns = np.where(time < 8.0, 10.0 * time + 0.625 * time**2, 120.0 + 20.0 * (time - 8.0))
+    speed = np.minimum(10.0 + 1.25 * time, 20.0)
+    force = 15.0 * np.cos(2.0 * np.pi * turns + np.radians(20.0))
+    force += 30.0 * np.cos(4.0 * np.pi * turns - np.radians(50.0))
+    force *= rise(time) * ((speed / 15.0) ** 2 if growth == "squared" else 1.0)
+    validated(
+        "Applied forces",
+        f"run-up from 600 to 1200 rpm, orders 1 and 2, {growth} amplitudes: seat rail, knuckle and engine",
+        histories(run),
+        integrated(car, force),
+        source="second derivation: exact integration of each eigenvector at 20 kHz",
+        peak=1e-4,
+    )
+
+
+def test_both_engines_agree_on_a_run_up_of_an_engine_with_friction():
+    run_up = {"crank.rpm": 700, "crank.end_rpm": 1500, "crank.run_up_time": 6}
+    car = Car.load("focus_road", {**ORDERS, **run_up})
+    smooth = road("level", 0, duration=6)
+    precise, reduced = (car.run(smooth, engine=kind, channels=CHANNELS) for kind in ("mujoco", "reduced"))
+    validated(
+        "Applied forces",
+        "run-up of a four-cylinder engine from 700 to 1500 rpm, with friction: both engines, difference over RMS",
+        np.std(histories(reduced) - histories(precise), axis=1) / np.std(histories(precise), axis=1),
+        0.0,
+        source="second derivation: MuJoCo",
+        abs=5e-3,
+    )
+    energies = precise.recording.statistics.energies
+    assert energies is not None and energies.residual < 5e-3
+    # The torque of the gas does not grow with the speed, all else with its square: at 900 rpm the steady engine.
+    steady = {f.name: f for f in Car.load("focus_road", {**ORDERS, "crank.rpm": 900}).vehicle.composition.forces}
+    parts = {force.name: force for force in car.vehicle.composition.forces}
+    share = (900.0 / 1500.0) ** 2
+    order, speed = 2.0, parts["engine_torque"].speed
+    inertia, gas = (parts[name].harmonics[order * speed] for name in ("engine_torque", "engine_torque_gas"))
+    assert share * inertia + gas == pytest.approx(
+        steady["engine_torque"].harmonics[order * steady["engine_torque"].speed], rel=1e-9
+    )
+
+
+def test_the_peak_of_a_mode_in_a_run_up():
+    """Oscillator of 12 Hz and 3 % by exact integration of its equation; the amplitude of the notice."""
+    frequency, damping, rates = 12.0, 0.03, (0.1, 0.5, 2.0, 5.0)
+    step, natural = 1.0 / FINE, 2.0 * np.pi * frequency
+    pole = natural * (-damping + 1j * np.sqrt(1.0 - damping**2))
+    x = pole * step
+    one, two = np.expm1(x) / x, (np.expm1(x) - x) / x**2
+    found = []
+    for rate in rates:
+        time = np.arange(0.0, 12.0 / rate, step)[: round(100.0 * FINE)]
+        force = np.cos(2.0 * np.pi * (frequency - 5.0 + 0.5 * rate * time) * time)
+        motion = lfilter([two * step, (one - two) * step], [1.0, -np.exp(x)], force.astype(complex)).imag / pole.imag
+        found.append(np.max(np.abs(motion)) * 2.0 * damping * natural**2)
+    validated(
+        "Applied forces",
+        "peak of a mode of 12 Hz and 3 % in run-ups of 0.1, 0.5, 2 and 5 Hz/s over its steady peak",
+        [run_up_peak(frequency, damping, rate)[0] for rate in rates],
+        found,
+        source="second derivation: exact integration of the oscillator at 20 kHz",
+        abs=0.02,  # the envelope leaves out the second pole of the pair, a share of the damping ratio
+    )
+
+
+def test_an_order_cut_separates_half_orders():
+    time = np.arange(30001) / 1000.0
+    turns, speed = 10.0 * time + 0.5 * time**2, 10.0 + time
+    sizes = {2.0: 0.4, 2.5: 0.1}
+    record = sum(size * speed**2 * np.cos(2.0 * np.pi * order * turns + order) for order, size in sizes.items())
+    cut = order_cut(time, np.array([record]), 2.0 * np.pi * turns, 2.0 * np.pi * speed, [2.0, 2.5, 3.0])
+    for row, (order, size) in enumerate(sizes.items()):
+        # Over a window the square of the speed is not linear: its second derivative times the variance of the window.
+        assert cut.amplitude[0, row] == pytest.approx(size * cut.turns**2 * np.exp(1j * order), rel=2e-3)
+    assert np.max(np.abs(cut.amplitude[0, 2]) / (0.4 * cut.turns**2)) < 2e-3
+
+
+def test_a_run_up_tells_what_its_speed_does_to_a_peak():
+    run_up = {"crank.rpm": 700, "crank.end_rpm": 3000, "crank.run_up_time": 20}
+    run = Car.load("focus_road", {**ORDERS, **run_up}).run(road("level", 0, duration=20), engine="reduced")
+    (notice,) = (text for text in run.recording.statistics.notices if text.startswith("the run-up passes the mode at"))
+    assert "in order 2 with 3.8 Hz/s" in notice and "python -m vehicle orders --rpm A:B:STEP" in notice
+    (_, second), values = run.order_cut("seat rail z", orders=[1, 2]).amplitude[0], force_values(run)
+    assert "orders" not in values and np.max(np.abs(second)) == pytest.approx(
+        next(line["peak"]["seat_rail_acc_z"] for line in values["run_up"] if line["order"] == 2)
+    )
+    with pytest.raises(VehicleError, match="the speed of crank changes in this run; use order_cut"):
+        run.orders(orders=[2])
+
+
+REFUSED: dict[str, tuple[dict[str, object], str]] = {
+    "no such channel": ({"channel": "X"}, "force.a.channel 'X' matches no channel; set a number"),
+    "unit of a moment": ({"channel": "torque"}, "channel 1 'torque' is a moment in [Nm]; force.a needs N, kN or lbf"),
+    "no unit": ({"channel": "plain"}, "has no unit; set force.a.unit to N, kN or lbf"),
+    "unknown unit": ({"channel": "plain", "unit": "kp"}, "has the unknown unit 'kp'; set force.a.unit to N, kN or lbf"),
+    "shorter": (
+        {"channel": "push"},
+        "lasts 2 s, the run 3 s; set --duration 2, use a longer file, or set force.a.ends",
+    ),
+    "does not end": ({"channel": "jump", "ends_at_zero": True}, "force.a.ends_at_zero: the last value of"),
+    "gap": ({"channel": "gap", "ends_at_zero": True}, "gap"),
+    "harmonics too": ({"harmonics": [[1, 1, 0]], "frequency": 5.0}, "a force has harmonics or a file"),
+    "no file": ({"file": "nowhere.csv"}, "nowhere.csv: no such file"),
+    "too fast": (
+        {"channel": "fast", "ends_at_zero": True},
+        "solver.record_rate: found 1000 Hz, which shows a force of",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_bad_files_are_refused(tmp_path, name):
+    changes, message = REFUSED[name]
+    time = np.arange(2001) / 1000.0
+    push, gap = pulse(time) * (time < 1.9), np.where(np.abs(time - 1.0) < 0.2, np.nan, 1.0)
+    fast = np.sin(2.0 * np.pi * 300.0 * time) * np.sin(np.pi * time / 2.0) ** 2
+    table = np.column_stack([time, time, push, push + 1.0, gap, push, fast])
+    heads = "time [s],torque [Nm],push [N],jump [N],gap [N],plain,fast [N]"
+    np.savetxt(tmp_path / "push.csv", table, delimiter=",", header=heads, comments="")
+    places = {**ON_RAIL, "force.a.file": str(tmp_path / "push.csv")}
+    with pytest.raises(VehicleError) as error:
+        car = Car.load("focus", {**places, **{f"force.a.{key}": value for key, value in changes.items()}})
+        car.run(road("level", 0, duration=3), engine="reduced")
+    assert message in str(error.value)
+
+
+def test_a_run_up_needs_both_numbers():
+    with pytest.raises(VehicleError, match=r"crank.end_rpm: a run-up needs end_rpm and run_up_time; set both"):
+        Car.load("focus", {"crank.rpm": 700, "crank.end_rpm": 3000})

@@ -1,0 +1,191 @@
+"""History of a force from a measurement file: a cubic spline through its samples, as that of a plate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vehicle.errors import DataError
+from vehicle.signals.analysis.spline import CubicSpline
+from vehicle.signals.excitation.iso_road import RISE_S, half_cosine_at
+from vehicle.signals.formats.channel import Measurement
+from vehicle.signals.formats.reader import read_record
+from vehicle.signals.formats.units import find_unit
+from vehicle.signals.records.choice import Choice, choose, pick
+
+Vector = NDArray[np.float64]
+
+UNITS = {"N": "N, kN or lbf", "N m": "N m or kN m"}
+"""Units of a file for a force and for a moment or torque."""
+
+AT_REST = 0.01
+"""Value at an end over the RMS [-] up to which a force is at rest there."""
+
+HIDDEN = 0.01
+"""RMS above the highest frequency over the whole RMS [-]."""
+
+FEWEST = 32
+"""Minimum number of samples."""
+
+
+@dataclass(frozen=True, slots=True)
+class ForceRecord:
+    """Force or moment of a file.
+
+    Attributes:
+        path: path of the force in the vehicle file, for messages.
+        file: measurement file of any format of `vehicle.signals.formats`.
+        channel: number, exact name or pattern of the channel; empty for the only one of this quantity.
+        unit: unit of the channel in place of that of the file; empty for that of the file.
+        needed: "N" or "N m".
+        ends_at_zero: the force is zero after the end of the file.
+    """
+
+    path: str
+    file: str
+    channel: str
+    unit: str
+    needed: str
+    ends_at_zero: bool
+
+    def values(self, time: Vector) -> Vector:
+        """Return the force at some times [s], (...): 0 before t = 0; after the end 0 or the last value.
+
+        A record that does not begin at rest rises within the first second, like a road.
+        """
+        history = self.read()
+        inside = history.spline(np.clip(time, 0.0, history.duration))
+        if not history.rests:
+            inside = inside * half_cosine_at(time, RISE_S)
+        beyond = time > history.duration if self.ends_at_zero else np.zeros_like(time, dtype=bool)
+        return np.where((time < 0.0) | beyond, 0.0, inside)
+
+    def read(self) -> RecordedForce:
+        """Return the history.
+
+        Raises:
+            ConfigurationError: the file does not exist.
+            DataError: no such channel, another quantity, times that are not uniform, a gap, or a last value that is
+                not zero although the force shall end with zero.
+        """
+        file = Path(self.file)
+        changed = file.stat().st_mtime_ns if file.is_file() else 0
+        return _history(self, changed)
+
+    def require_length(self, duration: float) -> None:
+        """Check that the record lasts for a run.
+
+        Args:
+            duration: length of the run [s].
+
+        Raises:
+            DataError: it is shorter.
+        """
+        history = self.read()
+        if history.duration < duration - 1e-6 and not self.ends_at_zero:
+            raise DataError(
+                f"{self.file}: lasts {history.duration:.6g} s, the run {duration:.6g} s; set --duration "
+                f"{history.duration:.4g}, use a longer file, or set {self.path}.ends_at_zero = true for a force that "
+                "is zero after its end"
+            )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecordedForce:
+    """History of a force.
+
+    Attributes:
+        spline: force over time [N or N m].
+        duration: last time [s].
+        rests: the force begins at rest.
+        highest: frequency [Hz] above which less than `HIDDEN` of its RMS lies.
+        notices: messages on the file.
+    """
+
+    spline: CubicSpline
+    duration: float
+    rests: bool
+    highest: float
+    notices: tuple[str, ...]
+
+
+@lru_cache(maxsize=16)
+def _history(record: ForceRecord, changed: int) -> RecordedForce:
+    where = record.path
+    measurement = read_record(record.file)
+    channel = _channel(record, measurement)
+    chosen = choose(
+        measurement, Choice(channels={where: str(channel + 1)}, units={where: record.unit} if record.unit else {})
+    )
+    time, values = chosen.time - chosen.time[0], chosen.values[where]
+    if time.size < FEWEST:
+        raise DataError(f"{record.file}: {time.size} samples, must be at least {FEWEST}")
+    steps = np.diff(time)
+    if np.max(np.abs(steps / np.mean(steps) - 1.0)) > 1e-6 * max(1.0, 1.0 / float(np.mean(steps))):
+        raise DataError(f"{record.file}: times are not uniform; resample the record of {where} to a uniform grid")
+    size = float(np.sqrt(np.mean(values**2)))
+    if size == 0.0:
+        raise DataError(f"{record.file}: the force of {where} is zero at all times; choose another channel")
+    rests = abs(values[0]) <= AT_REST * size
+    notices = [notice for notice in chosen.notices if not notice.startswith(f"{where}: channel")]
+    if chosen.time[0] != 0.0:
+        notices.append(f"time of {record.file} begins at {chosen.time[0]:.6g} s and was shifted to 0")
+    if not rests:
+        notices.append(f"{where} begins with {values[0]:.4g} {record.needed} and rises from rest within {RISE_S:g} s")
+    if record.ends_at_zero and abs(values[-1]) > AT_REST * size:
+        raise DataError(
+            f"{where}.ends_at_zero: the last value of {record.file} is {values[-1]:.4g} {record.needed}, not 0; let "
+            "the record end at zero, or leave the key out"
+        )
+    return RecordedForce(
+        spline=CubicSpline(time, values),
+        duration=float(time[-1]),
+        rests=rests,
+        highest=_highest(values, float(np.mean(steps))),
+        notices=tuple(notices),
+    )
+
+
+def _channel(record: ForceRecord, measurement: Measurement) -> int:
+    """Return the index of the channel of a force, with a unit of its quantity."""
+    quantity = find_unit(record.needed)
+    assert quantity is not None
+    if record.channel:
+        index = pick(measurement, record.channel, option=f"{record.path}.channel")
+    else:
+        units = [find_unit(channel.unit or record.unit) for channel in measurement.channels]
+        named = [number for number, unit in enumerate(units) if unit and unit.quantity == quantity.quantity]
+        if len(named) != 1:
+            listed = ", ".join(
+                f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(measurement.channels, 1)
+            )
+            raise DataError(
+                f"{record.file}: {len(named)} channels are in {UNITS[record.needed]}; set {record.path}.channel to a "
+                f"number or name of: {listed}"
+            )
+        (index,) = named
+    channel = measurement.channels[index]
+    unit = find_unit(record.unit or channel.unit)
+    where = f"{record.file}: channel {index + 1} {channel.name!r}"
+    if unit is None:
+        found = f"the unknown unit {record.unit or channel.unit!r}" if record.unit or channel.unit else "no unit"
+        raise DataError(f"{where} has {found}; set {record.path}.unit to {UNITS[record.needed]}")
+    if unit.quantity != quantity.quantity:
+        raise DataError(
+            f"{where} is a {unit.quantity} in [{record.unit or channel.unit}]; {record.path} needs "
+            f"{UNITS[record.needed]}: choose another channel, or give the force the direction of a {unit.quantity}"
+        )
+    return index
+
+
+def _highest(values: Vector, interval: float) -> float:
+    """Return the frequency [Hz] above which less than `HIDDEN` of the RMS lies; with a Hann window."""
+    window = np.hanning(values.size) if max(abs(values[0]), abs(values[-1])) > 0.0 else np.ones(values.size)
+    power = np.abs(np.fft.rfft(window * (values - values.mean()))) ** 2
+    above = np.cumsum(power[::-1])[::-1]
+    line = int(np.searchsorted(-above, -(HIDDEN**2) * max(above[0], np.finfo(float).tiny)))
+    return min(line, power.size - 1) / (values.size * interval)
