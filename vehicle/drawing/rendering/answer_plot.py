@@ -8,11 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, PAGE_WIDTH, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 BETTER, WORSE, NEUTRAL = COLOURS[2], COLOURS[1], "#9aa5b1"
 """Colours of a change: smaller vibration or load, larger vibration or load, no rating."""

@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.colour_scale import colours
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.thinned_wireframe import thinned
-
-Vector = npt.NDArray[np.float64]
 
 MOST = 12
 """Maximum number of modes in a picture."""

@@ -6,12 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 MOST_POINTS = 6000
 """Maximum number of points of a line; more are not visible in a picture of this size."""

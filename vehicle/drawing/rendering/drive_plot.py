@@ -11,9 +11,8 @@ import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
 from vehicle.drawing.rendering.recorded_run import liveliest
+from vehicle.signals.analysis.samples import Vector
 from vehicle.signals.analysis.spectra import power_spectral_density
-
-Vector = npt.NDArray[np.float64]
 
 DETAIL, WINDOW = 2.0, 4.0
 """Length of the magnified time window and of a window of the spectra [s]."""

@@ -10,12 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.recorded_run import event_of, liveliest, wheels_of
 from vehicle.engines.simulation.recording import Recording
-
-Vector = npt.NDArray[np.float64]
 
 FPS = 30.0
 """Frames per second of every film [Hz]."""

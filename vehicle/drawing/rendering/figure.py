@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vehicle.drawing.rendering.grid_lines import bared, draw_grid
+from vehicle.signals.analysis.samples import Complex, Vector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -178,7 +179,7 @@ def frf_axes(figure: Figure, axes: npt.NDArray[Any], coherence_ticks: tuple[floa
     figure.align_ylabels(axes[:, 0])
 
 
-def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float64]:
+def wrapped_phase(response: Complex) -> Vector:
     """Return the phase [deg] between -180 and 180, with NaN after each jump so that no line crosses the picture.
 
     Args:
@@ -194,9 +195,9 @@ def wrapped_phase(response: npt.NDArray[np.complex128]) -> npt.NDArray[np.float6
 
 def fading(
     axis: Axes,
-    frequency: npt.NDArray[np.float64],
-    values: npt.NDArray[np.float64],
-    coherence: npt.NDArray[np.float64],
+    frequency: Vector,
+    values: Vector,
+    coherence: Vector,
     label: str | None = None,
     **style: Any,
 ) -> None:
@@ -222,10 +223,10 @@ def fading(
 
 def error_band(
     axis: Axes,
-    frequency: npt.NDArray[np.float64],
-    values: npt.NDArray[np.float64],
-    half: npt.NDArray[np.float64],
-    coherence: npt.NDArray[np.float64],
+    frequency: Vector,
+    values: Vector,
+    half: Vector,
+    coherence: Vector,
     colour: str,
 ) -> None:
     """Draw the band of the random error of a magnitude, not where the coherence is below `SHOWN_BAND`.

@@ -7,12 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, LINES, saved_figure
-
-Vector = npt.NDArray[np.float64]
-Complex = npt.NDArray[np.complex128]
+from vehicle.signals.analysis.samples import Complex, Vector
 
 MARKERS = ("o", "s", "^", "D", "v")
 """Markers of the points, one for each colour."""

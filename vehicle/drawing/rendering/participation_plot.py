@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, FRF_TICKS, INK, saved_figure
+from vehicle.signals.analysis.samples import Vector
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,8 +21,6 @@ HATCHES = ("", "//", "..", "\\\\", "xx")
 """Hatches in addition to the colours, to distinguish areas in black-and-white print."""
 
 MOST_BARS = 10
-
-Vector = npt.NDArray[np.float64]
 
 
 def plot_participation(

@@ -7,12 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from vehicle.drawing.rendering.figure import COLOURS, saved_figure
-
-Vector = NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 
 class RoadTrack(NamedTuple):

@@ -7,11 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.figure import COLOURS, INK, saved_figure
-
-Vector = npt.NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 MOST_LINES = 3000
 """Maximum number of cars drawn on parallel axes: the most comfortable and evenly spaced others."""

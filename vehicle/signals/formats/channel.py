@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vehicle.errors import ConfigurationError, DataError
+from vehicle.signals.analysis.samples import Complex
 from vehicle.signals.formats.clock import clock_of_rounded, clock_of_stamps, is_uniform, longest_step, typical_rate
 from vehicle.signals.formats.geometry import Geometry, ModeShape
 from vehicle.signals.formats.table import Vector
 from vehicle.signals.formats.units import find_ratio
 
-Values = NDArray[np.float64] | NDArray[np.complex128]
+Values = NDArray[np.float64] | Complex
 
 ROAD_PROFILE = "road profile"
 """Function of heights over the distance, and of the distance itself."""

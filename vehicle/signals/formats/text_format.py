@@ -207,7 +207,7 @@ def careful(numbers: list[int], rows: list[str], header: Header, key: int, wante
         DataError: a non-numeric cell, or a row with another number of cells.
     """
     width = len(header.cells)
-    values: NDArray[np.float64] = np.full((len(rows), width), np.nan)
+    values: Vector = np.full((len(rows), width), np.nan)
     for index, (line, row) in enumerate(zip(numbers, rows, strict=True)):
         cells = _split(row, header.delimiter)
         if len(cells) != width:
