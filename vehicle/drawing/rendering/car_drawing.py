@@ -33,10 +33,9 @@ def plot_car(path: Path, wire: CarWireframe, data: Any, size: tuple[float, float
     """Write the drawing of a car.
 
     Args:
-        path: PNG or SVG file.
+        path, size: see `saved_figure`.
         wire: lines of the car.
         data: a `vehicle.runs.car.car_data.CarData` of the same car.
-        size: width and height [inch].
     """
     count = max(1, len(data.axles))
     caption = (

@@ -33,10 +33,8 @@ def plot_damper(path: Path, loops: Sequence[DamperLoop], title: str, caption: st
     """Write the picture of a fitted damper, a row for each test.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         loops: measured and fitted forces of all tests.
-        title: title above the picture.
-        caption: caption below the picture.
     """
     with saved_figure(path, (9.0, 1.0 + 3.0 * len(loops)), title, caption) as figure:
         grid = figure.subplots(len(loops), 2, squeeze=False, sharey="row")

@@ -94,10 +94,7 @@ def liveliest_window(
     """Choose the time window with the largest damper motion of a wheel; without slip, with the largest knuckle motion.
 
     Args:
-        recording: recording of the run.
-        wheel: the excited wheel.
-        hub: acceleration channel of the part that carries the wheel.
-        slip_velocity: damper velocity above which the damper slips [m/s].
+        recording, wheel, hub, slip_velocity: see `choose_excerpt`.
         length: length of the window [s].
 
     Returns:

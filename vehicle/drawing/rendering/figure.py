@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -232,9 +232,7 @@ def error_band(
     """Draw the band of the random error of a magnitude, not where the coherence is below `SHOWN_BAND`.
 
     Args:
-        axis: the axis.
-        frequency: [Hz], (m,).
-        values: magnitude, (m,).
+        axis, frequency, values: see `fading`.
         half: half width of the band, (m,).
         coherence: gamma^2 [-], (m,); where it is unknown the band is drawn.
         colour: of the curve.
@@ -260,3 +258,17 @@ def shade(
         return
     transform = axis.get_xaxis_transform()
     axis.fill_between(along, 0.0, 1.0, where=where, transform=transform, color=colour, zorder=0, label=label)
+
+
+def name_bars(axis: Axes, values: Sequence[float] | Vector, texts: Sequence[str], distance: float) -> None:
+    """Write a text at the end of each horizontal bar, outside of the bar.
+
+    Args:
+        axis: axes with bars at 0, 1, 2, ...
+        values: ends of the bars, (n,).
+        texts: their texts.
+        distance: distance of the text from the end [point].
+    """
+    for row, (value, text) in enumerate(zip(values, texts, strict=True)):
+        side, across = (distance, "left") if value >= 0.0 else (-distance, "right")
+        axis.annotate(text, (value, row), (side, 0), textcoords="offset points", va="center", ha=across, fontsize=8)

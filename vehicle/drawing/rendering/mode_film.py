@@ -140,14 +140,11 @@ def mode_film(
     Args:
         car: compiled car.
         mode: mode of the car.
-        path: MP4 file.
-        size: width and height [pixel], even.
-        progress: called with the finished fraction.
+        path, size, progress: see `film`.
 
     Raises:
         ConfigurationError: the size cannot be encoded or read.
-        MissingPartError: an off-screen OpenGL library or ffmpeg is missing.
-        OutputError: the file cannot be written.
+        MissingPartError, OutputError: see `film`.
     """
     backend = choose_backend()
     shot = ModeShot(car, mode, OneView(width=size[0], height=size[1]))

@@ -35,10 +35,8 @@ def plot_mount(path: Path, curves: Sequence[MountCurve], title: str, caption: st
     """Write the picture of a fitted mount.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         curves: points and curves of all amplitudes.
-        title: title above the picture.
-        caption: caption below the picture.
     """
     with saved_figure(path, (9.0, 7.5), title, caption) as figure:
         upper, lower = figure.subplots(2, 1, sharex=True)

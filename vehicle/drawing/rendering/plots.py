@@ -83,12 +83,10 @@ def plot_frf(
     """Write the FRF picture: magnitudes with the 95 % band of their random error, grey outside the band of the input.
 
     Args:
-        path: PNG file.
+        path, caption, size: see `saved_figure`.
         run: the run, with its excited wheel.
         response: FRFs to the plate displacement [m/s2 per m], one row for each acceleration channel.
-        caption: line under the picture: input, level, estimator.
         title: what the FRFs are to, where that is not one plate.
-        size: width and height [inch].
     """
     rows = {name: row for row, name in enumerate(run.car.model.vehicle.acceleration_channels)}
     wheel, wheels = run.wheel, run.car.model.vehicle.wheels

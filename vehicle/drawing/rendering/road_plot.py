@@ -28,10 +28,9 @@ def plot_road(path: Path, distance: Vector, tracks: Mapping[str, RoadTrack], tit
     """Plot a road, a column for each track.
 
     Args:
-        path: PNG file.
+        path, title, caption: see `saved_figure`.
         distance: distance of the wheels [m]; (n,).
         tracks: title of the column to the road.
-        title, caption: above and below the figure.
     """
     width = 3.0 + 4.5 * len(tracks)
     with saved_figure(path, (width, 6.0), title, textwrap.fill(caption, round(12.0 * width))) as figure:

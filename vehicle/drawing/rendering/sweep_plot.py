@@ -32,12 +32,11 @@ def plot_sweep(
     """Plot the comfort of the cars of a sweep; a star marks the most comfortable car, a circle the first.
 
     Args:
-        path: PNG or SVG file.
+        path, title, caption: see `saved_figure`.
         names: varied parameters with units; at least one.
         parameters: values of the parameters; (cars, names).
         weighted: weighted RMS [m/s2]; (cars,).
         unweighted: unweighted RMS, 2 to 50 Hz [m/s2]; (cars,).
-        title, caption: above and below the figure.
     """
     size = (7.6, 5.0) if len(names) < 3 else (2.4 + 1.7 * len(names), 5.4)
     with saved_figure(path, size, title, caption) as figure:

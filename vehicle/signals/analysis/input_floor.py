@@ -106,7 +106,10 @@ def tapered_power(samples: Vector, rounding: float, lines: int | None = None) ->
     power, total = np.zeros(computed), 0.0
     for number in range(TAPERS):
         window = partial(_window, number, count)
-        tapered = partial(_tapered, samples, mean, window)
+
+        def tapered(part: slice, window: Callable[[slice], Vector] = window) -> Vector:
+            return (samples[part] - mean) * window(part)
+
         energy = sum(float(np.sum(window(part) ** 2)) for part in transform.parts)
         power += np.abs(transform.of(tapered)) ** 2 * count / energy / TAPERS
         if computed < all_lines:
@@ -149,11 +152,6 @@ def _window_samples(number: int, count: int, start: int, stop: int) -> Vector:
     """Return samples of a taper; the last part is stored, because energy and spectrum need it one after the other."""
     values: Vector = _taper_splines()[number](np.minimum(np.arange(start, stop) * (1.0 / (count - 1)), 1.0))
     return values
-
-
-def _tapered(samples: Vector, mean: float, window: Callable[[slice], Vector], part: slice) -> Vector:
-    """Return a part of a record without its mean, multiplied by a taper."""
-    return (samples[part] - mean) * window(part)
 
 
 @lru_cache(maxsize=64)

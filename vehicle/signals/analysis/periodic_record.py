@@ -94,14 +94,8 @@ def whole_record_responses(
     """Estimate the FRFs of a whole record: by its periods if a single input is periodic, else by local rational models.
 
     Args:
-        time_step: sampling interval [s].
-        excitations: p inputs, shape (p, n).
-        responses: outputs, shape (n,) or (k, n), or a sequence of k outputs (n,).
-        band: lowest and highest frequency [Hz].
+        time_step, excitations, responses, band, names, input_names, rounding: see `local_rational_responses`.
         resolution: spacing of the frequencies of local rational models [Hz]; a periodic input determines its lines.
-        names: names of the responses in messages.
-        input_names: names of the inputs in messages.
-        rounding: rounding step of each input; estimated from the samples if 0 or missing.
 
     Returns:
         One FRF for each input; `estimator` is the name of the estimator. If a periodic input is not evaluated by its

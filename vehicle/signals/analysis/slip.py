@@ -95,9 +95,7 @@ def slip_intervals(time: ArrayLike, velocity: ArrayLike, slip_velocity: float) -
     A slip that lasts to the end of the record ends with its last time stamp.
 
     Args:
-        time: time stamps [s], shape (n,).
-        velocity: velocity of the damper [m/s], shape (n,).
-        slip_velocity: speed that counts as slip [m/s].
+        time, velocity, slip_velocity: see `first_slip`.
     """
     slips = _slipping(_one(velocity), slip_velocity)[0]
     instants = _instants(time, slips.size)

@@ -111,8 +111,7 @@ def acceleration_events(displacement: Mapping[str, Vector], timestep: float) -> 
     """Return a notice for each plate of a road with an acceleration above that of a shaker, with its maximum.
 
     Args:
-        displacement: wheel -> plate displacement [m], shape (n,).
-        timestep: sampling interval [s].
+        displacement, timestep: see `check_level`.
     """
     events = []
     for wheel, z in displacement.items():

@@ -74,30 +74,27 @@ class Signal:
         return f"Signal({self.source}, {self.duration:g} s, wheels {', '.join(self.wheels)})"
 
     def __post_init__(self) -> None:
-        time = _read_only(self.time)
-        displacement = {wheel: _read_only(values) for wheel, values in self.displacement.items()}
-        object.__setattr__(self, "time", time)
-        object.__setattr__(self, "displacement", displacement)
-        slopes = {wheel: _read_only(values) for wheel, values in self.slope_velocity.items()}
-        object.__setattr__(self, "slope_velocity", slopes)
-        profile = {wheel: _read_only(values) for wheel, values in self.profile.items()}
-        object.__setattr__(self, "profile", profile)
+        object.__setattr__(self, "time", _read_only(self.time))
+        for name in ("displacement", "slope_velocity", "profile"):
+            columns = {wheel: _read_only(values) for wheel, values in getattr(self, name).items()}
+            object.__setattr__(self, name, columns)
         self._check_time()
-        if not displacement:
+        if not self.displacement:
             raise DataError(f"{self.source}: the signal drives no wheel; set a displacement for one of {_wheels()}")
-        for wheel in displacement:
+        for wheel in self.displacement:
             if not is_wheel(wheel):
                 raise DataError(f"{self.source}: unknown wheel {wheel!r}; must be one of {_wheels()}")
-        for name, columns in (("displacement", displacement), ("slope velocity", slopes), ("profile", profile)):
-            if columns and columns.keys() != displacement.keys():
+        for name in ("displacement", "slope_velocity", "profile"):
+            columns, name = getattr(self, name), name.replace("_", " ")
+            if columns and columns.keys() != self.displacement.keys():
                 raise DataError(
                     f"{self.source}: {name} of {', '.join(columns)}; set it for the wheels of the displacements, "
-                    f"{', '.join(displacement)}, or for none"
+                    f"{', '.join(self.displacement)}, or for none"
                 )
             for wheel, values in columns.items():
-                if values.shape != time.shape:
+                if values.shape != self.time.shape:
                     raise DataError(
-                        f"{self.source}: {name} of {wheel} has shape {values.shape}, time has {time.shape}; "
+                        f"{self.source}: {name} of {wheel} has shape {values.shape}, time has {self.time.shape}; "
                         "all columns must have the same length"
                     )
                 if not np.isfinite(values).all():

@@ -136,6 +136,10 @@ class Measurement:
         more = f" and {len(self.channels) - 3} more" if len(self.channels) > 3 else ""
         return f"Measurement({self.path.name}, {self.format}, {len(self.channels)} channels: {names}{more})"
 
+    def listed(self) -> str:
+        """Return number, name and unit of up to twenty channels, for messages."""
+        return ", ".join(f"{n} {channel.name!r} [{channel.unit}]" for n, channel in enumerate(self.channels[:20], 1))
+
     def __getitem__(self, name: str) -> Channel:
         """Return the channel with a name.
 
