@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from vehicle.drawing.rendering.body_wireframe import EMISSION
 from vehicle.drawing.rendering.frame_at_rest import frame_at_rest
@@ -12,6 +11,7 @@ from vehicle.engines.simulation.car_model import CarModel
 from vehicle.model.assembly.studio import add_studio
 from vehicle.model.assembly.visuals import add_shapes, visible_shapes
 from vehicle.model.shapes import SHELL
+from vehicle.signals.analysis.samples import Vector
 
 SAMPLES = 0
 """Multisampling of the picture: four samples take twice as long on a processor; a film halves its colours anyway."""
@@ -65,7 +65,7 @@ def stage_model(car: CarModel, size: tuple[int, int], *, road: bool = False) -> 
     return spec.compile()
 
 
-def unveiled(model: mujoco.MjModel) -> npt.NDArray[np.float64]:
+def unveiled(model: mujoco.MjModel) -> Vector:
     """Return the opacity of all materials, (materials,), zero for shapes that would hide the suspension."""
     names = {model.mat(number).name: number for number in range(model.nmat)}
     opacity = model.mat_rgba[:, 3].copy()

@@ -7,15 +7,15 @@ from typing import Literal
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+from vehicle.signals.analysis.samples import Vector, checked_signals, checked_time_step
 
 RunningAverage = Literal["linear", "exponential"]
 
 
-def _one(weighted: ArrayLike) -> NDArray[np.float64]:
+def _one(weighted: ArrayLike) -> Vector:
     """Return a single weighted record as floats, shape (n,)."""
     array = checked_signals("weighted acceleration", weighted)
     if array.shape[0] != 1:

@@ -8,10 +8,12 @@ from functools import partial
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis.samples import (
+    Complex,
+    Vector,
     checked_band,
     checked_names,
     checked_same_length,
@@ -36,16 +38,16 @@ coherence. Below it the error of the separated responses is more than seven time
 class FrequencyResponse:
     """FRF, response over excitation, with coherence and standard error."""
 
-    frequency: NDArray[np.float64]
+    frequency: Vector
     """frequency lines [Hz], shape (m,)"""
-    response: NDArray[np.complex128]
+    response: Complex
     """H(f) [unit of response / unit of excitation], shape (k, m); NaN where undefined"""
-    coherence: NDArray[np.float64]
+    coherence: Vector
     """gamma^2 [-], shape (k, m); NaN where undefined"""
-    random_error: NDArray[np.float64]
+    random_error: Vector
     """standard error of |H| [unit of H], shape (k, m): 95 % of all estimates lie within 1.96 of it in magnitude, within
     2.45 in the complex plane; NaN where undefined"""
-    averages: NDArray[np.float64]
+    averages: Vector
     """number of independent averages with which H1 has this error [-], shape (k, m)"""
     segments: int
     """overlapping segments averaged [-]"""
@@ -202,9 +204,7 @@ def frequency_responses(
     )
 
 
-def _refuse_dependent(
-    scaled: NDArray[np.complex128], independence: NDArray[np.float64], labels: tuple[str, ...]
-) -> None:
+def _refuse_dependent(scaled: Complex, independence: Vector, labels: tuple[str, ...]) -> None:
     """Raise an error if an input depends linearly on the others over most of the band."""
     if np.median(independence) >= INDEPENDENCE:
         return

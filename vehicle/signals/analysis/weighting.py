@@ -7,11 +7,11 @@ from functools import lru_cache
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.signals.analysis.fast_length import fast_length
-from vehicle.signals.analysis.samples import checked_signals, checked_time_step
+from vehicle.signals.analysis.samples import Complex, Vector, checked_signals, checked_time_step
 
 LEAST_SAMPLING_RATE = 25.0
 """Minimum sampling rate of a weighted record [Hz], for vibration up to 10 Hz, the range in which Wk is highest."""
@@ -78,7 +78,7 @@ class Weighting:
         return 4.0 / self.f1
 
     @property
-    def sections(self) -> NDArray[np.float64]:
+    def sections(self) -> Vector:
         """Return the factors of H as rows b0, b1, b2, a0, a1, a2; (2, 3 or 4, 6).
 
         H = product of (b0 + b1 jf + b2 (jf)^2) / (a0 + a1 jf + a2 (jf)^2) with f [Hz]; see `transfer_function`.
@@ -90,7 +90,7 @@ class Weighting:
             rows += [[f5**2, f5 / self.q5, 1.0, f6**2, f6 / self.q6, 1.0]]
         return np.array(rows)
 
-    def transfer_function(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+    def transfer_function(self, frequency: ArrayLike) -> Complex:
         """Return the complex factor H at frequencies [Hz] of any shape.
 
         With s = j 2 pi f and w_i = 2 pi f_i:
@@ -109,7 +109,7 @@ class Weighting:
             factor = factor * ((b0 + s * (b1 + s * b2)) / (a0 + s * (a1 + s * a2)))
         return np.asarray(factor, dtype=np.complex128)
 
-    def spectrum_factor(self, frequency: ArrayLike) -> NDArray[np.float64]:
+    def spectrum_factor(self, frequency: ArrayLike) -> Vector:
         """Return |H| [-], the factor of a third octave RMS value; a density is multiplied by its square."""
         return np.asarray(np.abs(self.transfer_function(frequency)))
 
@@ -176,7 +176,7 @@ def weighting(name: str) -> Weighting:
     return WEIGHTINGS[name]
 
 
-def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[np.float64]:
+def weighted_record(time_step: float, signals: ArrayLike, name: str) -> Vector:
     """Return records filtered by the analogue weighting, which is at rest before the first sample.
 
     The record, extended by zeros until the filter has decayed, is transformed, multiplied by the exact complex H(f) of
@@ -227,6 +227,6 @@ def weighted_record(time_step: float, signals: ArrayLike, name: str) -> NDArray[
 
 
 @lru_cache(maxsize=8)
-def _factors(name: str, length: int, step: float) -> NDArray[np.complex128]:
+def _factors(name: str, length: int, step: float) -> Complex:
     """Return the complex factors of a weighting at the lines of a record, cached for the runs of a sweep."""
     return weighting(name).transfer_function(np.fft.rfftfreq(length, step))

@@ -230,9 +230,7 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write channels to an HDF5 file, one array per channel.
 
     Args:
-        path: file to write.
-        channels: channels of any type.
-        description: description of the record.
+        path, channels, description: file to write, channels of any type, and description of the record.
 
     Raises:
         MissingPartError: h5py is not installed.

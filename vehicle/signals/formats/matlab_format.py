@@ -275,9 +275,7 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write one structure per channel, in the layout of Testlab.
 
     Args:
-        path: file to write.
-        channels: channels of any type.
-        description: description of the record.
+        path, channels, description: file to write, channels of any type, and description of the record.
     """
     from scipy.io import savemat
 

@@ -26,12 +26,20 @@ def read(path: Path) -> Measurement:
         DataError: the file is damaged, truncated, encrypted, too large, or without numbers.
     """
     extra("pyarrow", "parquet", "a Parquet file")
-    parquet = import_module("pyarrow.parquet")
+    parquet, arrow = import_module("pyarrow.parquet"), import_module("pyarrow.types")
+    types = (
+        arrow.is_integer,
+        arrow.is_floating,
+        arrow.is_decimal,
+        arrow.is_duration,
+        arrow.is_time,
+        arrow.is_timestamp,
+    )
     notices: list[str] = []
     with reading(path, "Parquet", "export it again, or as CSV"):
         with parquet.ParquetFile(path, page_checksum_verification=True) as file:
             rows, fields = file.metadata.num_rows, file.schema_arrow
-            wanted = [n for n, field in enumerate(fields) if _is_number(field.type) or _is_date(field.type)]
+            wanted = [n for n, field in enumerate(fields) if any(is_type(field.type) for is_type in types)]
             needed = 2 * 8 * rows * len(wanted)
             require_unpacked(path, needed, path.stat().st_size)
             skipped = [field.name for n, field in enumerate(fields) if n not in wanted]
@@ -60,21 +68,6 @@ def read(path: Path) -> Measurement:
         start=start,
         notices=tuple(notices),
     )
-
-
-def _is_number(data_type: Any) -> bool:
-    types = import_module("pyarrow.types")
-    return bool(
-        types.is_integer(data_type)
-        or types.is_floating(data_type)
-        or types.is_decimal(data_type)
-        or types.is_duration(data_type)
-        or types.is_time(data_type)  # some writers store durations as times of day
-    )
-
-
-def _is_date(data_type: Any) -> bool:
-    return bool(import_module("pyarrow.types").is_timestamp(data_type))
 
 
 def _column(column: Any) -> tuple[Any, str]:

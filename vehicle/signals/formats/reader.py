@@ -49,7 +49,7 @@ def read(file: str | Path, databases: Sequence[Path] = ()) -> Measurement:
 
     Args:
         file: measurement file, or the folder of a run, whose time histories are read.
-        databases: DBC files that decode the log of a CAN bus.
+        databases: see `read_record`.
 
     Returns:
         Channels with names, units and times; `read(file)["Seat Z"]` is one of them.

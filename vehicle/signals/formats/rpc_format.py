@@ -179,9 +179,7 @@ def write(path: Path, channels: tuple[Channel, ...], description: str) -> None:
     """Write time histories of equal rate in floating point.
 
     Args:
-        path: file to write.
-        channels: time histories over equal times.
-        description: description of the record.
+        path, channels, description: file to write, time histories over equal times, and description of the record.
 
     Raises:
         DataError: different rates, or missing values, which the format does not support.

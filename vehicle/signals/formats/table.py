@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis import samples
-
-Vector = NDArray[np.float64]
+from vehicle.signals.analysis.samples import Vector
 
 TIME = "time [s]"
 """Header of the column of sample times."""
