@@ -88,9 +88,9 @@ if TYPE_CHECKING:
     from vehicle.studies.replication.drive_search import FoundDrive as FoundDrive
     from vehicle.studies.replication.drive_search import replicate_drive as replicate_drive
     from vehicle.studies.sweeps.effects import Effects as Effects
-    from vehicle.studies.sweeps.effects import parameter_effects as parameter_effects
     from vehicle.studies.sweeps.indices import SobolIndices as SobolIndices
     from vehicle.studies.sweeps.measure import ComfortMeasure as ComfortMeasure
+    from vehicle.studies.sweeps.parameter_effects import parameter_effects as parameter_effects
     from vehicle.studies.sweeps.plan import sweep as sweep
     from vehicle.studies.sweeps.sobol_sweep import sobol as sobol
     from vehicle.studies.sweeps.sweep_table import SweepTable as SweepTable
@@ -132,7 +132,7 @@ _MODULES = {
     "measured_histories": "vehicle.studies.tuning.measured_targets",
     "measured_responses": "vehicle.studies.tuning.measured_targets",
     "optimise": "vehicle.studies.optimisation.car_search",
-    "parameter_effects": "vehicle.studies.sweeps.effects",
+    "parameter_effects": "vehicle.studies.sweeps.parameter_effects",
     "read": "vehicle.signals.formats.reader",
     "read_measured": "vehicle.signals.records.measured",
     "read_signal": "vehicle.signals.excitation.signal_file",

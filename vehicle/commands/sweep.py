@@ -28,6 +28,7 @@ from vehicle.studies.sweeps.sweep_settings import SweepSettings
 if TYPE_CHECKING:
     from vehicle.model.parameters.ranges import Range
     from vehicle.studies.sweeps.case_table import Combinations
+    from vehicle.studies.sweeps.plan import Variations
 
 
 def parser() -> Parser:
@@ -56,6 +57,12 @@ def parser() -> Parser:
         help="Sobol indices of comfort with N base points, a power of two; each parameter is uniform between the "
         "bounds of --vary PATH=LOW:HIGH; N times (parameters + 2) runs on each input",
     )
+    parser.add_argument(
+        "--each",
+        metavar="P%",
+        help="change each parameter alone by P percent, down and up, and rank them by their effect on comfort; --vary "
+        "PATH, as front.damper or viscous, chooses them; by default all stiffnesses, dampings, friction forces, masses",
+    )
     vehicle_options(parser)
     setting_options(parser, SweepSettings, "engine", "skip", "jobs", "executor", "time_limit")
     output_options(parser, Path("runs/sweep"))
@@ -73,7 +80,9 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.runs.output.folder import study_folder, write_text, write_whole
     from vehicle.studies.sweeps.case_table import RowChanges
     from vehicle.studies.sweeps.differences import DIFFERENCES
+    from vehicle.studies.sweeps.effects import EFFECTS, TORNADO, effect_lines, write_effects
     from vehicle.studies.sweeps.executors import executor_factory
+    from vehicle.studies.sweeps.parameter_effects import effects_of, single_changes, varied_parameters
     from vehicle.studies.sweeps.plan import plan_sweep
     from vehicle.studies.sweeps.sobol_sweep import SOBOL, comfort_indices, index_lines, sobol_changes, write_indices
     from vehicle.studies.sweeps.store import ROWS
@@ -82,19 +91,28 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.sweeps.sweep_ranking import ranked_cars, ranking_lines
     from vehicle.studies.sweeps.sweep_table import read_variations
 
-    if bool(options.vary) == bool(options.table):
+    if options.each is not None and (options.table or options.sobol is not None):
+        raise ConfigurationError("--each: takes --vary PATH, or no parameters; leave out --table and --sobol")
+    if options.each is None and bool(options.vary) == bool(options.table):
         raise ConfigurationError("give either --vary PATH=A,B,C (once or more) or --table FILE.csv")
     if options.sobol is not None and (options.table or options.report is not None):
         raise ConfigurationError(
             "--sobol: needs --vary PATH=LOW:HIGH, and has no report; leave out --table and --report"
         )
     ranges = [] if options.sobol is None else ranges_of(options.vary)
-    changes: Combinations | RowChanges
-    if ranges:
+    changes: Variations
+    car = Car.load(options.vehicle, options.overrides)
+    parameters: dict[str, tuple[float, str]] = {}
+    without: tuple[str, ...] = ()
+    share = 0.0
+    if options.each is not None:
+        share = percent_of(options.each)
+        parameters = varied_parameters(car.vehicle, options.vary)
+        changes, without = single_changes(car.vehicle, parameters, share)
+    elif ranges:
         changes = sobol_changes(ranges, options.sobol)
     else:
         changes = RowChanges(*read_variations(options.table)) if options.table else every_combination(options.vary)
-    car = Car.load(options.vehicle, options.overrides)
     settings = SweepSettings.of_options(options, executor=executor_factory(options.executor, options.jobs))
     plan = plan_sweep(car, changes, chosen_inputs(options, car.vehicle), settings)
     output = study_folder_of(options, options.output, rows=(ROWS,))
@@ -111,21 +129,28 @@ def _job(options: argparse.Namespace) -> None:
         indices = comfort_indices(table, ranges) if ranges else None
         if indices is not None:
             write_whole(folder / SOBOL, lambda path: write_indices(path, indices))
+        effects = effects_of(table, parameters, share, without) if parameters else None
         # Read before the folder of the rows gets its name.
-        cars, failed = None if ranges else ranked_cars(table), table.failed
+        cars, failed = None if ranges or parameters else ranked_cars(table), table.failed
         drawn = cars is not None and can_be_drawn(cars)
         caption = f"tyres {plan.tyres}, evaluated from {plan.skip:g} s on"
         if cars is not None and drawn:
             write_whole(folder / PICTURE, lambda path: draw_ranked(path, cars, caption))
+        if effects is not None:
+            write_whole(folder / EFFECTS, lambda path: write_effects(path, effects))
+            write_whole(folder / TORNADO, lambda path: effects.write_picture(path, caption))
         if report is not None:
             command = f"python -m vehicle sweep {shlex.join(options.words)}"
             head = {"author": options.author, "project": options.project}
-            page = sweep_page(table, car.vehicle.name, caption=caption, command=command, notes=notes, **head)
+            page = sweep_page(
+                table, car.vehicle.name, caption=caption, command=command, notes=notes, effects=effects, **head
+            )
             write_text(folder / report if report.parent == Path() else report, page)
     if not options.quiet:
         more = "" if report is None else f"{report}, "
         more += f"{PICTURE}, " if drawn else ""
         more += f"{SOBOL}, " if ranges else ""
+        more += f"{EFFECTS}, {TORNADO}, " if effects is not None else ""
         more += f"{DIFFERENCES} (comfort against the first car), " if (output / DIFFERENCES).exists() else ""
         print(
             f"{output}: {len(plan.cases)} runs, {len(failed)} failed, tyres {plan.tyres}, evaluated from "
@@ -135,6 +160,8 @@ def _job(options: argparse.Namespace) -> None:
             print("\n".join(ranking_lines(cars)))
         if indices is not None:
             print("\n".join(index_lines(indices)))
+        if effects is not None:
+            print("\n".join(effect_lines(effects)))
         for case, reason in failed[:5]:
             print(f"failed      {case.label}: {reason}")
     if failed and not options.allow_failed:
@@ -142,6 +169,20 @@ def _job(options: argparse.Namespace) -> None:
             f"{len(failed)} of {len(plan.cases)} runs failed; the table is written, with the reason in their "
             "rows; --allow-failed takes that as success"
         )
+
+
+def percent_of(text: str) -> float:
+    """Return the share of a text as "20%" or "20".
+
+    Raises:
+        ConfigurationError: no number.
+    """
+    from vehicle.errors import ConfigurationError
+
+    try:
+        return 0.01 * float(text.strip().removeprefix("+-").removesuffix("%"))
+    except ValueError:
+        raise ConfigurationError(f"--each {text!r}: must be a percentage, as --each 20%") from None
 
 
 def every_combination(texts: Sequence[str]) -> Combinations:

@@ -10,8 +10,8 @@ import pytest
 from tests.validation import validated
 from vehicle.commands.comfort import main
 from vehicle.errors import ConfigurationError, DataError
-from vehicle.signals.analysis.evaluation import evaluate, exposure
-from vehicle.signals.analysis.exposure import daily_exposure
+from vehicle.signals.analysis.daily_exposure import daily_exposure, exposure
+from vehicle.signals.analysis.evaluation import evaluate
 from vehicle.signals.analysis.rail_comfort import comfort_words, rail_comfort
 from vehicle.signals.analysis.weighting import weighting
 

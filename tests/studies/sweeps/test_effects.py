@@ -9,20 +9,19 @@ import numpy as np
 import pytest
 
 from vehicle import Car, road
+from vehicle.commands.sweep import main
 from vehicle.errors import ConfigurationError
 from vehicle.studies.sweeps.case import parameter_cells
 from vehicle.studies.sweeps.differences import DifferencesWriter
-from vehicle.studies.sweeps.effects import (
-    Effect,
-    Effects,
-    effect_sentence,
+from vehicle.studies.sweeps.effects import Effect, Effects, effect_sentence, write_effects
+from vehicle.studies.sweeps.parameter_effects import (
     effects_of,
     parameter_effects,
     single_changes,
     varied_parameters,
-    write_effects,
 )
 from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
 
 NAN = float("nan")
 
@@ -60,7 +59,7 @@ def test_error_of_a_change_is_that_of_the_differences_of_the_sweep():
     parameters = varied_parameters(car.vehicle, ("rear.damper.viscous",))
     changes, without = single_changes(car.vehicle, parameters, 0.2)
     assert without == () and changes[0] == ()
-    table = plan_sweep(car, changes, road("B", 80, duration=6), engine="reduced").run()
+    table = plan_sweep(car, changes, road("B", 80, duration=6), SweepSettings(engine="reduced")).run()
     file, paths = io.StringIO(), table.paths()
     writer = DifferencesWriter(file, paths)
     for case, row in zip(table.cases, table.rows(), strict=True):
@@ -134,3 +133,36 @@ def test_table_file_and_picture(tmp_path):
     assert labels == ["a  10 N", "b  10 N"]
     widths = np.array([bar.get_width() for bar in axes.patches])
     np.testing.assert_allclose(widths, [-4.0, 1.0, 0.0, -1.0])
+
+
+def test_command(tmp_path, capsys, monkeypatch):
+    """Table, sentence, files and report of the command; what it refuses; a resumed sweep has the same table."""
+    monkeypatch.chdir(tmp_path)
+    words = [
+        "--input",
+        "bump_7p5mm.csv",
+        "--engine",
+        "reduced",
+        "--vary",
+        "coulomb_friction",
+        "--vary",
+        "damper.viscous",
+    ]
+    assert main([*words, "--each", "10%", "--output", "each", "--report"]) == 0
+    said = capsys.readouterr().out
+    assert "front.damper.coulomb_friction matters most: -10 % makes the ride" in said and "+10 %" in said
+    table = (tmp_path / "each" / "effects.csv").read_text(encoding="utf-8")
+    assert table.splitlines()[1].startswith("front.damper.coulomb_friction,N,")
+    assert (tmp_path / "each" / "effects.png").is_file()
+    assert "front.damper.coulomb_friction matters most" in (tmp_path / "each" / "report.html").read_text(
+        encoding="utf-8"
+    )
+    assert main([*words, "--each", "10", "--output", "each", "--resume", "--quiet"]) == 0
+    assert (tmp_path / "each" / "effects.csv").read_text(encoding="utf-8") == table
+    for wrong, message in (
+        (["--each", "much"], "--each 'much': must be a percentage"),
+        (["--each", "120%"], "--each 120 %: must be above 0 and below 100 %"),
+        (["--each", "10%", "--sobol", "8"], "leave out --table and --sobol"),
+    ):
+        assert main([*words, *wrong, "--output", "wrong"]) == 2
+        assert message in capsys.readouterr().err

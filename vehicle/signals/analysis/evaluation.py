@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -15,7 +15,6 @@ from vehicle.signals.analysis import rail_comfort
 from vehicle.signals.analysis.exposure import (
     RunningAverage,
     crest_factor,
-    daily_exposure,
     estimated_vibration_dose_value,
     motion_sickness_dose_value,
     mtvv,
@@ -47,8 +46,6 @@ CLOCK_TOLERANCE = 1e-3
 """Maximum relative error of a sampling rate computed from times with jitter [-]."""
 DOSES = ("vdv", "estimated_vdv", "msdv", "msdv_weighting", "vdv_ratio")
 """Values of an axis that are None for a standard without dose values."""
-EXPOSURE_VALUES = {"hand": (2.5, 5.0), "seat": (0.5, 1.15), "standing": (0.5, 1.15)}
-"""Point of contact to action value and limit value of A(8) [m/s2] (Directive 2002/44/EC, article 3)."""
 OFFSET_EFFECT = 0.01
 """Maximum relative change of a weighted RMS or VDV by the offset; above it the user must choose a treatment [-]."""
 LARGEST_MEAN = 1.0
@@ -303,42 +300,6 @@ def evaluate(
         "vector_sum": sums,
         "reasons": reasons,
     }
-
-
-def exposure(values: Mapping[str, Any], hours: float) -> dict[str, Any]:
-    """Return the daily exposure A(8) to the vibration of a record, with action value and limit value.
-
-    It is that of the vector sum for a hand, that of the largest of 1.4 a_x, 1.4 a_y and a_z for a body.
-
-    Args:
-        values: values of a record, see `evaluate`.
-        hours: daily duration of this vibration [h].
-
-    Returns:
-        {"hours", "a8", "axis", "action_value", "limit_value"}, accelerations in m/s2; the axis is "all" for a hand.
-
-    Raises:
-        ConfigurationError: a duration out of range, or a point of contact without exposure values.
-        DataError: an axis is missing.
-
-    Source: Directive 2002/44/EC; ISO 5349-1:2001; ISO 2631-1:1997, 7.2.
-    """
-    contact = values["place"]
-    if contact not in EXPOSURE_VALUES:
-        raise ConfigurationError(
-            f"exposure: {contact} has no action value; the point of contact must be {', '.join(EXPOSURE_VALUES)}"
-        )
-    missing = [axis for axis in AXES if values[axis] is None]
-    if missing:
-        raise DataError(f"exposure: {' and '.join(missing)} missing; A(8) needs x, y and z")
-    if contact == "hand":
-        axis, acceleration = "all", values["vector_sum"]["weighted_rms"]
-    else:
-        weighted = {name: factor * values[name]["weighted_rms"] for name, factor in zip(AXES, HEALTH, strict=True)}
-        axis, acceleration = max(weighted.items(), key=lambda item: item[1])
-    action, limit = EXPOSURE_VALUES[contact]
-    a8 = daily_exposure(acceleration, hours)
-    return {"hours": hours, "a8": a8, "axis": axis, "action_value": action, "limit_value": limit}
 
 
 def _sums(values: dict[str, Any], contact_point: Application) -> dict[str, float | None]:

@@ -97,24 +97,6 @@ def estimated_vibration_dose_value(rms: float, duration_s: float) -> float:
     return float(1.4 * rms * duration_s**0.25)
 
 
-def daily_exposure(acceleration: float, hours: float) -> float:
-    """Return the daily exposure A(8) = a sqrt(T / 8 h) [m/s2].
-
-    Args:
-        acceleration: of a hand the vector sum of its weighted RMS values; of a body the largest of 1.4 a_x, 1.4 a_y and
-            a_z [m/s2].
-        hours: duration T of the exposure in a day [h].
-
-    Raises:
-        ConfigurationError: a duration outside 0 to 24 h.
-
-    Source: ISO 5349-1:2001, 5.3; Directive 2002/44/EC, annex.
-    """
-    if not 0.0 < hours <= 24.0:
-        raise ConfigurationError(f"exposure: found {hours:g} h in a day; must be above 0 and at most 24")
-    return float(acceleration * np.sqrt(hours / 8.0))
-
-
 def motion_sickness_dose_value(time_step: float, weighted: ArrayLike) -> float:
     """Return MSDV = sqrt(int a_w^2 dt) [m/s^1.5] of a record (n,) weighted by Wf. Source: ISO 2631-1:1997, annex D."""
     return float(np.sqrt(np.sum(_one(weighted) ** 2) * checked_time_step(time_step)))

@@ -108,7 +108,7 @@ def tapered_power(samples: Vector, rounding: float, lines: int | None = None) ->
         window = partial(_window, number, count)
 
         def tapered(part: slice, window: Callable[[slice], Vector] = window) -> Vector:
-            return (samples[part] - mean) * window(part)
+            return np.asarray((samples[part] - mean) * window(part))
 
         energy = sum(float(np.sum(window(part) ** 2)) for part in transform.parts)
         power += np.abs(transform.of(tapered)) ** 2 * count / energy / TAPERS

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from vehicle.errors import DataError
 from vehicle.signals.analysis import samples
-from vehicle.signals.analysis.samples import Vector
+from vehicle.signals.analysis.samples import Vector as Vector
 
 TIME = "time [s]"
 """Header of the column of sample times."""

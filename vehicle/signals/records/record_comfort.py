@@ -12,12 +12,12 @@ import numpy as np
 from vehicle.digits import number
 from vehicle.errors import ConfigurationError, DataError
 from vehicle.names import AXES
+from vehicle.signals.analysis.daily_exposure import exposure
 from vehicle.signals.analysis.evaluation import (
     LARGEST_MEAN,
     OFFSET_EFFECT,
     application,
     evaluate,
-    exposure,
     offset_effect,
     offset_line,
     without_offset,

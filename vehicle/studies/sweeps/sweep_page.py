@@ -15,6 +15,7 @@ from vehicle.runs.report.page import document, head_line
 from vehicle.runs.report.svg_figure import drawing
 from vehicle.signals.analysis.ride_comfort import MEANING, SEAT_VALUE, UNWEIGHTED, WEIGHTED
 from vehicle.studies.sweeps.case import parameter_cells
+from vehicle.studies.sweeps.effects import Effects, effect_sentence
 from vehicle.studies.sweeps.sweep_picture import can_be_drawn, draw_ranked
 from vehicle.studies.sweeps.sweep_ranking import RankedCars, SweptCases, ranked_cars
 
@@ -31,6 +32,7 @@ def sweep_page(
     caption: str,
     command: str = "",
     notes: Sequence[str] = (),
+    effects: Effects | None = None,
     author: str = "",
     project: str = "",
 ) -> str:
@@ -42,13 +44,17 @@ def sweep_page(
         caption: tyres and evaluated span.
         command: command line that made the sweep; empty for a sweep in Python.
         notes: messages on side effects of the varied parameters and on the engine.
+        effects: effects of single parameters; then no ranking of the cars.
         author, project: names in the head of the page; may be empty.
     """
-    cars = ranked_cars(results)
+    cars = ranked_cars(results) if effects is None else None
     parts: list[tuple[str, str, Markup]] = []
     if cars is not None:
         parts += [("Result", "result", _result(cars, caption)), ("Cars", "cars", _cars(cars))]
-    parts.append(("All runs", "runs", _runs(results)))
+    if effects is None:
+        parts.append(("All runs", "runs", _runs(results)))
+    else:
+        parts.append(("Result", "result", _effects(effects, caption)))
     parts.append(("How to repeat the sweep", "repeat", _repeating(cars, results, command, notes)))
     inputs = ", ".join(str(source) for source in results.made.get("inputs", {}))
     counts = f"{len(results.cases)} runs, {len(results.failed)} failed"
@@ -82,6 +88,21 @@ def _result(cars: RankedCars, caption: str) -> Markup:
         figure = drawing(lambda path: draw_ranked(path, cars, caption), "Comfort over the varied parameters")
     definitions = [f"{cars.prefix}{name}: {MEANING[name]}" for name in (WEIGHTED, UNWEIGHTED)]
     return fill("result", sentences=best_sentences(cars), figure=figure, definitions=definitions, cars=cars)
+
+
+def _effects(effects: Effects, caption: str) -> Markup:
+    figure = drawing(lambda path: effects.write_picture(path, caption), "Changes of comfort by single parameters")
+    heads = ["parameter", "unit", "value", "low", "high", "change at low [%]", "change at high [%]", "± 95 % [%]"]
+    rows = []
+    for each in effects.effects:
+        changes = (
+            f"{change:+.2f}" if math.isfinite(change) else "failed" for change in (each.change_low, each.change_high)
+        )
+        width = number(each.half_width if math.isfinite(each.half_width) else None, 2)
+        rows.append(
+            (each.path, each.unit, *(number(value, 4) for value in (each.value, each.low, each.high)), *changes, width)
+        )
+    return fill("effects", sentence=effect_sentence(effects), figure=figure, heads=heads, rows=rows, effects=effects)
 
 
 def _cars(cars: RankedCars) -> Markup:

@@ -84,3 +84,13 @@ class SobolSettings(SweepSettings):
     """Settings of Sobol indices."""
 
     base: int = setting("number of base points, a power of two; %(default)s by default", 256)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EffectSettings(SweepSettings):
+    """Settings of the effects of single parameters."""
+
+    share: float = setting("relative change of each parameter [-]; %(default)s by default", 0.2)
+    groups: tuple[str, ...] | list[str] = setting(
+        "parameters, as front.damper or viscous; by default all stiffnesses, dampings, friction forces and masses", ()
+    )
