@@ -71,7 +71,12 @@ def signal_options(parser: Parser, *, several: bool = False) -> argparse._Argume
         return any(len(road) == 1 for road in _listed(options.road))
 
     note = "" if several else "; with --input: in place of the times of the file"
-    road = road_options(parser, lambda options: bool(options.road), is_class, several=several, rate_note=note)
+
+    def on_road(options: argparse.Namespace) -> bool:
+        # A file of targets names its roads.
+        return bool(options.road) or getattr(options, "targets", None) is not None
+
+    road = road_options(parser, on_road, is_class, several=several, rate_note=note)
     setting_options(road, RoadSettings, "tyre", note="; with --input tyres are standing unless --set driving.speed=M/S")
     return group
 

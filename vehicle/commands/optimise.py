@@ -55,6 +55,19 @@ def parser() -> Parser:
         help="constraint, as 'travel<=0.06' or 'lowest_load>=0.1', in the unit of the number; applies to "
         "every input by default; may be repeated",
     )
+    search.add_argument(
+        "--targets",
+        metavar="FILE.toml",
+        help="in place of objectives: the smallest change of at most 8 parameters with which all figures of the file "
+        "meet their limits, on the inputs of the file, which is that of `report --targets`",
+    )
+    search.add_argument(
+        "--cost",
+        action="append",
+        default=[],
+        metavar="PATH=C",
+        help="with --targets: a change of this parameter counts C times; 1 by default; may be repeated",
+    )
     search.add_argument("--cars", type=int, default=2000, metavar="N", help="cars to try; %(default)s by default")
     search.add_argument(
         "--population",
@@ -120,6 +133,9 @@ def _job(options: argparse.Namespace) -> None:
     from vehicle.studies.optimisation.stored_search import SEARCH
     from vehicle.studies.sweeps.executors import executor_factory
 
+    if options.targets is not None:
+        _meet_targets(options)
+        return
     require_counts(cars=options.cars, population=options.population, search_seed=options.search_seed)
     car = Car.load(options.vehicle, options.overrides)
     plan = plan_search(
@@ -152,6 +168,61 @@ def _job(options: argparse.Namespace) -> None:
         cars.write(folder, beside=beside, command=f"python -m vehicle optimise {shlex.join(options.words)}")
     if not options.quiet:
         print(cars.text(output, beside))
+
+
+def _meet_targets(options: argparse.Namespace) -> None:
+    """Search for the smallest change that meets the targets of a file, and write its result."""
+    from vehicle.errors import ConfigurationError
+    from vehicle.model.parameters.ranges import parsed_variation
+    from vehicle.runs.car import Car
+    from vehicle.runs.output.folder import study_folder, write_json, write_text
+    from vehicle.runs.output.own_files import parameters_text, write_own_files
+    from vehicle.runs.targets.verdict import read_targets
+    from vehicle.studies.optimisation.target_search import meet_targets
+
+    for name in ("minimise", "maximise", "limit", "tolerance", "check", "beside", "resume"):
+        if getattr(options, name):
+            raise ConfigurationError(f"--targets: searches by the limits of its file; leave out --{name}")
+    if options.input or options.road:
+        raise ConfigurationError("--targets: its file names the inputs; leave out --input and --road")
+    car, figures = Car.load(options.vehicle, options.overrides), read_targets(options.targets)
+    costs = dict(_cost(text) for text in options.cost)
+    output = study_folder_of(options, options.output, rows=())
+    with study_folder(output, force=options.force, resume=False, rows=()) as folder:
+        found = meet_targets(
+            car,
+            figures,
+            [parsed_variation("--vary", text).range() for text in options.vary],
+            duration=options.duration,
+            costs=costs,
+            jobs=options.jobs,
+            progress=ProgressLine("optimise  ", enabled=not options.quiet),
+        )
+        write_text(folder / "vehicle.toml", parameters_text(found.car, found.sentence))
+        write_own_files(folder, found.car)
+        command = f"python -m vehicle optimise {shlex.join(options.words)}"
+        write_json(folder / "summary.json", {**found.summary(), "command": command})
+    if not options.quiet:
+        print(f"{output}: {found.change.runs} cars on {', '.join(found.inputs)}; vehicle.toml, summary.json")
+        print(found)
+
+
+def _cost(text: str) -> tuple[str, float]:
+    """Return path and cost of a text as "front.damper.viscous=2".
+
+    Raises:
+        ConfigurationError: another form, or a cost that is not positive.
+    """
+    from vehicle.errors import ConfigurationError
+
+    path, _, value = text.partition("=")
+    try:
+        cost = float(value)
+    except ValueError:
+        cost = 0.0
+    if not 0.0 < cost < float("inf"):
+        raise ConfigurationError(f"--cost {text}: must be PATH=C with a number above 0, as front.damper.viscous=2")
+    return path, cost
 
 
 main = command(parser, _job)

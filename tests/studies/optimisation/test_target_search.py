@@ -1,0 +1,116 @@
+"""Smallest change of a car that meets targets: brute force over cars, figures of single runs, what is refused."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from vehicle import Car, road
+from vehicle.commands.optimise import main
+from vehicle.errors import ConfigurationError
+from vehicle.model.parameters.ranges import Range
+from vehicle.runs.targets.figure import Figure
+from vehicle.studies.optimisation.target_search import meet_targets
+from vehicle.studies.sweeps.plan import plan_sweep
+from vehicle.studies.sweeps.sweep_settings import SweepSettings
+
+RAIL = ("seat rail x", "seat rail y", "seat rail z")
+ON_ROAD: dict[str, Any] = {"road": "C", "speed": 80.0}
+
+
+def targets(weighted, travel):
+    return {
+        "weighted": Figure(
+            quantity="rms", channels=RAIL, weighting="seat", unit="m/s2", at_most=weighted, words="the ride", **ON_ROAD
+        ),
+        "travel": Figure(quantity="travel", unit="m", at_most=travel, words="the travel", **ON_ROAD),
+    }
+
+
+@pytest.fixture(scope="module")
+def sedan():
+    return Car.load("sedan")
+
+
+RANGES = (
+    Range(path="rear.damper.viscous", low=800.0, high=3000.0),
+    Range(path="front.bushings.tyre.stiffness.z", low=1.7e5, high=2.7e5),
+)
+
+
+def test_change_against_a_grid_of_cars(sedan):
+    """21 x 21 cars on the same road: the change found is at most 2 % larger than the smallest allowed of the grid."""
+    ride = road("C", 80, duration=4)
+    run = sedan.run(ride, engine="reduced")
+    limit = 0.95 * run.comfort().weighted.overall
+    found = meet_targets(sedan, targets(limit, 0.1), RANGES, duration=4.0)
+    assert found.change.feasible and found.after[0] <= limit
+    axes = [np.geomspace(each.low, each.high, 21).tolist() for each in RANGES]
+    cars = [(a, b) for a in axes[0] for b in axes[1]]
+    changes = [tuple(f"{each.path}={value!r}" for each, value in zip(RANGES, car, strict=True)) for car in cars]
+    table = plan_sweep(sedan, changes, ride, SweepSettings(engine="reduced")).run()
+    allowed = table.column("weighted")[-len(cars) :] <= limit
+    start = np.array([each.start for each in found.ranges])
+    cost = np.sqrt(np.sum(np.log(np.array(cars) / start) ** 2, axis=1))
+    assert found.change.cost <= 1.02 * cost[allowed].min()
+    # The figures are those of a single run of the changed car; batches run in single precision.
+    again = found.car.run(ride, engine="reduced")
+    assert found.after[0] == pytest.approx(again.comfort().weighted.overall, rel=1e-5)
+    assert found.before[0] == pytest.approx(run.comfort().weighted.overall, rel=1e-5)
+    assert "The smallest change that meets all 2 targets: " in str(found) and "decisive is the ride" in found.sentence
+
+
+def test_targets_that_exclude_each_other(sedan):
+    found = meet_targets(sedan, targets(0.5, 0.1), RANGES, duration=3.0)
+    assert not found.change.feasible and found.change.active == (0,)
+    assert "No car within these bounds meets all 2 targets: the ride misses its limit by" in found.sentence
+    assert "at its bound is" in found.sentence and "front.bushings.tyre.stiffness.z" in found.sentence
+
+
+def test_a_car_that_meets_its_targets(sedan):
+    found = meet_targets(sedan, targets(2.0, 0.1), RANGES, duration=3.0)
+    assert found.sentence == "sedan meets all 2 targets as it is." and found.change.cost == 0.0
+
+
+@pytest.mark.parametrize(
+    ("figure", "ranges", "message"),
+    [
+        ({"road": ""}, RANGES, "weighted: a search needs its input"),
+        ({"speed": None}, RANGES, r"weighted: speed \[km/h\] is missing"),
+        ({"channels": ("seat rail q",)}, RANGES, "weighted: "),
+        ({"unit": "g"}, RANGES, "weighted: unit: found 'g'"),
+        ({}, (), "--vary: 0 parameters; must be 1 to 8"),
+        ({}, (Range(path="rear.damper.viscous", low=2000.0, high=3000.0),), "the car has 1500; the bounds must"),
+    ],
+)
+def test_what_is_refused(sedan, figure, ranges, message):
+    keys = {"quantity": "rms", "channels": RAIL, "weighting": "seat", "unit": "m/s2", "at_most": 0.5, **ON_ROAD}
+    with pytest.raises(ConfigurationError, match=message):
+        meet_targets(sedan, {"weighted": Figure(**(keys | figure))}, ranges, duration=3.0)
+
+
+def test_command(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (
+        '[ride]\nquantity = "rms"\nchannels = ["seat rail z"]\nweighting = "Wk"\nroad = "C"\nspeed = 80\n'
+        'at_most = 0.9\nunit = "m/s2"\n'
+    )
+    (tmp_path / "targets.toml").write_text(text, encoding="utf-8")
+    words = ["--vehicle", "sedan", "--targets", "targets.toml", "--vary", "front.bushings.tyre.stiffness.z=1.6e5:2.4e5"]
+    assert main([*words, "--duration", "3", "--output", "change"]) == 0
+    said = capsys.readouterr().out
+    assert "front.bushings.tyre.stiffness.z" in said and "targets: " in said
+    summary = json.loads((tmp_path / "change" / "summary.json").read_text(encoding="utf-8"))
+    changed = Car.load(tmp_path / "change" / "vehicle.toml")
+    path = "front.bushings.tyre.stiffness.z"
+    assert changed[path].value == pytest.approx(summary["parameters"][path]["after"])
+    for more, message in (
+        (["--minimise", "weighted"], "leave out --minimise"),
+        (["--road", "C", "--speed", "80"], "leave out --input and --road"),
+        (["--cost", "a"], "--cost a: must be PATH=C"),
+    ):
+        assert main([*words, *more, "--output", "wrong"]) == 2
+        assert message in capsys.readouterr().err
