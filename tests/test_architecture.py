@@ -85,10 +85,10 @@ ROOMS: dict[str, set[str]] = {
     | {"parameters", "reduced", "rendering", "report", "simulation", "threads"},
     "tuning": {"analysis", "car", "excitation", "formats", "output", "parameters", "records", "reduced"}
     | {"rendering", "report", "threads"},
-    "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps"},
+    "optimisation": {"analysis", "car", "output", "parameters", "rendering", "sweeps", "targets"},
     "commands": {"analysis", "assembly", "bench", "car", "comparison", "dampers", "design", "excitation"}
     | {"flexbody", "fmu", "formats", "kinematics", "linear", "mounts", "optimisation", "output"}
-    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps"}
+    | {"page", "parameters", "records", "rendering", "replication", "report", "sweeps", "targets"}
     | {"threads", "tuning", "version"},
     "__init__": {"car", "comparison", "dampers", "excitation", "fmu", "formats", "handed_down", "laws", "mounts"}
     | {"optimisation", "output", "page", "parameters", "records", "replication", "sweeps", "tuning"},
